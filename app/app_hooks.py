@@ -23,5 +23,6 @@ def on_server_loaded(_server_context: Any) -> None:
     # What is imported stays: without this every full collection walks it for 0.15 s.
     gc.collect()
     gc.freeze()
-    # Pages are made of many small objects that stay: collections took a tenth of their making.
+    # Pages are made of many small objects that stay: collections took a tenth of their
+    # making.
     gc.set_threshold(50_000, 20, 20)

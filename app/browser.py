@@ -22,8 +22,11 @@ from app.views.view import View
 log = logging.getLogger(__name__)
 LOST = 5.0
 """Seconds after which a picture counts as lost, as when the network broke."""
-PAINTED = "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
-"""Says what is on the screen once it is: tasks follow what is painted in a frame of the browser."""
+PAINTED = (
+    "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
+)
+"""Says what is on the screen once it is: tasks follow what is painted in a frame of the
+browser."""
 SHORTEST = 0.02
 """Seconds of a pause between pictures that is kept."""
 LASTS = 1.0
@@ -63,19 +66,27 @@ class Pulse(DataModel):
 class Display:
     """Paints the views in sight: the next picture follows once the browser has painted the last.
 
-    `views` are those in sight; `also` is called with each picture, inside its hold: for what is
-    not a view, as the status line.
+    `views` are those in sight; `also` is called with each picture, inside its hold: for
+    what is not a view, as the status line.
     """
 
-    def __init__(self, state: PageState, document: Any, also: Callable[[], None]) -> None:
-        self._state, self._document, self._also = state, document, also
+    def __init__(
+        self, state: PageState, document: Any, also: Callable[[], None]
+    ) -> None:
+        self._state = state
+        self._document = document
+        self._also = also
         self.views: list[View] = []
         self._is_due = False
         self._sent_at = self._took = 0.0
         self.pulse = Pulse(name="pulse")
-        self.pulse.js_on_change("sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED))
+        self.pulse.js_on_change(
+            "sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED)
+        )
         self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
-        state.param.watch(lambda *events: self._update(), ["frame", "selection", "ghost"])
+        state.param.watch(
+            lambda *events: self._update(), ["frame", "selection", "ghost"]
+        )
 
     def look_at(self, views: list[View]) -> None:
         """Have other views be in sight."""
@@ -105,7 +116,8 @@ class Display:
             self._paint()
 
     def _paint(self) -> None:
-        state, frame = self._state, self._state.frame
+        state = self._state
+        frame = self._state.frame
         self._is_due = False
         if frame is None:
             return
@@ -147,8 +159,8 @@ class Display:
 class Browser(DataModel):
     """The window and what is done there.
 
-    The height in pixels, and whether it is narrow; the last key and a count of them; the address
-    that one has gone back, or on, to; and the link that is to be copied.
+    The height in pixels, and whether it is narrow; the last key and a count of them;
+    the address that one has gone back, or on, to; and the link that is to be copied.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -166,7 +178,9 @@ class Browser(DataModel):
         The state has the size of the window.
         """
         for size in ("height", "is_narrow"):
-            self.on_change(size, lambda name, old, new: state.param.update(**{name: new}))
+            self.on_change(
+                size, lambda name, old, new: state.param.update(**{name: new})
+            )
         self.on_change("count", lambda name, old, new: actions[self.pressed]())
         args = {"browser": self, "names": list(actions), "taken": TAKEN}
         self.js_on_change("copied", CustomJS(args=args, code=COPY))
@@ -177,9 +191,9 @@ class Browser(DataModel):
 class Echoes:
     """The values that a widget was given lately.
 
-    Panel's React wrapper sends a value back after it has shown it. Where the next one came
-    meanwhile, that looks like a choice of the last but one (panel/models/react_component.ts,
-    `useState`).
+    Panel's React wrapper sends a value back after it has shown it. Where the next one
+    came meanwhile, that looks like a choice of the last but one
+    (panel/models/react_component.ts, `useState`).
     """
 
     def __init__(self) -> None:

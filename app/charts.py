@@ -19,7 +19,16 @@ from bokeh.resources import Resources
 from app.units import unit_for
 from app.views.colors import REFERENCE
 from solver.arrays import Array
-from solver.study.page import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, PlotSection, Runs
+from solver.study.page import (
+    HUES,
+    Chart,
+    Map,
+    Panel,
+    PanelAxis,
+    PanelCurve,
+    PlotSection,
+    Runs,
+)
 
 hv.extension("bokeh")
 
@@ -47,7 +56,9 @@ def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
     What all of them need, and each section (HTML).
     """
     draw = hv.renderer("bokeh").get_plot
-    figures = [draw(overlay(in_units(chart))).state for plot in plots for chart in plot.charts]
+    figures = [
+        draw(overlay(in_units(chart))).state for plot in plots for chart in plot.charts
+    ]
     script, places = components(figures, wrap_script=True)
     waiting = iter(places)
     sections = [
@@ -68,8 +79,12 @@ def library(*more: str) -> str:
 def keys(charts: Sequence[Chart]) -> str:
     """The legend that charts side by side share (HTML)."""
     panels = [chart for chart in charts if isinstance(chart, Panel)]
-    curves = {curve.label: curve for panel in panels for curve in panel.curves if curve.label}
-    return "<div>" + " ".join(map(_key, curves.values())) + "</div>" if curves else ""
+    curves = {
+        curve.label: curve for panel in panels for curve in panel.curves if curve.label
+    }
+    if curves:
+        return "<div>" + " ".join(map(_key, curves.values())) + "</div>"
+    return ""
 
 
 def _key(curve: PanelCurve) -> str:
@@ -84,20 +99,30 @@ class LiveChart:
 
     def __init__(self) -> None:
         self._keys = pn.pane.HTML("", margin=(4, 8))
-        self._figure = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        self._figure = pn.pane.HoloViews(
+            None, sizing_mode="stretch_width", margin=(0, 6)
+        )
         self.view = pn.Column(self._keys, self._figure, sizing_mode="stretch_width")
         self._drawn: list[Any] = []
 
     def show(self, chart: Chart) -> None:
         """Show a chart, in the figure of the last one if it has the same axes and curves."""
         axes = chart.x, chart.y, chart.scale if isinstance(chart, Map) else chart.y
-        legend, data = keys([chart]), in_units(chart)
-        drawn = [legend, *((axis.quantity, axis.names, axis.logarithmic) for axis in axes)]
+        legend = keys([chart])
+        data = in_units(chart)
+        drawn = [
+            legend,
+            *((axis.quantity, axis.names, axis.logarithmic) for axis in axes),
+        ]
         if drawn == self._drawn:
             self._pipe.send(data)
             return
-        self._drawn, self._keys.object, self._pipe = drawn, legend, hv.streams.Pipe(data=data)
-        self._figure.object = hv.DynamicMap(lambda data: overlay(data), streams=[self._pipe])
+        self._drawn = drawn
+        self._keys.object = legend
+        self._pipe = hv.streams.Pipe(data=data)
+        self._figure.object = hv.DynamicMap(
+            lambda data: overlay(data), streams=[self._pipe]
+        )
 
 
 def in_units(chart: Chart) -> Chart:
@@ -113,7 +138,9 @@ def in_units(chart: Chart) -> Chart:
         drawn = [*chart.curves, *([] if runs is None else [runs])]
         x_axis, x = _in_unit(chart.x, *(each.x for each in drawn))
         y_axis, y = _in_unit(chart.y, *(each.y for each in drawn))
-        curves = [replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves]
+        curves = [
+            replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves
+        ]
         more = {"curves": tuple(curves)}
     if runs is not None:
         runs = replace(runs, x=runs.x / x, y=runs.y / y)
@@ -124,7 +151,10 @@ def _in_unit(axis: PanelAxis, *values: Array) -> tuple[PanelAxis, float]:
     """An axis in the unit in which such values are read, and the size of that unit."""
     sizes = np.abs(np.concatenate([[0.0], *values]))
     unit = unit_for(float(sizes[np.isfinite(sizes)].max()), axis.unit)
-    limits = axis.limits and (axis.limits[0] / unit.factor, axis.limits[1] / unit.factor)
+    limits = axis.limits and (
+        axis.limits[0] / unit.factor,
+        axis.limits[1] / unit.factor,
+    )
     return replace(axis, unit=unit.name, limits=limits), unit.factor
 
 
@@ -133,13 +163,22 @@ def overlay(chart: Chart) -> hv.Overlay:
     title = chart.title
     if isinstance(chart, Map):
         made = _of_map(chart)
-        xs, ys = chart.x_values, chart.y_values
-        title += f" ({chart.scale.unit})" if chart.scale.unit else ""
-        x_limits, y_limits = edges(xs, chart.x)[[0, -1]], edges(ys, chart.y)[[0, -1]]
+        xs = chart.x_values
+        ys = chart.y_values
+        if chart.scale.unit:
+            title += f" ({chart.scale.unit})"
+        else:
+            title += ""
+        x_limits = edges(xs, chart.x)[[0, -1]]
+        y_limits = edges(ys, chart.y)[[0, -1]]
     else:
         made = _of_panel(chart)
-        xs, ys = (np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy")
-        x_limits, y_limits = (axis.limits or (None, None) for axis in (chart.x, chart.y))
+        xs, ys = (
+            np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy"
+        )
+        x_limits, y_limits = (
+            axis.limits or (None, None) for axis in (chart.x, chart.y)
+        )
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.
     return hv.Overlay([element.opts(framewise=True) for element in made]).opts(
         # HoloViews takes braces for places that it fills.
@@ -158,32 +197,47 @@ def overlay(chart: Chart) -> hv.Overlay:
         show_legend=False,
         show_grid=isinstance(chart, Panel),
         default_tools=TOOLS,
-        # What scrolls the page must not move what it passes over, until one asks for it.
+        # What scrolls the page must not move what it passes over, until one asks for
+        # it.
         active_tools=[],
-        # A toolbar that sticks to the axes lies over a title that is as wide as they are.
+        # A toolbar that sticks to the axes lies over a title that is as wide as they
+        # are.
         backend_opts={"plot.toolbar.logo": None, "plot.toolbar_sticky": False},
     )
 
 
 def edges(values: Array, axis: PanelAxis) -> Array:
     """Where cells about n ascending values end, half way between them on their axis, (n + 1,)."""
-    at = np.log(values) if axis.logarithmic else values
-    half = np.diff(at) / 2.0 if len(at) > 1 else np.array([0.5])
+    if axis.logarithmic:
+        at = np.log(values)
+    else:
+        at = values
+    if len(at) > 1:
+        half = np.diff(at) / 2.0
+    else:
+        half = np.array([0.5])
     ends = np.concatenate([at[:1] - half[:1], at[:-1] + half, at[-1:] + half[-1:]])
-    return np.exp(ends) if axis.logarithmic else ends
+    if axis.logarithmic:
+        return np.exp(ends)
+    return ends
 
 
 def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:
     """Names of an axis, or its few whole numbers; None for round numbers."""
     if axis.names:
         return list(enumerate(axis.names))
-    whole = sorted({int(value) for value in values}) if axis.whole else []
+    if axis.whole:
+        whole = sorted({int(value) for value in values})
+    else:
+        whole = []
     return whole if 0 < len(whole) <= 7 else None
 
 
 def _table(runs: Runs) -> pd.DataFrame:
     """Runs as HoloViews takes them."""
-    return pd.DataFrame({"x": runs.x, "y": runs.y, "said": np.array(runs.said, dtype=object)})
+    return pd.DataFrame(
+        {"x": runs.x, "y": runs.y, "said": np.array(runs.said, dtype=object)}
+    )
 
 
 def _of_panel(panel: Panel) -> Iterator[hv.Element]:
@@ -191,10 +245,14 @@ def _of_panel(panel: Panel) -> Iterator[hv.Element]:
         yield from _of_curve(panel, curve)
     if panel.runs is None:
         return
-    runs, known = _table(panel.runs), np.isfinite(panel.runs.y)
+    runs = _table(panel.runs)
+    known = np.isfinite(panel.runs.y)
     low, high = panel.y.limits or (0.0, 1.0)
     # What has no value stands at the upper edge.
-    top = high * (low / high) ** 0.03 if panel.y.logarithmic else high - 0.03 * (high - low)
+    if panel.y.logarithmic:
+        top = high * (low / high) ** 0.03
+    else:
+        top = high - 0.03 * (high - low)
     looks = {
         "color": np.array(COLORS)[panel.runs.hues],
         "fill_alpha": panel.runs.holds * 1.0,
@@ -207,7 +265,10 @@ def _of_panel(panel: Panel) -> Iterator[hv.Element]:
 
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
-    y = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
+    if panel.y.logarithmic:
+        y = np.where(curve.y > 0.0, curve.y, np.nan)
+    else:
+        y = curve.y
     is_thin = curve.line == "points"
     looks: dict[str, Any] = {
         "color": COLORS[curve.hue],
@@ -223,7 +284,8 @@ def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
 
 
 def _of_map(chart: Map) -> Iterator[hv.Element]:
-    runs, holds = _table(chart.runs), chart.runs.holds
+    runs = _table(chart.runs)
+    holds = chart.runs.holds
     rows, columns = np.nonzero(np.isfinite(chart.z))
     places = {"x": chart.x_values[columns], "y": chart.y_values[rows]}
     known = pd.DataFrame({**places, "value": chart.z[rows, columns]})
@@ -236,9 +298,13 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
         clabel=" ",
     )
     lines = contours(chart)
-    yield hv.Contours(lines, ["x", "y"], "z").opts(color="#000", alpha=0.75, line_width=1.2)
+    yield hv.Contours(lines, ["x", "y"], "z").opts(
+        color="#000", alpha=0.75, line_width=1.2
+    )
     # Not all in the same place, where lines are close.
-    places = [len(line["x"]) * (1 + number % 3) // 4 for number, line in enumerate(lines)]
+    places = [
+        len(line["x"]) * (1 + number % 3) // 4 for number, line in enumerate(lines)
+    ]
     labels = [
         (line["x"][i], line["y"][i], f"{line['z']:.4g}")
         for line, i in zip(lines, places, strict=True)
@@ -261,19 +327,30 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
     """Cells about runs."""
     columns = np.searchsorted(chart.x_values, table["x"])
     rows = np.searchsorted(chart.y_values, table["y"])
-    x, y = edges(chart.x_values, chart.x), edges(chart.y_values, chart.y)
-    sides = {"left": x[columns], "bottom": y[rows], "right": x[columns + 1], "top": y[rows + 1]}
+    x = edges(chart.x_values, chart.x)
+    y = edges(chart.y_values, chart.y)
+    sides = {
+        "left": x[columns],
+        "bottom": y[rows],
+        "right": x[columns + 1],
+        "top": y[rows + 1],
+    }
     return hv.Rectangles(table.assign(**sides), list(sides), list(table))
 
 
 def contours(chart: Map) -> list[dict[str, Any]]:
     """Lines of equal and round values "z" through the places "x" and "y"."""
     known = chart.z[np.isfinite(chart.z)]
-    if min(chart.z.shape) == 1 or known.max(initial=-np.inf) <= known.min(initial=np.inf):
+    if min(chart.z.shape) == 1 or known.max(initial=-np.inf) <= known.min(
+        initial=np.inf
+    ):
         return []
     levels: Any = LEVELS
     if chart.scale.logarithmic:
-        steps = [1.0, 2.0, 5.0] if known.max() < 1e4 * known.min() else [1.0]
+        if known.max() < 1e4 * known.min():
+            steps = [1.0, 2.0, 5.0]
+        else:
+            steps = [1.0]
         powers = np.arange(*np.floor(np.log10([known.min(), 10.0 * known.max()])))
         levels = np.outer(10.0**powers, steps).ravel()
     values = hv.QuadMesh((chart.x_values, chart.y_values, chart.z))

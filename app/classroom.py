@@ -1,7 +1,7 @@
 """A class: one page leads, and the pages that follow show its frames, which are computed once.
 
-Nobody has a name, and nothing is left of a class that has ended. One whose leader is gone waits
-some minutes, as whoever loads a page again is gone as well.
+Nobody has a name, and nothing is left of a class that has ended. One whose leader is
+gone waits some minutes, as whoever loads a page again is gone as well.
 """
 
 from __future__ import annotations
@@ -39,13 +39,14 @@ SHARED = *RESUMED, "frame", "newest", "ghost", "iteration", "running"
 class Classroom:
     """What the pages of a class have in common.
 
-    Whoever has `key` may lead: the page that began the class, after it was loaded again. `leader`
-    is None while nobody does; `state` is the leader's, or what the last one left. `members` follow.
-    `opened` is the lesson whose counts all may see.
+    Whoever has `key` may lead: the page that began the class, after it was loaded
+    again. `leader` is None while nobody does; `state` is the leader's, or what the last
+    one left. `members` follow. `opened` is the lesson whose counts all may see.
     """
 
     def __init__(self, code: str, leader: ClassMember) -> None:
-        self.code, self.key = code, secrets.token_hex(8)
+        self.code = code
+        self.key = secrets.token_hex(8)
         self.leader: ClassMember | None = leader
         self.state = leader.state
         self.members: list[ClassMember] = []
@@ -64,7 +65,8 @@ class Classroom:
 
     def lead(self, member: ClassMember) -> None:
         """Have a page lead it, in place of the one that did."""
-        self.leader, self._gone_at = member, None
+        self.leader = member
+        self._gone_at = None
         self.state = member.state
         self.notify()
 
@@ -83,10 +85,14 @@ class Classroom:
 
     def _let_go(self, now: float) -> None:
         """Keep of the leader what followers see: the state itself would keep the whole page."""
-        self.leader, self._gone_at = None, now
+        self.leader = None
+        self._gone_at = now
         last = self.state
-        self.state = PageState(**{name: getattr(last, name) for name in (*SHARED, "prediction")})
-        self.state.history, self.state.number = last.history, last.number
+        self.state = PageState(
+            **{name: getattr(last, name) for name in (*SHARED, "prediction")}
+        )
+        self.state.history = last.history
+        self.state.number = last.number
 
     def poll_for(self, member: ClassMember) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
@@ -134,15 +140,17 @@ def find(code: str) -> Classroom | None:
 class ClassMember(param.Parameterized):
     """The part of a page in a class: it leads one, follows one, or neither.
 
-    Its worker is ended while it follows. `room` is the class that is led or followed, `left` the
-    code of the one that was followed last.
+    Its worker is ended while it follows. `room` is the class that is led or followed,
+    `left` the code of the one that was followed last.
     """
 
     message = param.String(doc="What is to be said of the class, in a sentence.")
 
     def __init__(self, state: PageState, supervisor: Supervisor, document: Any) -> None:
         super().__init__()
-        self.state, self._supervisor, self._document = state, supervisor, document
+        self.state = state
+        self._supervisor = supervisor
+        self._document = document
         self.room: Classroom | None = None
         self.left = ""
         self._is_due = False
@@ -170,7 +178,9 @@ class ClassMember(param.Parameterized):
         room = find(code)
         if room is None:
             if code:
-                self.message = f"There is no class {code[:20]}: ask for it; it may have ended."
+                self.message = (
+                    f"There is no class {code[:20]}: ask for it; it may have ended."
+                )
             self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.state
@@ -195,13 +205,18 @@ class ClassMember(param.Parameterized):
 
     def leave(self) -> None:
         """End the class that this page leads, or go on with a run of its own."""
-        room, state, followed = self.room, self.state, self.follows
+        room = self.room
+        state = self.state
+        followed = self.follows
         if room is None:
             return
         self.room = state.poll = None
         self.left = room.code if followed else ""
         state.room = self._address()
-        self.message = f"You have left class {room.code}." if followed else ""
+        if followed:
+            self.message = f"You have left class {room.code}."
+        else:
+            self.message = ""
         if not followed:
             room.end()
             return
@@ -255,16 +270,22 @@ class ClassMember(param.Parameterized):
     def _take(self) -> None:
         """Show what the leader shows."""
         self._is_due = False
-        room, state = self.room, self.state
+        room = self.room
+        state = self.state
         if room is None:
             return
         values: dict[str, Any] = {"poll": room.poll_for(self)}
         if self.follows:
             leader = room.state
-            state.history, state.number = leader.history, leader.number
+            state.history = leader.history
+            state.number = leader.number
             values |= {name: getattr(leader, name) for name in SHARED}
         # Watchers of what is as it was have nothing to do.
-        changed = {name: value for name, value in values.items() if value != getattr(state, name)}
+        changed = {
+            name: value
+            for name, value in values.items()
+            if value != getattr(state, name)
+        }
         state.param.update(**changed)
         self.message = self._sentence(room)
         if room.is_alone and not room.is_over:
@@ -284,7 +305,9 @@ class ClassMember(param.Parameterized):
         """What the page's address has of the class: its code; of one that is led its key, too."""
         if self.room is None:
             return ""
-        return f"{self.room.code}.{self.room.key}" if self.leads else self.room.code
+        if self.leads:
+            return f"{self.room.code}.{self.room.key}"
+        return self.room.code
 
     def _on_address(self, address: str) -> None:
         """Follow, or leave, as the browser goes back and on."""
@@ -299,30 +322,45 @@ class ClassMember(param.Parameterized):
 class ClassDialog:
     """Begins a class and shows its code, or joins one.
 
-    `view` is the line that stands on the page while it is in a class, or has left one; `dialog` is
-    what the header's button opens.
+    `view` is the line that stands on the page while it is in a class, or has left one;
+    `dialog` is what the header's button opens.
     """
 
     def __init__(self, member: ClassMember) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
-        self._again = button("Follow again", lambda: member.enter(member.left), variant="text")
-        look = {"visible": False, "margin": 0, "align": "center", "css_classes": ["class"]}
+        self._again = button(
+            "Follow again", lambda: member.enter(member.left), variant="text"
+        )
+        look = {
+            "visible": False,
+            "margin": 0,
+            "align": "center",
+            "css_classes": ["class"],
+        }
         self.view = pn.Row(self._message, self._again, **look)
         self.dialog = dialog("A class", width_option="sm")
         member.param.watch(lambda event: self._show(), "message")
 
     def open(self) -> None:
         """Open the dialog."""
-        # It is filled anew: models that were taken off the page are not put on it again.
-        self.dialog[:] = self._led() if self._member.leads else self._offered()
+        # It is filled anew: models that were taken off the page are not put on it
+        # again.
+        if self._member.leads:
+            self.dialog[:] = self._led()
+        else:
+            self.dialog[:] = self._offered()
         self.dialog.open = True
 
     def _offered(self) -> list[Any]:
-        self._field = pmui.TextInput(label="Code", max_length=4, size="small", width=120)
+        self._field = pmui.TextInput(
+            label="Code", max_length=4, size="small", width=120
+        )
         join = button("Join", self._join, variant="outlined")
         return [
-            pn.pane.Markdown("Whoever joins a class sees what its leader sees, and predicts too."),
+            pn.pane.Markdown(
+                "Whoever joins a class sees what its leader sees, and predicts too."
+            ),
             button("Begin a class", self._begin),
             pn.Row(self._field, join, align="end", margin=(12, 0)),
         ]
@@ -333,7 +371,9 @@ class ClassDialog:
         address = address_for_others()
         if address:
             link = f"{address}?class={code}"
-            svg = segno.make(link, error="m").svg_inline(scale=6, light="#fff", omitsize=True)
+            svg = segno.make(link, error="m").svg_inline(
+                scale=6, light="#fff", omitsize=True
+            )
             below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
         else:
             below = how_to_open()
@@ -348,7 +388,10 @@ class ClassDialog:
         if self._member.enter(code):
             self.dialog.open = False
         else:
-            refusal = self._member.message if code else "Write a code."
+            if code:
+                refusal = self._member.message
+            else:
+                refusal = "Write a code."
             self._field.param.update(error_state=True, helper_text=refusal)
 
     def _leave(self) -> None:

@@ -13,7 +13,9 @@ APP = Path(__file__).resolve().parent
 def add_serve(commands: Any) -> None:
     """Add the command; the entry points of the distribution name this to the engine's."""
     serve = commands.add_parser(
-        "serve", help="serve the page, at /app; options are those of `panel serve`", add_help=False
+        "serve",
+        help="serve the page, at /app; options are those of `panel serve`",
+        add_help=False,
     )
     serve.set_defaults(command=_serve, passed_on=())
 
@@ -22,8 +24,14 @@ def _serve(chosen: argparse.Namespace) -> int:
     # Here and not above: other commands do without the second that it takes.
     from panel.command import main
 
-    # A page that is older than Bokeh's five minutes may come back after its network was gone.
-    patient = ["--session-token-expiration", "86400", "--unused-session-lifetime", "120000"]
+    # A page that is older than Bokeh's five minutes may come back after its network was
+    # gone.
+    patient = [
+        "--session-token-expiration",
+        "86400",
+        "--unused-session-lifetime",
+        "120000",
+    ]
     sys.argv = ["panel", "serve", str(APP), *patient, *chosen.passed_on]
     main()
     return 0

@@ -30,7 +30,18 @@ STEPS = 80
 """Steps of a slider at least."""
 POINTS = "points"
 GROUPS = (
-    *("Load", "Ends", "Top", "Left", "Right", "Contact", "Bar", "Strand", "Body", "Body force"),
+    *(
+        "Load",
+        "Ends",
+        "Top",
+        "Left",
+        "Right",
+        "Contact",
+        "Bar",
+        "Strand",
+        "Body",
+        "Body force",
+    ),
     *("Decomposition", "Method", "Stop"),
 )
 """Order of the groups: what the scene is, then how it is solved."""
@@ -39,12 +50,13 @@ GROUPS = (
 class SettingControl:
     """The widget of one setting: it shows the state's and changes it.
 
-    `field` takes the value; of a number it is a text field, which has a `slider`, too. Both stand
-    in `view`.
+    `field` takes the value; of a number it is a text field, which has a `slider`, too.
+    Both stand in `view`.
     """
 
     def __init__(self, name: str, state: PageState) -> None:
-        self.name, self._state = name, state
+        self.name = name
+        self._state = state
         self._definition: Parameter = state.settings.definitions()[name]
         self._about = about(self._definition)
         self._unit = unit_of(self._definition)
@@ -70,19 +82,30 @@ class SettingControl:
     def _make(self) -> tuple[Any, Any]:
         """The field and what stands on the page."""
         definition = self._definition
-        more: dict[str, Any] = {"description": help_of(definition), "size": "small", "width": WIDTH}
-        more |= {"margin": (4, 0), "label": self._unit.titled(title_of(self._definition))}
+        more: dict[str, Any] = {
+            "description": help_of(definition),
+            "size": "small",
+            "width": WIDTH,
+        }
+        more |= {
+            "margin": (4, 0),
+            "label": self._unit.titled(title_of(self._definition)),
+        }
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
             look = {"variant": "text", "margin": (-4, 0, 0, 0)}
-            self._edit_button = button("Edit points", self._edit, icon="show_chart", **look)
+            self._edit_button = button(
+                "Edit points", self._edit, icon="show_chart", **look
+            )
             return field, pn.Column(field, self._edit_button, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
         if isinstance(definition, param.Selector):
-            field = pmui.Select(options=list(definition.objects), variant="standard", **more)
+            field = pmui.Select(
+                options=list(definition.objects), variant="standard", **more
+            )
             return field, field
         more |= {"margin": 0, "variant": "standard", **looks("number")}
         default = self._written(definition.default)
@@ -93,12 +116,16 @@ class SettingControl:
 
     def _make_slider(self) -> pmui.FloatSlider:
         low, high = (self._to_slider(end) for end in self._definition.softbounds)
-        is_count = isinstance(self._definition, param.Integer) and not self._is_logarithmic
+        is_count = (
+            isinstance(self._definition, param.Integer) and not self._is_logarithmic
+        )
         slider = pmui.FloatSlider(
             label=title_of(self._definition),
             start=low,
             end=high,
-            step=1 if is_count else 10.0 ** math.floor(math.log10((high - low) / STEPS)),
+            step=1
+            if is_count
+            else 10.0 ** math.floor(math.log10((high - low) / STEPS)),
             value=low,
             show_value=False,
             tooltips=False,
@@ -118,7 +145,10 @@ class SettingControl:
 
     def _from_slider(self, place: float) -> float:
         """The value of a place, as round as a hand can mean it."""
-        value = 10.0**place if self._is_logarithmic else place * self._unit.factor
+        if self._is_logarithmic:
+            value = 10.0**place
+        else:
+            value = place * self._unit.factor
         if isinstance(self._definition, param.Integer):
             return round(value)
         return float(f"{value:.{3 if self._is_logarithmic else 10}g}")
@@ -142,18 +172,24 @@ class SettingControl:
     def _show_on_slider(self, value: float) -> None:
         low, high = self._definition.softbounds
         most = self._state.settings.ends.get(self.name, high)
-        self.slider.end = self._to_slider(max(min(most, high), low + 1) if most < high else high)
+        self.slider.end = self._to_slider(
+            max(min(most, high), low + 1) if most < high else high
+        )
         place = min(max(self._to_slider(value), self.slider.start), self.slider.end)
         if (self.slider.value, self.slider.value_throttled) == (place, place):
             return
-        # What the browser let go at last is reset, since it sends that only when it is new.
+        # What the browser let go at last is reset, since it sends that only when it is
+        # new.
         with param.edit_constant(self.slider):
             self.slider.param.update(value=place, value_throttled=place)
 
     def _explain(self, refusal: str) -> None:
         """Say below the field why a value is refused, or of a preset that holds what it is."""
         value = getattr(self._state.settings, self.name)
-        line = self._about.presets.get(value, "") if isinstance(value, str) else ""
+        if isinstance(value, str):
+            line = self._about.presets.get(value, "")
+        else:
+            line = ""
         text = refusal or line[:1].upper() + line[1:]
         if getattr(self.field, "helper_text", text) != text:
             self.field.param.update(helper_text=text, error_state=bool(refusal))
@@ -174,9 +210,14 @@ class SettingControl:
     def _take_text(self, text: str) -> None:
         """Take what is typed; nothing means the default."""
         try:
-            value = typed(text, self._unit, self._about.unit) if text else self._definition.default
+            if text:
+                value = typed(text, self._unit, self._about.unit)
+            else:
+                value = self._definition.default
         except ValueError as problem:
-            self._refuse(f"{title_of(self._definition)} cannot be “{text[:40]}”: {problem}.")
+            self._refuse(
+                f"{title_of(self._definition)} cannot be “{text[:40]}”: {problem}."
+            )
         else:
             self._change(value)
 
@@ -242,7 +283,9 @@ class Controls:
             **looks("groups"),
         )
         self._groups.param.watch(lambda event: self._open(), "active")
-        self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
+        self.view = pn.Column(
+            self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12)
+        )
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
         self.update()
@@ -264,9 +307,12 @@ class Controls:
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
         self._groups.active = []
-        # What is opened takes the place of a spacer, which costs a page less than a column.
+        # What is opened takes the place of a spacer, which costs a page less than a
+        # column.
         self._closed = dict(enumerate([*groups.items(), ("Files", [])]))
-        self._groups[:] = [(title, pn.Spacer(height=0)) for title, _ in self._closed.values()]
+        self._groups[:] = [
+            (title, pn.Spacer(height=0)) for title, _ in self._closed.values()
+        ]
 
     def _open(self) -> None:
         """Fill the groups that are opened for the first time."""
@@ -275,7 +321,10 @@ class Controls:
             controls = [SettingControl(name, self._state) for name in names]
             self._controls += controls
             settings = pn.Column(*(control.view for control in controls), margin=0)
-            view = settings if names else files_panel(self._state, WIDTH)
+            if names:
+                view = settings
+            else:
+                view = files_panel(self._state, WIDTH)
             self._groups[place] = (title, view)
 
 

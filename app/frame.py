@@ -1,6 +1,7 @@
 """What the page knows of a run: `Run` is alike for all its iterates, a `Frame` is one iterate.
 
-All arrays are in SI, float32, space first and time last, thinned to what a screen shows.
+All arrays are in SI, float32, space first and time last, thinned to what a screen
+shows.
 """
 
 from __future__ import annotations
@@ -33,12 +34,14 @@ class FrictionInterface:
     cuts: Floats
     """Where substructures meet, m."""
     bound: Floats | None
-    """Friction bound mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1) where it does
-    not change; None where it depends on the pressure."""
+    """Friction bound mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1)
+    where it does not change; None where it depends on the pressure."""
     coefficient: Floats | None
-    """Coefficient of friction, shape (n_points, 1), where the bound depends on the pressure."""
+    """Coefficient of friction, shape (n_points, 1), where the bound depends on the
+    pressure."""
     is_spring: bool = False
-    """Whether it is a spring that pulls at a point, and no surface on which bodies touch."""
+    """Whether it is a spring that pulls at a point, and no surface on which bodies
+    touch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +49,8 @@ class InterfaceFields:
     """Contact at one interface."""
 
     friction: Floats
-    """Friction force on the body above, shape (n_points, n_instants), N/m along rods, Pa in the
-    plane."""
+    """Friction force on the body above, shape (n_points, n_instants), N/m along rods,
+    Pa in the plane."""
     pressure: Floats | None
     """Same shape, Pa; None where it is given."""
     status: Bytes
@@ -61,7 +64,8 @@ class Geometry:
     description: Description
     """Bodies, what holds them and what acts on them."""
     nodes: Floats
-    """Corners of the quadrilaterals, shape (n_nodes, 2), m; rods are drawn with a thickness."""
+    """Corners of the quadrilaterals, shape (n_nodes, 2), m; rods are drawn with a
+    thickness."""
     quads: NDArray[np.int32]
     """Nodes of each quadrilateral, shape (n_quads, 4)."""
     parts: NDArray[np.intp]
@@ -114,8 +118,8 @@ class Run:
     reference_seconds: float = float("nan")
     """Time that it took, s."""
     mechanism: Floats | None = None
-    """Displacement of the nodes as the structure begins to collapse, (n_nodes, 2), m, the size of a
-    body at most; None where it does not."""
+    """Displacement of the nodes as the structure begins to collapse, (n_nodes, 2), m,
+    the size of a body at most; None where it does not."""
     collapses_at: float = float("nan")
     """When it does, s."""
     is_compared: bool = False
@@ -149,14 +153,15 @@ class Frame:
     is_answer: bool
     """Whether it is the certified solution, which is no iteration of the search."""
     contact: Mapping[str, InterfaceFields]
-    """Contact fields by interface: the selected one, and all others where they are small."""
+    """Contact fields by interface: the selected one, and all others where they are
+    small."""
     deformed: DeformedGeometry
     """How the bodies have moved."""
     loop: Floats
     """Displacement and force of the loop, shape (2, n_instants)."""
     history: Mapping[str, Floats]
-    """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
-    (n_iterations,)."""
+    """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of
+    shape (n_iterations,)."""
     status: Status | None = None
     """How the run ends, once it does."""
     energy: float = float("nan")
@@ -173,7 +178,9 @@ class Frame:
     @cached_property
     def nbytes(self) -> int:
         """Bytes of its arrays."""
-        fields = [a for c in self.contact.values() for a in (c.friction, c.pressure, c.status)]
+        fields = [
+            a for c in self.contact.values() for a in (c.friction, c.pressure, c.status)
+        ]
         moved = self.deformed
         arrays = [*fields, moved.nodes, moved.points, moved.status, self.loop]
         return sum(array.nbytes for array in arrays if array is not None)
@@ -186,13 +193,17 @@ class Frame:
     def last(self, name: str) -> float:
         """The newest value of one of the history's scalars; NaN where there is none."""
         values = self.history[name]
-        return float(values[-1]) if len(values) else float("nan")
+        if len(values):
+            return float(values[-1])
+        return float("nan")
 
     @property
     def error(self) -> float:
         """Relative error of the contact force; estimated where there is no reference."""
         measured = self.last("error_force")
-        return measured if np.isfinite(measured) else self.last("estimated_error")
+        if np.isfinite(measured):
+            return measured
+        return self.last("estimated_error")
 
 
 @dataclass(frozen=True)

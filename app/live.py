@@ -23,7 +23,8 @@ from app.widgets import looks, wrapped
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026
 """Size of the type of plots on a projector, a share of the window's height."""
-LOW, HIGH = 56, 0.13
+LOW = 56
+HIGH = 0.13
 """Pixels of the time line on the page, and its share of the height on a projector."""
 LOOK = 1000
 """Milliseconds between two looks for a picture that got lost."""
@@ -35,9 +36,11 @@ class Live:
     """The live run on the page: its transport, its display, and its views."""
 
     def __init__(self, state: PageState, document: Any) -> None:
-        self.state, self._document = state, document
+        self.state = state
+        self._document = document
         self._status = _words("status", margin=(4, 6), styles={"flex": "1 1 240px"})
-        self._sentence, self._figures = _words("sentence"), _words("figures")
+        self._sentence = _words("sentence")
+        self._figures = _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._all = self._cards = [Card(kinds, state) for kinds in CARDS]
         self.transport = Transport(state, document)
@@ -46,17 +49,25 @@ class Live:
         document.add_periodic_callback(self.display.catch_up, LOOK)
         # While the browser loads.
         document.add_next_tick_callback(self.prepare)
-        self._above = wrapped(self.transport.view, self._status, sizing_mode="stretch_width")
-        self._scene, self._plots = column("scene"), column("plots")
+        self._above = wrapped(
+            self.transport.view, self._status, sizing_mode="stretch_width"
+        )
+        self._scene = column("scene")
+        self._plots = column("plots")
         self._timeline = pn.Row(
-            self.transport.play_button, sizing_mode="stretch_width", height=LOW, margin=0
+            self.transport.play_button,
+            sizing_mode="stretch_width",
+            height=LOW,
+            margin=0,
         )
         self._is_open = False
         look = {"css_classes": ["words"], "sizing_mode": "stretch_width"}
         styles = {"flex-wrap": "wrap", "justify-content": "space-between"}
         below = wrapped(self._sentence, self._figures, styles=styles, **look)
         self.view = column("live", self._above, below)
-        state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])
+        state.param.watch(
+            lambda *events: self._write(), ["running", "message", "refusal"]
+        )
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
@@ -74,7 +85,9 @@ class Live:
         self._is_open = True
         self.arrange(kinds)
         for place, view in zip((self._scene, self._timeline), self._views, strict=True):
-            place.append(pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both"))
+            place.append(
+                pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both")
+            )
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._timeline, self._plots])
 
@@ -82,7 +95,8 @@ class Live:
     @pn.io.hold()
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
-        state, self._cards = self.state, self._all
+        state = self.state
+        self._cards = self._all
         if kinds is not None:
             self._cards = [Card((kind,), state) for kind in kinds]
         elif state.view != "page":
@@ -90,25 +104,37 @@ class Live:
         self._above.visible = not state.is_asked
         self._figures.visible = not state.is_asked
         # Without plots the scene has all the height.
-        self._plots.css_classes = ["plots"] if self._cards else []
-        # What they hold first: of tabs that change while they are being shown some are lost.
+        if self._cards:
+            self._plots.css_classes = ["plots"]
+        else:
+            self._plots.css_classes = []
+        # What they hold first: of tabs that change while they are being shown some are
+        # lost.
         self._fit()
         if self._is_open:
             self._plots[:] = [card.view for card in self._cards]
         self.transport.view.visible = state.view == "page"
-        size, self._timeline.height = TEXT, LOW
+        size = TEXT
+        self._timeline.height = LOW
         if state.view == "present":
-            size, self._timeline.height = f"{LARGE * state.height:.0f}px", int(HIGH * state.height)
-        for view in (*self._views, *(view for card in self._cards for view in card.views)):
+            size = f"{LARGE * state.height:.0f}px"
+            self._timeline.height = int(HIGH * state.height)
+        for view in (
+            *self._views,
+            *(view for card in self._cards for view in card.views),
+        ):
             view.magnify(size)
         self._reshape()
 
     @property
     def _shape(self) -> list[str]:
         """CSS classes: plots stand beside a picture that is high, where nothing else does."""
-        state, frame = self.state, self.state.frame
+        state = self.state
+        frame = self.state.frame
         is_alone = not (state.lesson or state.case)
-        shape = ["high"] * (is_alone and frame is not None and is_high(frame.run.geometry))
+        shape = ["high"] * (
+            is_alone and frame is not None and is_high(frame.run.geometry)
+        )
         return ["live", state.view, *shape]
 
     def _reshape(self) -> None:
@@ -137,7 +163,8 @@ class Live:
             self._figures.object = figures_line(frame, self.state.selection)
             self._sentence.object = escape(frame.run.sentence)
             if self._shape != self.view.css_classes:
-                # Beside data that are new the browser would paint what it has made of the old.
+                # Beside data that are new the browser would paint what it has made of
+                # the old.
                 self._document.add_next_tick_callback(self._reshape)
 
 
@@ -153,25 +180,38 @@ class Card:
         look = {"margin": 0, "sizing_mode": "stretch_width", **looks("small-tabs")}
         self.tabs = pmui.TabMenu(items=[], **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
-        self.view = pn.Column(self.tabs, sizing_mode="stretch_both", min_height=170, margin=0)
+        self.view = pn.Column(
+            self.tabs, sizing_mode="stretch_both", min_height=170, margin=0
+        )
 
     def fit(self) -> None:
         """Offer the views that say anything here; the one that the state names is in sight."""
-        state, names = self._state, self._state.plots
+        state = self._state
+        names = self._state.plots
         offered = [view for view in self.views if view.applies(state.settings)]
-        first = offered[0] if offered else None
+        if offered:
+            first = offered[0]
+        else:
+            first = None
         seen = next((view for view in offered if view.name in names), first)
         if (offered, seen) == (self._offered, self.seen):
             return
         is_turned = seen is not self.seen
-        self._offered, self.seen = offered, seen
+        self._offered = offered
+        self.seen = seen
         self.view.visible = bool(offered)
-        active = offered.index(seen) if offered else 0
+        if offered:
+            active = offered.index(seen)
+        else:
+            active = 0
         # Its bounds follow the items only after the place among them was checked.
         self.tabs.param.active.bounds = (0, max(len(offered) - 1, 0))
         self.tabs.param.update(items=[view.name for view in offered], active=active)
         if is_turned:
-            self.view[:] = [self.tabs, self._pane(seen)] if seen is not None else [self.tabs]
+            if seen is not None:
+                self.view[:] = [self.tabs, self._pane(seen)]
+            else:
+                self.view[:] = [self.tabs]
 
     def _choose(self, place: int) -> None:
         """Have the state name the view of a tab; the first that is offered needs no name."""
@@ -179,13 +219,18 @@ class Card:
         if view is not self.seen:
             mine = {view.name for view in self.views}
             names = [name for name in self._state.plots if name not in mine]
-            self._state.plots = [*names, view.name] if place else names
+            if place:
+                self._state.plots = [*names, view.name]
+            else:
+                self._state.plots = names
 
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; it is made when it is first seen."""
         state = self._state
         if view not in self._panes:
-            self._panes[view] = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+            self._panes[view] = pn.pane.Bokeh(
+                view.figure, sizing_mode="stretch_both", margin=0
+            )
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
         return self._panes[view]
@@ -194,10 +239,16 @@ class Card:
 def column(role: str, *parts: Any) -> pn.Column:
     """A column that style sheets know by its role."""
     return pn.Column(
-        *parts, css_classes=[role], stylesheets=[STYLE], sizing_mode="stretch_width", margin=0
+        *parts,
+        css_classes=[role],
+        stylesheets=[STYLE],
+        sizing_mode="stretch_width",
+        margin=0,
     )
 
 
 def _words(role: str, **more: Any) -> pn.pane.HTML:
     """A pane of words, which tests and style sheets know by its role."""
-    return pn.pane.HTML(css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more})
+    return pn.pane.HTML(
+        css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more}
+    )

@@ -17,8 +17,8 @@ WHOLE = -1.0
 class Start:
     """Start a run at a pace, in iterations a second: 0 waits, infinity is as fast as it can.
 
-    One that waits does some steps first, at least one. One that is dragged hurries to its end
-    before it is shown; one that is agreed to may take long or much memory.
+    One that waits does some steps first, at least one. One that is dragged hurries to
+    its end before it is shown; one that is agreed to may take long or much memory.
     """
 
     number: int

@@ -55,7 +55,8 @@ class Page:
             state.running = not iteration
         self._live = Live(state, document)
         self._member = ClassMember(state, self._supervisor, document)
-        transport, open_counts = self._live.transport, self._member.open_counts
+        transport = self._live.transport
+        open_counts = self._member.open_counts
         self._guide = Guide(state, transport, self._dress, open_counts)
         self._class = ClassDialog(self._member)
         self._guide.view.stylesheets = self._class.view.stylesheets = [STYLE]
@@ -63,8 +64,15 @@ class Page:
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         self._away = dialog("Take away")
-        self._words = dialog("Keys and words", pn.pane.Markdown(WORDS), width_option="md")
-        dialogs = *self._guide.dialogs.values(), self._class.dialog, self._away, self._words
+        self._words = dialog(
+            "Keys and words", pn.pane.Markdown(WORDS), width_option="md"
+        )
+        dialogs = (
+            *self._guide.dialogs.values(),
+            self._class.dialog,
+            self._away,
+            self._words,
+        )
         for each in dialogs:
             each.param.watch(self._put, "open")
         self.template = pmui.Page(
@@ -80,12 +88,16 @@ class Page:
             sx=COMPACT,
         )
         follow_itself(self.template)
-        browser.listen(state, document, {**transport.keys(), "p": self._present, "?": self._help})
+        browser.listen(
+            state, document, {**transport.keys(), "p": self._present, "?": self._help}
+        )
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda event: self._show_controls(), "is_narrow")
-        state.param.watch(lambda event: state.view == "present" and self._dress(), "height")
+        state.param.watch(
+            lambda event: state.view == "present" and self._dress(), "height"
+        )
         self._turn(state.tab)
         self._guide.show()
 
@@ -102,7 +114,8 @@ class Page:
     def _go_on(self, name: str, old: int, new: int) -> None:
         """Go on once the first picture is on the screen: a search is seen from its beginning.
 
-        What changes while the browser still mounts the widgets some of them would not show.
+        What changes while the browser still mounts the widgets some of them would not
+        show.
         """
         self._live.display.pulse.remove_on_change("painted", self._go_on)
         if self.state.running:
@@ -124,14 +137,21 @@ class Page:
             "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
         tabs = pmui.RadioButtonGroup.from_param(
-            self.state.param.tab, label="", size="small", margin=(7, 8, 0, 8), **looks("in-header")
+            self.state.param.tab,
+            label="",
+            size="small",
+            margin=(7, 8, 0, 8),
+            **looks("in-header"),
         )
-        space, look = pn.layout.HSpacer(), {"margin": 0, **looks("in-header")}
+        space = pn.layout.HSpacer()
+        look = {"margin": 0, **looks("in-header")}
         buttons = [
             pmui.IconButton(icon=icon, description=title, on_click=action, **look)
             for title, (icon, action) in actions.items()
         ]
-        return pn.Row(tabs, space, *buttons, sizing_mode="stretch_width", align="center")
+        return pn.Row(
+            tabs, space, *buttons, sizing_mode="stretch_width", align="center"
+        )
 
     def _present(self) -> None:
         """Show the page as a projector needs it, or as before."""
@@ -150,7 +170,11 @@ class Page:
             copied.object = self._link.copy()
 
         link = button("Copy link", copy, icon="link", **LOOK)
-        self._away[:] = [link, copied, *offers(self.state, list(self._live.display.views))]
+        self._away[:] = [
+            link,
+            copied,
+            *offers(self.state, list(self._live.display.views)),
+        ]
         self._away.open = True
 
     def _help(self) -> None:
@@ -166,9 +190,10 @@ class Page:
 
     def _place(self) -> None:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
-        # What comes in front is appended, and put there by the style sheet: a column whose children
-        # change their order loses some of them.
-        text, line = self._guide.view, self._class.view
+        # What comes in front is appended, and put there by the style sheet: a column
+        # whose children change their order loses some of them.
+        text = self._guide.view
+        line = self._class.view
         views = (
             (self._beside, [self._live.view] + [text] * text.visible),
             (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),
@@ -181,7 +206,8 @@ class Page:
     def _dress(self) -> None:
         """Have the plots that belong here, and the controls where there is room for them.
 
-        A lesson has those that it speaks of; the view for a projector shows a run alone.
+        A lesson has those that it speaks of; the view for a projector shows a run
+        alone.
         """
         self._place()
         self._live.arrange(self._guide.kinds)
@@ -197,8 +223,9 @@ class Page:
 def follow_itself(template: pmui.Page) -> None:
     """Have a page follow whether it is loading itself, not whether the server is busy.
 
-    Each event of a page would be told to all others, and what watches the server as a whole keeps
-    the page in memory once it is closed. A value in place of the reference leaves the watcher.
+    Each event of a page would be told to all others, and what watches the server as a
+    whole keeps the page in memory once it is closed. A value in place of the reference
+    leaves the watcher.
     """
     with edit_readonly(template):
         template.busy = template.param.loading
@@ -209,7 +236,9 @@ def open_page() -> pmui.Page:
     # Each page's notifications would stay in Panel's table of views once it is closed.
     pn.extension(reconnect=True, respect_explicit_sizing=True)
     if not PAGES.enter():
-        full = pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
+        full = pmui.Page(
+            title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])]
+        )
         follow_itself(full)
         return full
     location = pn.state.location

@@ -17,7 +17,9 @@ LONGEST = 40
 NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 
 
-def message_of(refusal: RefusedError, settings: Settings, name: str = "", value: Any = None) -> str:
+def message_of(
+    refusal: RefusedError, settings: Settings, name: str = "", value: Any = None
+) -> str:
     """What was refused, why, and what is allowed, in a sentence.
 
     Where the setting `name` was to change to `value`, another one may be refused.
@@ -28,7 +30,8 @@ def message_of(refusal: RefusedError, settings: Settings, name: str = "", value:
     if definition is None:
         limits = _in_titles(settings, refusal.allowed)
         return f"{refusal.name} cannot be {_written(refusal.value)}: {remedy}. Allowed: {limits}."
-    title, (si, unit) = title_of(definition), _units(settings, refusal.name)
+    title = title_of(definition)
+    (si, unit) = _units(settings, refusal.name)
     limits = refusal.allowed
     if isinstance(definition, CurveParameter) and limits == allowed(definition):
         # As its widget offers it.
@@ -58,7 +61,9 @@ def _units(settings: Settings, name: str) -> tuple[str, Unit]:
 def _in_unit(text: str, si: str, unit: Unit) -> str:
     """A text with its amounts of an SI unit in another unit."""
     amounts = rf"{NUMBER} {re.escape(si)}(?![\w/^·])"
-    return re.sub(amounts, lambda match: unit(float(match[1]), EXACT), text) if si else text
+    if si:
+        return re.sub(amounts, lambda match: unit(float(match[1]), EXACT), text)
+    return text
 
 
 def amounts_in_titles(settings: Settings, text: str) -> str:
@@ -82,12 +87,18 @@ def _in_titles(settings: Settings, text: str) -> str:
     text = amounts_in_titles(settings, text)
 
     def titled(match: re.Match[str]) -> str:
-        lead, name = match[1] or "", match[2]
-        return lead + title_of(definitions[name]) if lead or "_" in name else match[0]
+        lead = match[1] or ""
+        name = match[2]
+        if lead or "_" in name:
+            return lead + title_of(definitions[name])
+        return match[0]
 
     text = re.sub(NUMBER, lambda match: number(float(match[1]), EXACT), text)
-    # Many names are common words: these mean the setting where it is to be lowered or raised.
-    return re.sub(rf"\b(lower |raise |or |\d to )?({'|'.join(definitions)})\b", titled, text)
+    # Many names are common words: these mean the setting where it is to be lowered or
+    # raised.
+    return re.sub(
+        rf"\b(lower |raise |or |\d to )?({'|'.join(definitions)})\b", titled, text
+    )
 
 
 def _written(value: object, unit: Unit | None = None) -> str:

@@ -29,8 +29,9 @@ LONGEST = 16_000
 RECEIVED = 1 << 20
 """Bytes of a request's head that are read at all."""
 POLICY = "script-src-attr 'none'; object-src 'none'"
-"""No handler that stands in an element runs, should a text become one after all. Scripts that stand
-in the page are Bokeh's, which has no nonces for them: with `script-src 'self'` there is no page."""
+"""No handler that stands in an element runs, should a text become one after all.
+Scripts that stand in the page are Bokeh's, which has no nonces for them: with
+`script-src 'self'` there is no page."""
 QUIET = 60.0
 """Seconds between two lines of the log that say the same kind of thing."""
 
@@ -70,7 +71,9 @@ def address_for_others() -> str:
     """Address of this page without its query; "" where that is localhost."""
     here = _address()
     host = here.hostname or "localhost"
-    return "" if host in ("localhost", "::1") or host.startswith("127.") else here.geturl()
+    if host in ("localhost", "::1") or host.startswith("127."):
+        return ""
+    return here.geturl()
 
 
 def how_to_open() -> str:
@@ -91,7 +94,11 @@ def _address() -> SplitResult:
 def configure() -> None:
     """Have Tornado, on which Panel serves, make its server of this kind."""
     HTTPServer.configure(PageServer)
-    for name in ("bokeh.server.views.ws", "bokeh.server.protocol_handler", "tornado.application"):
+    for name in (
+        "bokeh.server.views.ws",
+        "bokeh.server.protocol_handler",
+        "tornado.application",
+    ):
         logging.getLogger(name).addFilter(OneLine())
     logging.getLogger("asyncio").addFilter(is_of_an_open_page)
 
@@ -104,7 +111,9 @@ class PageServer(HTTPServer):
         if isinstance(request_callback, Application):
             request_callback.add_transform(Compressed)
             request_callback.add_transform(Guarded)
-            request_callback.wildcard_router.rules.insert(0, Rule(Refused(), ErrorHandler))
+            request_callback.wildcard_router.rules.insert(
+                0, Rule(Refused(), ErrorHandler)
+            )
         super().initialize(request_callback, **{"max_header_size": RECEIVED, **options})
 
 
@@ -132,12 +141,16 @@ class Refused(Matcher):
         """With which status an address is refused, if it is."""
         if len(request.uri or "") > LONGEST:
             return {"target_kwargs": {"status_code": 414}}
-        return {"target_kwargs": {"status_code": 404}} if "%00" in request.path else None
+        if "%00" in request.path:
+            return {"target_kwargs": {"status_code": 404}}
+        return None
 
 
 def is_of_an_open_page(record: logging.LogRecord) -> bool:
     """Whether a record is of anything but a message to a page that was closed meanwhile."""
-    return not (record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError))
+    return not (
+        record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError)
+    )
 
 
 class OneLine(logging.Filter):
@@ -151,5 +164,6 @@ class OneLine(logging.Filter):
             return True
         record.exc_info = record.exc_text = None
         now = time.monotonic()
-        is_due, self._last = now - self._last > QUIET, max(self._last, now)
+        is_due = now - self._last > QUIET
+        self._last = max(self._last, now)
         return is_due

@@ -28,7 +28,8 @@ SEARCH = {"start": "zero", "finish": "accuracy"}
 ANSWER = {"start": "nested", "finish": "at-once"}
 """Settings with which the answer is there at once."""
 RUNS = count(1)
-"""Numbers of the runs of all pages: one that joins a class, or leaves it, meets none twice."""
+"""Numbers of the runs of all pages: one that joins a class, or leaves it, meets none
+twice."""
 PACES = {
     "whole in 3 s": messages.WHOLE,
     "1 a second": 1.0,
@@ -64,15 +65,20 @@ class History:
     @property
     def newest(self) -> Frame | None:
         """The last frame, the answer where the run has one."""
-        return self._frames[-1] if self._frames else None
+        if self._frames:
+            return self._frames[-1]
+        return None
 
     def add(self, frame: Frame) -> None:
         """Keep a frame; another one of the same iterate takes its place."""
-        last, place = self.newest, (frame.iteration, frame.is_answer)
+        last = self.newest
+        place = (frame.iteration, frame.is_answer)
         if last is not None and (last.iteration, last.is_answer) == place:
             self._frames.pop()
         self._frames.append(frame)
-        while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self._frames) > 2:
+        while (
+            sum(kept.nbytes for kept in self._frames) > LIMIT and len(self._frames) > 2
+        ):
             self._frames = [*self._frames[:-1:2], self._frames[-1]]
 
     def at(self, iteration: int) -> Frame:
@@ -83,7 +89,9 @@ class History:
         """Number of the next iterate of the search that is kept; behind the last, of the answer."""
         numbers = self._search()
         place = bisect_right(numbers, iteration)
-        return numbers[place] if place < len(numbers) else self._frames[-1].iteration + 1
+        if place < len(numbers):
+            return numbers[place]
+        return self._frames[-1].iteration + 1
 
     def _search(self) -> list[int]:
         return [kept.iteration for kept in self._frames if not kept.is_answer]
@@ -97,35 +105,65 @@ def default_settings(scene: str) -> Settings:
 class PageState(param.Parameterized):
     """The state of a page: widgets set it, views watch it; `send` hands orders to the worker."""
 
-    settings = param.ClassSelector(class_=Settings, allow_None=False, doc="Of the run, checked.")
-    selection = param.ClassSelector(class_=Selection, default=Selection(), doc="What is seen.")
-    frame = param.ClassSelector(class_=Frame, default=None, doc="The frame that is shown.")
-    newest = param.ClassSelector(class_=Frame, default=None, doc="The newest frame of the run.")
-    ghost = param.ClassSelector(class_=Frame, default=None, doc="Of the pinned or the last run.")
-    pinned = param.ClassSelector(class_=History, default=None, doc="Frames of the pinned run.")
-    iteration = param.Integer(default=None, doc="The one that is gone back to; None follows.")
+    settings = param.ClassSelector(
+        class_=Settings, allow_None=False, doc="Of the run, checked."
+    )
+    selection = param.ClassSelector(
+        class_=Selection, default=Selection(), doc="What is seen."
+    )
+    frame = param.ClassSelector(
+        class_=Frame, default=None, doc="The frame that is shown."
+    )
+    newest = param.ClassSelector(
+        class_=Frame, default=None, doc="The newest frame of the run."
+    )
+    ghost = param.ClassSelector(
+        class_=Frame, default=None, doc="Of the pinned or the last run."
+    )
+    pinned = param.ClassSelector(
+        class_=History, default=None, doc="Frames of the pinned run."
+    )
+    iteration = param.Integer(
+        default=None, doc="The one that is gone back to; None follows."
+    )
     running = param.Boolean(default=True, doc="Whether the run goes on by itself.")
-    pace = param.Selector(default="whole in 3 s", objects=list(PACES), doc="Iterations a second.")
-    needs = param.ClassSelector(class_=frozenset, default=frozenset(), doc="Extras in sight.")
+    pace = param.Selector(
+        default="whole in 3 s", objects=list(PACES), doc="Iterations a second."
+    )
+    needs = param.ClassSelector(
+        class_=frozenset, default=frozenset(), doc="Extras in sight."
+    )
     readings = param.List(default=[], doc="Quantities that a lesson or a case names.")
     is_dragged = param.Boolean(doc="Whether a slider or an arrow is being dragged.")
     lesson = param.String(doc="Name of the lesson.")
     case = param.String(doc="Name of the case; in a lesson there is none.")
-    prediction = param.Integer(default=None, doc="The choice predicted; -1 did without.")
-    poll = param.ClassSelector(class_=Poll, default=None, doc="What the class predicts.")
+    prediction = param.Integer(
+        default=None, doc="The choice predicted; -1 did without."
+    )
+    poll = param.ClassSelector(
+        class_=Poll, default=None, doc="What the class predicts."
+    )
     tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
     question = param.String(doc="What the tab What if asks, as `Question` writes it.")
-    view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
+    view = param.Selector(
+        default="page", objects=VIEWS, doc="How much stands around plots."
+    )
     height = param.Integer(default=720, doc="Of the browser's window, pixels.")
-    is_narrow = param.Boolean(doc="Whether the window has no room for controls beside the run.")
+    is_narrow = param.Boolean(
+        doc="Whether the window has no room for controls beside the run."
+    )
     plots = param.List(default=[], doc="Names of the views on top of their cards.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(
-        class_=(OtherResults, MeasuredLoop), default=None, doc="Results, or a measured loop."
+        class_=(OtherResults, MeasuredLoop),
+        default=None,
+        doc="Results, or a measured loop.",
     )
     refusal = param.String(doc="What was refused and why.")
     message = param.String(doc="What the page says of itself: a loss, a cost, a fault.")
-    is_costly = param.Boolean(default=False, doc="Whether the run waits to be agreed to.")
+    is_costly = param.Boolean(
+        default=False, doc="Whether the run waits to be agreed to."
+    )
 
     def __init__(self, settings: Settings, **values: Any) -> None:
         super().__init__(settings=settings, **values)
@@ -189,7 +227,11 @@ class PageState(param.Parameterized):
     def is_over(self) -> bool:
         """Whether the run that was ordered last has ended."""
         newest = self.newest
-        return newest is not None and newest.run.number == self.number and newest.status is not None
+        return (
+            newest is not None
+            and newest.run.number == self.number
+            and newest.status is not None
+        )
 
     @property
     def is_fleeting(self) -> bool:
@@ -201,7 +243,10 @@ class PageState(param.Parameterized):
     def is_asked(self) -> bool:
         """Whether a lesson's question is open: in a class until its leader goes on."""
         poll = self.poll
-        is_answered = poll.is_answered if poll is not None else self.prediction is not None
+        if poll is not None:
+            is_answered = poll.is_answered
+        else:
+            is_answered = self.prediction is not None
         return bool(self.lesson) and not is_answered
 
     def pause(self) -> None:
@@ -219,7 +264,8 @@ class PageState(param.Parameterized):
 
     def step(self) -> None:
         """Do one iteration and wait; of a run that has ended, show the next."""
-        shown, newest = self.frame, self.newest
+        shown = self.frame
+        newest = self.newest
         if shown is not None and newest is not None and shown is not newest:
             self.seek(self.history.after(shown.iteration))
             return
@@ -237,17 +283,31 @@ class PageState(param.Parameterized):
         if newest is None:
             return
         # The answer has the number of the last iterate before it.
-        is_newest = iteration is None or iteration >= newest.iteration + newest.is_answer
-        frame = newest if is_newest else self.history.at(iteration)
-        place = None if is_newest else frame.iteration
+        is_newest = (
+            iteration is None or iteration >= newest.iteration + newest.is_answer
+        )
+        if is_newest:
+            frame = newest
+        else:
+            frame = self.history.at(iteration)
+        if is_newest:
+            place = None
+        else:
+            place = frame.iteration
         self.param.update(iteration=place, frame=frame, ghost=self._ghost_at(frame))
 
     def _start(self, settings: Settings, pace: float | None = None, **how: Any) -> None:
         """Order a run; `how` is that of `Start`."""
         self.number = next(RUNS)
         is_dragged = how.get("is_dragged", False)
-        self.param.update(is_costly=False, message="", iteration=None, is_dragged=is_dragged)
-        self.send(Start(self.number, settings, PACES[self.pace] if pace is None else pace, **how))
+        self.param.update(
+            is_costly=False, message="", iteration=None, is_dragged=is_dragged
+        )
+        self.send(
+            Start(
+                self.number, settings, PACES[self.pace] if pace is None else pace, **how
+            )
+        )
 
     def pin(self) -> None:
         """Keep the present run beside what follows; or let it go."""
@@ -257,10 +317,16 @@ class PageState(param.Parameterized):
 
     def _ghost_at(self, frame: Frame) -> Frame | None:
         """The frame that a frame is compared with, of the pinned or the last run of the scene."""
-        ghost, pinned = self._last_run, self.pinned
+        ghost = self._last_run
+        pinned = self.pinned
         if pinned is not None and pinned is not self.history:
-            ghost = pinned.newest if frame.is_answer else pinned.at(frame.iteration)
-        is_of_scene = ghost is not None and ghost.run.settings.scene == frame.run.settings.scene
+            if frame.is_answer:
+                ghost = pinned.newest
+            else:
+                ghost = pinned.at(frame.iteration)
+        is_of_scene = (
+            ghost is not None and ghost.run.settings.scene == frame.run.settings.scene
+        )
         return ghost if is_of_scene else None
 
     def take(self, report: Report) -> None:
@@ -291,7 +357,8 @@ class PageState(param.Parameterized):
         with param.parameterized.batch_call_watchers(self):
             self.newest = frame
             if self.iteration is None:
-                self.frame, self.ghost = frame, self._ghost_at(frame)
+                self.ghost = self._ghost_at(frame)
+                self.frame = frame
             else:
                 self.send(Ready())
 
@@ -319,4 +386,8 @@ def answer(settings: Settings) -> Settings:
 def known(settings: Settings, values: Mapping[str, str]) -> dict[str, str]:
     """Values of choices, as far as the scene has them."""
     definitions = settings.definitions()
-    return {name: value for name, value in values.items() if value in definitions[name].objects}
+    return {
+        name: value
+        for name, value in values.items()
+        if value in definitions[name].objects
+    }

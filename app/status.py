@@ -32,11 +32,15 @@ def status_line(state: PageState) -> str:
 
     What the page says beside is one line, and whole in the details.
     """
-    frame, newest, said = state.frame, state.newest, _said(state)
+    frame = state.frame
+    newest = state.newest
+    said = _said(state)
     if frame is None or newest is None:
-        progress, details = "<b>starting</b>", ""
+        progress = "<b>starting</b>"
+        details = ""
     else:
-        progress, details = _progress(state, frame, newest), _details(frame, said)
+        progress = _progress(state, frame, newest)
+        details = _details(frame, said)
     text = " ".join(said)
     # Two lines, whatever they hold: figures below do not follow what becomes higher.
     return (
@@ -48,7 +52,9 @@ def status_line(state: PageState) -> str:
 def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
     wrong = percent(frame.error)
     if frame is not newest:
-        return f"<b>iteration {frame.iteration}</b> of {newest.iteration} · {wrong} wrong"
+        return (
+            f"<b>iteration {frame.iteration}</b> of {newest.iteration} · {wrong} wrong"
+        )
     if newest.status is None:
         paused = "" if state.running else " · paused"
         return f"<b>iteration {newest.iteration}</b> · {wrong} wrong{paused}"
@@ -56,7 +62,10 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
     if frame.run.is_idle:
         return f"<b>at rest</b> · {counted}: nothing acts here; give a load, or move a side"
     search = "search" if newest.residual is None or newest.is_answer else "answer"
-    end = f"{wrong} wrong" if newest.residual is None else "certified"
+    if newest.residual is None:
+        end = f"{wrong} wrong"
+    else:
+        end = "certified"
     return f"<b>{ENDINGS[newest.status.ending]}</b> · {search}: {counted} · {end}"
 
 
@@ -99,17 +108,20 @@ def _said(state: PageState) -> list[str]:
 def figures_line(frame: Frame, selection: Selection) -> str:
     """What became of the thing at the selected instant, as key figures in a line (HTML).
 
-    Its largest and last values appear over each of them. Nothing is told of a run some of whose
-    instants are known to have no solution.
+    Its largest and last values appear over each of them. Nothing is told of a run some
+    of whose instants are known to have no solution.
     """
     run = frame.run
     column = run.column(selection.phase)
-    figures, hints = {}, {}
+    figures = {}
+    hints = {}
     for figure in _of_loop(frame):
         figures[figure.title] = _unit_of(figure)(figure.at(column))
         hints[figure.title] = _over_time(frame, figure)
     # Springs stand beside the surfaces, and neither stick nor slip.
-    springs = [number for number, one in enumerate(run.interfaces.values()) if one.is_spring]
+    springs = [
+        number for number, one in enumerate(run.interfaces.values()) if one.is_spring
+    ]
     status = frame.deformed.status[~np.isin(run.geometry.chains, springs)]
     figures["Slips"] = percent(float(slipping_shares(status)[column]))
     figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)

@@ -27,7 +27,8 @@ class Supervisor:
     """Passes orders to the worker of a page and its reports to the state."""
 
     def __init__(self, state: PageState, document: Any) -> None:
-        self._state, self._document = state, document
+        self._state = state
+        self._document = document
         self._worker: Worker | None = None
         self._asked = time.monotonic()
         self._failed = self._failed_in = 0
@@ -92,7 +93,10 @@ class Supervisor:
         """Run the settings in a new process, unless that has failed before."""
         state = self._state
         self.end()
-        self._failed = self._failed + 1 if message and state.number == self._failed_in else 1
+        if message and state.number == self._failed_in:
+            self._failed = self._failed + 1
+        else:
+            self._failed = 1
         self.begin()
         if self._failed > 2:
             state.message = GIVEN_UP

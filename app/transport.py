@@ -18,16 +18,27 @@ from app.widgets import button, looks, wrapped
 PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
 LIVELY = 60.0
-"""Seconds for which a page plays by itself; several share them, as they do the server's thread."""
+"""Seconds for which a page plays by itself; several share them, as they do the server's
+thread."""
 TOUCHED = [
-    *("settings", "is_dragged", "iteration", "running", "pinned", "tab", "lesson", "case", "room"),
+    *(
+        "settings",
+        "is_dragged",
+        "iteration",
+        "running",
+        "pinned",
+        "tab",
+        "lesson",
+        "case",
+        "room",
+    ),
 ]
 """What changes when somebody does something."""
 TICK = 50
 """Milliseconds between two instants that are shown, at least."""
 FOLLOWS = 400
-"""Milliseconds between two moves of the iteration's slider by itself: of values that follow each
-other more quickly the browser sends the older one back (see `Echoes`)."""
+"""Milliseconds between two moves of the iteration's slider by itself: of values that
+follow each other more quickly the browser sends the older one back (see `Echoes`)."""
 HELD = 1.0
 """Seconds after a move of it for which it stays where the hand has left it."""
 PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
@@ -41,11 +52,13 @@ class Transport:
     """
 
     def __init__(self, state: PageState, document: Any) -> None:
-        self._state, self._document = state, document
+        self._state = state
+        self._document = document
         self._playing: Any = None
         self._is_lively = False
         self._is_touched = self._is_guided or state.selection != Selection()
-        self._moved_at, self._echoes = -math.inf, Echoes()
+        self._moved_at = -math.inf
+        self._echoes = Echoes()
         self._run = _button("pause", "Run or pause (space)", self._toggle)
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
@@ -57,7 +70,15 @@ class Transport:
             self._pin,
             *self._choices(),
         )
-        shown = ["settings", "frame", "newest", "running", "is_costly", "pinned", "is_dragged"]
+        shown = [
+            "settings",
+            "frame",
+            "newest",
+            "running",
+            "is_costly",
+            "pinned",
+            "is_dragged",
+        ]
         state.param.watch(lambda *events: self._show(), shown)
         state.param.watch(self._touch, TOUCHED)
         document.add_periodic_callback(self._follow, FOLLOWS)
@@ -75,7 +96,11 @@ class Transport:
         )
         self._way.param.watch(lambda event: self._choose_way(event.new), "value")
         pace = pmui.Select.from_param(
-            self._state.param.pace, options=list(PACES), size="small", width=136, margin=(6, 4)
+            self._state.param.pace,
+            options=list(PACES),
+            size="small",
+            width=136,
+            margin=(6, 4),
         )
         # Counted from the newest: so its value rests while a run goes on.
         self._iteration = pmui.IntSlider(
@@ -126,7 +151,8 @@ class Transport:
         if self._playing is not None:
             self.stop()
             return
-        began, shown = time.monotonic(), self._state.selection.phase
+        began = time.monotonic()
+        shown = self._state.selection.phase
         first = shown if shown < until else 0.0
 
         def play_on() -> None:
@@ -149,7 +175,8 @@ class Transport:
         """Go through time no more."""
         if self._playing is not None:
             self._document.remove_periodic_callback(self._playing)
-            self._playing, self._is_lively = None, False
+            self._playing = None
+            self._is_lively = False
             self.play_button.icon = "play_circle"
 
     @property
@@ -171,7 +198,8 @@ class Transport:
     def _touch(self, *events: Any) -> None:
         """Stop what plays by itself; another scene does so anew.
 
-        Other settings are seen at the instant of the page's beginning, an arrow where it is held.
+        Other settings are seen at the instant of the page's beginning, an arrow where
+        it is held.
         """
         changed = {event.name: event for event in events}
         settings = changed.get("settings")
@@ -215,7 +243,12 @@ class Transport:
         state = self._state
         if state.is_dragged:
             return
-        waiting = "warning" if state.is_costly else "replay" if state.is_over else "play_arrow"
+        if state.is_costly:
+            waiting = "warning"
+        elif state.is_over:
+            waiting = "replay"
+        else:
+            waiting = "play_arrow"
         self._run.icon = "pause" if self._goes_on else waiting
         self._pin.color = "default" if state.pinned is None else "primary"
         if state.settings.finish in WATCH.values():
@@ -223,25 +256,33 @@ class Transport:
 
     def _follow(self) -> None:
         """Show which iteration is shown."""
-        frame, slider = self._state.frame, self._iteration
+        frame = self._state.frame
+        slider = self._iteration
         if self._state.is_over and not self._is_touched:
             self._enliven()
         if frame is None or time.monotonic() < self._moved_at + HELD:
             return
         is_newest = frame is self._state.newest
-        back = 0 if is_newest else min(frame.iteration - self._last, -1)
+        if is_newest:
+            back = 0
+        else:
+            back = min(frame.iteration - self._last, -1)
         start = min(1 - self._last, -1)
         # As each change is a message, it may end half-way while a run is followed.
         if is_newest and not self._state.is_over and start <= slider.start <= start / 2:
             start = slider.start
         if (start, back) != (slider.start, slider.value):
-            slider.param.update(start=start, value=self._echoes.give(back, slider.value))
+            slider.param.update(
+                start=start, value=self._echoes.give(back, slider.value)
+            )
 
     @property
     def _last(self) -> int:
         """Number of the newest iterate; an answer comes after the last one of the search."""
         newest = self._state.newest
-        return 0 if newest is None else newest.iteration + newest.is_answer
+        if newest is None:
+            return 0
+        return newest.iteration + newest.is_answer
 
 
 def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button:

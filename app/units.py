@@ -18,8 +18,11 @@ PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad
 """Units that take a prefix."""
 TIMES = {"s": 1.0, "h": 3600.0, "d": 86400.0}
 LATER = {"GPa": 10.0, "GN/m²": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
-"""Where a unit begins that is not taken from 1 on: a stress of 3000 MPa is read as that."""
-TYPED = re.compile(r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?)\s*(.*)", re.IGNORECASE)
+"""Where a unit begins that is not taken from 1 on: a stress of 3000 MPa is read as
+that."""
+TYPED = re.compile(
+    r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?)\s*(.*)", re.IGNORECASE
+)
 """A number as one types it, and what stands behind it."""
 OTHER_SIZES = {"Pa": 1e6, "m": 1e-3}
 """Of the points of a path that are of another quantity by default, in SI."""
@@ -40,7 +43,9 @@ class Unit:
 
     def titled(self, title: str) -> str:
         """A title with the unit behind it."""
-        return f"{title}, {self.name}" if self.name else title
+        if self.name:
+            return f"{title}, {self.name}"
+        return title
 
 
 def sizes_of(unit: str) -> dict[str, float]:
@@ -48,15 +53,24 @@ def sizes_of(unit: str) -> dict[str, float]:
     name = unit.replace("^2", "²").replace("^3", "³")
     if unit == "s":
         return TIMES
-    return {p + name: f for p, f in PREFIXES.items()} if unit in PREFIXED else {name: 1.0}
+    if unit in PREFIXED:
+        return {p + name: f for p, f in PREFIXES.items()}
+    return {name: 1.0}
 
 
 def unit_for(size: float, unit: str) -> Unit:
     """The unit in which values up to a size, in SI, are read."""
     units = [Unit(name, factor) for name, factor in sizes_of(unit).items()]
-    size = float(f"{size:.3g}") * (1.0 + 1e-9) if math.isfinite(size) and size > 0.0 else 1.0
-    fitting = [unit for unit in units if unit.factor * LATER.get(unit.name, 1.0) <= size]
-    return fitting[-1] if fitting else units[0]
+    if math.isfinite(size) and size > 0.0:
+        size = float(f"{size:.3g}") * (1.0 + 1e-9)
+    else:
+        size = 1.0
+    fitting = [
+        unit for unit in units if unit.factor * LATER.get(unit.name, 1.0) <= size
+    ]
+    if fitting:
+        return fitting[-1]
+    return units[0]
 
 
 def unit_of(definition: Parameter) -> Unit:

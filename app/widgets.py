@@ -15,7 +15,9 @@ import param
 
 from solver.settings.scene import Icon
 
-SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(encoding="utf-8")
+SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(
+    encoding="utf-8"
+)
 
 
 def looks(role: str) -> dict[str, Any]:
@@ -27,10 +29,11 @@ def looks(role: str) -> dict[str, Any]:
 class PlainText(pn.viewable.Viewer):
     """Text that is shown as it is, whatever it holds: nothing in it is markup.
 
-    What comes from a file, an address or a class is shown by this: Markdown, HTML and `Str` panes,
-    and the `Alert`, `Typography` and `StaticText` of panel-material-ui would run scripts in it. It
-    may change as soon as it is in sight: a component of panel-material-ui begins to listen once it
-    is painted, and loses what changes before.
+    What comes from a file, an address or a class is shown by this: Markdown, HTML and
+    `Str` panes, and the `Alert`, `Typography` and `StaticText` of panel-material-ui
+    would run scripts in it. It may change as soon as it is in sight: a component of
+    panel-material-ui begins to listen once it is painted, and loses what changes
+    before.
     """
 
     object = param.String(doc="The text.")
@@ -60,10 +63,14 @@ def wrapped(*objects: Any, **look: Any) -> pn.Row:
 
 def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:
     """A dialog that a click beside it closes, too."""
-    return pmui.Dialog(*objects, title=title, show_close_button=True, close_on_click=True, **look)
+    return pmui.Dialog(
+        *objects, title=title, show_close_button=True, close_on_click=True, **look
+    )
 
 
-def download(label: str, filename: str, make: Callable[[], str | bytes], **look: Any) -> Any:
+def download(
+    label: str, filename: str, make: Callable[[], str | bytes], **look: Any
+) -> Any:
     """A button that saves what a function makes once it is pressed."""
 
     def data() -> io.BytesIO:
@@ -85,4 +92,6 @@ def mask_of(emblem: Icon) -> dict[str, str]:
         f'<path d="{emblem.ground}" {line} stroke-opacity=".7"/>'
         f'<path d="{emblem.load}" {line}/></svg>'
     )
-    return {"mask": f'url("data:image/svg+xml,{quote(svg)}") center / contain no-repeat'}
+    return {
+        "mask": f'url("data:image/svg+xml,{quote(svg)}") center / contain no-repeat'
+    }

@@ -17,7 +17,8 @@ Flags = NDArray[np.bool_]
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 """Share of the largest of some dozens of numbers that rounding leaves of their sum."""
 RESIDUE = 1e-12
-"""Share of what is summed up to which a sum is shown as zero: a solution has no more digits."""
+"""Share of what is summed up to which a sum is shown as zero: a solution has no more
+digits."""
 
 
 def space_time(n_rows: int, n_instants: int) -> Array:
@@ -51,8 +52,13 @@ def read_only(field: Array) -> Array:
 
 def as_slice(rows: Indices) -> slice | Indices:
     """Rows as a slice when they follow each other, so that reading them copies nothing."""
-    first = int(rows[0]) if len(rows) else 0
-    return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
+    if len(rows):
+        first = int(rows[0])
+    else:
+        first = 0
+    if np.all(np.diff(rows) == 1):
+        return slice(first, first + len(rows))
+    return rows
 
 
 def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
@@ -61,7 +67,9 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
     What does not change with time has a single column, unless another of them does.
     """
     shape = np.broadcast_shapes(*(field.shape[1:] for field in fields))
-    return np.concatenate([np.broadcast_to(field, (len(field), *shape)) for field in fields])
+    return np.concatenate(
+        [np.broadcast_to(field, (len(field), *shape)) for field in fields]
+    )
 
 
 def without_residue(values: Array, terms: Array) -> Array:

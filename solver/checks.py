@@ -1,6 +1,7 @@
 """Checks of the parts of a problem and of a method: which values they allow, and what to do.
 
-A part checks itself once, where it is made: `check(self, length=POSITIVE, instants=INSTANTS)`.
+A part checks itself once, where it is made: `check(self, length=POSITIVE,
+instants=INSTANTS)`.
 """
 
 from __future__ import annotations
@@ -57,7 +58,9 @@ def check_value(name: str, value: object, kind: Kind) -> None:
     """Refuse a value of a name that is none of a kind."""
     flaw = kind.flaw(value)
     if flaw is not None:
-        shown = Words(value) if flaw.shown is None else flaw.shown
+        shown: object = Words(value)
+        if flaw.shown is not None:
+            shown = flaw.shown
         raise RefusedError(name, shown, flaw.allowed, flaw.remedy)
 
 
@@ -77,12 +80,16 @@ class Number:
     def allowed(self) -> str:
         """Words on these values."""
         words = f"a number{_range(self.low, self.high, above=self.above)}"
-        return f"{words}, or infinity" if self.endless else words
+        if self.endless:
+            return f"{words}, or infinity"
+        return words
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
         if is_number(value):
-            is_in = self.low <= value <= self.high and not (self.above and value == self.low)
+            is_in = self.low <= value <= self.high and not (
+                self.above and value == self.low
+            )
             if (is_in and math.isfinite(value)) or (self.endless and value == math.inf):
                 return None
         return Flaw(value, self.allowed, "give a number in this range")
@@ -125,7 +132,10 @@ class Numbers:
     def allowed(self) -> str:
         """Words on these values."""
         shapes = " or ".join(_written(shape) for shape in self.shapes)
-        kind = "whole numbers" if self.whole else "numbers"
+        if self.whole:
+            kind = "whole numbers"
+        else:
+            kind = "numbers"
         return f"an array of {kind}{_range(self.low, self.high, above=self.above)}, shape {shapes}"
 
     def flaw(self, value: Any) -> Flaw | None:
@@ -133,7 +143,9 @@ class Numbers:
         if not isinstance(value, np.ndarray):
             return Flaw(value, self.allowed, "make an array of it, as np.array does")
         if value.dtype.kind not in ("iu" if self.whole else "iuf"):
-            return Flaw(Words(f"of {value.dtype}"), self.allowed, "give numbers of this kind")
+            return Flaw(
+                Words(f"of {value.dtype}"), self.allowed, "give numbers of this kind"
+            )
         # Most have a shape that is given in full.
         fits = value.shape in self.shapes
         if not fits and not any(_fits(value.shape, shape) for shape in self.shapes):
@@ -142,8 +154,12 @@ class Numbers:
         if not value.size:
             return None
         # Both are NaN if anything is.
-        least, most = float(value.min()), float(value.max())
-        is_above = least > self.low if self.above else least >= self.low
+        least = float(value.min())
+        most = float(value.max())
+        if self.above:
+            is_above = least > self.low
+        else:
+            is_above = least >= self.low
         if is_above and -math.inf < least and most < math.inf and most <= self.high:
             return None
         return self._first(value)
@@ -151,7 +167,10 @@ class Numbers:
     def _first(self, value: Any) -> Flaw:
         """The first number that is refused."""
         with np.errstate(invalid="ignore"):
-            is_above = value > self.low if self.above else value >= self.low
+            if self.above:
+                is_above = value > self.low
+            else:
+                is_above = value >= self.low
             is_fine = is_above & (value <= self.high) & np.isfinite(value)
         place = np.unravel_index(int(np.argmin(is_fine)), value.shape)
         entry = float(value[place])
@@ -196,13 +215,19 @@ class Part:
     @property
     def allowed(self) -> str:
         """Words on these values."""
-        return " or ".join("None" if one is type(None) else one.__name__ for one in self._types)
+        return " or ".join(
+            "None" if one is type(None) else one.__name__ for one in self._types
+        )
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
         if isinstance(value, self._types):
             return None
-        return Flaw(_described(value), self.allowed, f"make one, as {self._types[0].__name__}(...)")
+        return Flaw(
+            _described(value),
+            self.allowed,
+            f"make one, as {self._types[0].__name__}(...)",
+        )
 
 
 @dataclass(frozen=True)
@@ -242,7 +267,9 @@ class Function:
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
-        return None if callable(value) else Flaw(value, self.allowed, "give what makes it")
+        if callable(value):
+            return None
+        return Flaw(value, self.allowed, "give what makes it")
 
 
 class Either:
@@ -263,7 +290,9 @@ class Either:
             flaw = kind.flaw(value)
             if flaw is None:
                 return None
-        return None if flaw is None else Flaw(flaw.shown, self.allowed, flaw.remedy)
+        if flaw is None:
+            return None
+        return Flaw(flaw.shown, self.allowed, flaw.remedy)
 
 
 @dataclass(frozen=True)
@@ -276,7 +305,10 @@ class Each:
     @property
     def allowed(self) -> str:
         """Words on these values."""
-        count = "one or more" if self.length is None else str(self.length)
+        if self.length is None:
+            count = "one or more"
+        else:
+            count = str(self.length)
         return f"a sequence of {count}, each {self.kind.allowed}"
 
     def flaw(self, value: Any) -> Flaw | None:
@@ -302,7 +334,10 @@ class Named:
     @property
     def allowed(self) -> str:
         """Words on these values."""
-        names = f" of {', '.join(self.names)}" if self.names else ""
+        if self.names:
+            names = f" of {', '.join(self.names)}"
+        else:
+            names = ""
         return f"a mapping of names{names} to {self.kind.allowed}"
 
     def flaw(self, value: Any) -> Flaw | None:
@@ -331,7 +366,9 @@ FUNCTION = Function()
 def _range(low: float, high: float, *, above: bool = False) -> str:
     """Words on a range of numbers."""
     if low == -math.inf:
-        return f" up to {plain(high)}" if high < math.inf else ""
+        if high < math.inf:
+            return f" up to {plain(high)}"
+        return ""
     start = f" {'above' if above else 'from'} {plain(low)}"
     return start + (f" to {plain(high)}" if high < math.inf else "")
 
@@ -353,5 +390,8 @@ def _described(value: object) -> object:
     if value is None or isinstance(value, str | int | float):
         return value
     name = type(value).__name__
-    size = f" of {len(value)}" if isinstance(value, Sized) else ""
+    if isinstance(value, Sized):
+        size = f" of {len(value)}"
+    else:
+        size = ""
     return Words(f"a {name}{size}")

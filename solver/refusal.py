@@ -19,10 +19,15 @@ class RefusedError(ValueError):
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
         shown = _shown(value)
-        shown = shown if len(shown) <= 60 else shown[:57] + "..."
+        if len(shown) <= 60:
+            shown = shown
+        else:
+            shown = shown[:57] + "..."
         super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
-        self.name, self.value = name, value
-        self.allowed, self.remedy = allowed, remedy
+        self.name = name
+        self.value = value
+        self.allowed = allowed
+        self.remedy = remedy
 
     def __reduce__(self) -> tuple[type[RefusedError], tuple[Any, ...]]:
         """What another process makes it of again."""
@@ -41,7 +46,10 @@ def _shown(value: object) -> str:
 
 def plain(value: float) -> str:
     """A number as one types it: 1e15, and not 1e+15."""
-    text = str(value) if isinstance(value, int) else f"{value:g}"
+    if isinstance(value, int):
+        text = str(value)
+    else:
+        text = f"{value:g}"
     return re.sub(r"e\+?(-?)0*", r"e\1", text)
 
 

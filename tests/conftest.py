@@ -37,7 +37,8 @@ LONGEST_FIRST = (
 )
 """Files of many seconds: whoever came to one of these last would work on alone."""
 
-# What the first process compiles is there for the hundreds after it, servers and commands too
+# What the first process compiles is there for the hundreds after it, servers and
+# commands too
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
@@ -45,8 +46,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")
 
-# Hypothesis also draws numbers that stand in our modules, those that happen to be loaded: which
-# examples a test sees would depend on the tests that ran before it in the same process
+# Hypothesis also draws numbers that stand in our modules, those that happen to be
+# loaded: which examples a test sees would depend on the tests that ran before it in the
+# same process
 draws._get_local_constants = Constants
 
 
@@ -77,7 +79,10 @@ def pytest_collection_finish() -> None:
 def pytest_unconfigure(config: pytest.Config) -> None:
     """Say in the last line how many tests of the page were skipped, and why."""
     reporter = config.pluginmanager.get_plugin("terminalreporter")
-    reports = reporter.stats.get("skipped", []) if reporter else []
+    if reporter:
+        reports = reporter.stats.get("skipped", [])
+    else:
+        reports = []
     skipped = sum(NO_BROWSER in str(report.longrepr) for report in reports)
     if skipped:
         reporter.write_line(f"{skipped} tests skipped: {NO_BROWSER}")
@@ -94,9 +99,13 @@ def proxy() -> Iterator[Proxy]:
 def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[Server]:
     """What serves the page."""
     port = free_port()
-    origins = [f"--allow-websocket-origin=localhost:{each}" for each in (port, proxy.port)]
+    origins = [
+        f"--allow-websocket-origin=localhost:{each}" for each in (port, proxy.port)
+    ]
     quick = ("--unused-session-lifetime", "8000", "--check-unused-sessions", "500")
-    with serving(tmp_path_factory.mktemp("server") / "log", port, *origins, *quick) as made:
+    with serving(
+        tmp_path_factory.mktemp("server") / "log", port, *origins, *quick
+    ) as made:
         proxy.target = made.port
         yield made
 

@@ -44,7 +44,9 @@ def test_iterations_beside_the_incremental_solver_are_those_of_runs(
     distance = distance_to(reference_of(problem), problem)
     records = solve(problem, method_of(settings), distance=distance).records
     assert int(number) == len(records)
-    assert float(found_at.split()[0]) == pytest.approx(100.0 * records[-2].error_force, rel=0.05)
+    assert float(found_at.split()[0]) == pytest.approx(
+        100.0 * records[-2].error_force, rel=0.05
+    )
     first = first_within(problem, settings, ahead.GOAL)
     assert int(own.split()[0]) == first
     assert int(known.split()[0]) >= first
@@ -71,9 +73,16 @@ def test_iterations_of_cycles_are_those_to_the_goal_and_slabs_hold_less(
 
 @pytest.mark.parametrize("bond", ["running", "stack"])
 def test_the_sparse_rival_on_a_wall_comes_to_the_same(bond: str) -> None:
-    sizes = {"bricks": 3, "courses": 3, "elements": 4, "elements_up": 2, "displacement": 5e-5}
+    sizes = {
+        "bricks": 3,
+        "courses": 3,
+        "elements": 4,
+        "elements_up": 2,
+        "displacement": 5e-5,
+    }
     problem = discretise(CATALOGUE["wall"].checked({**sizes, "bond": bond}))
-    found, reference = SparseNewton(problem).march(), reference_of(problem)
+    found = SparseNewton(problem).march()
+    reference = reference_of(problem)
     assert found.solved.all()
     for name in ("displacement", "contact_force"):
         known = getattr(reference, name)
@@ -83,7 +92,12 @@ def test_the_sparse_rival_on_a_wall_comes_to_the_same(bond: str) -> None:
 @pytest.mark.parametrize("public", PUBLIC, ids=lambda public: public.name)
 @pytest.mark.parametrize(
     "changes",
-    [{}, {"pressure_profile": "gap"}, {"support_displacement": 1e-4}, {"body_force": 500.0}],
+    [
+        {},
+        {"pressure_profile": "gap"},
+        {"support_displacement": 1e-4},
+        {"body_force": 500.0},
+    ],
     ids=str,
 )
 def test_public_solvers_agree_with_the_incremental_solver(

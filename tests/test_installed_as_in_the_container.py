@@ -1,8 +1,9 @@
 """The Dockerfile's steps without a container engine: install, serve, ask the health check.
 
-The clean environment is lent what the project declares that it needs, and nothing else: pip checks
-the versions, but unpacks no packages that these tests run on already. Outside the tree, what is
-installed there has all that the command, the engine as a library and the page need.
+The clean environment is lent what the project declares that it needs, and nothing else:
+pip checks the versions, but unpacks no packages that these tests run on already.
+Outside the tree, what is installed there has all that the command, the engine as a
+library and the page need.
 """
 
 from __future__ import annotations
@@ -51,8 +52,11 @@ def instructions(name: str) -> list[str]:
 
 def declared():
     """Give the distributions that the project needs, directly or not, extras left out."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    lines, found = list(project["dependencies"]), {}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
+        "project"
+    ]
+    lines = list(project["dependencies"])
+    found = {}
     for line in lines:
         needed = Requirement(line)
         if needed.name not in found and (
@@ -71,7 +75,9 @@ def lend(found, environment):
             if file.parent.name == "bin":
                 text = Path(found.locate_file(file)).read_text(encoding="utf-8")
                 program = environment / "bin" / file.name
-                program.write_text(f"#!{environment / 'bin' / 'python'}\n{text.split(None, 1)[1]}")
+                program.write_text(
+                    f"#!{environment / 'bin' / 'python'}\n{text.split(None, 1)[1]}"
+                )
                 program.chmod(0o755)
         elif not (packages / file.parts[0]).exists():
             (packages / file.parts[0]).symlink_to(found.locate_file(file.parts[0]))
@@ -90,10 +96,14 @@ def image(tmp_path_factory):
             else:
                 shutil.copy(ROOT / source, folder / target)
     environment = folder.parent / "environment"
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", environment], check=True)
+    subprocess.run(
+        [sys.executable, "-m", "venv", "--without-pip", environment], check=True
+    )
     for found in (*declared(), distribution("pip"), distribution("setuptools")):
         lend(found, environment)
-    variables = dict(os.environ, PATH=f"{environment / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    variables = dict(
+        os.environ, PATH=f"{environment / 'bin'}{os.pathsep}{os.environ['PATH']}"
+    )
     variables.pop("PYTHONPATH", None)
     for pair in re.findall(r"(\w+)=(\S+)", " ".join(instructions("ENV"))):
         variables[pair[0]] = pair[1]
@@ -156,11 +166,15 @@ def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
     try:
         wait_for(lambda: listens(int(other)) or server.poll() is not None)
         end = time.monotonic() + PATIENCE
-        while subprocess.run([python, *check[1:]], capture_output=True, check=False).returncode:
+        while subprocess.run(
+            [python, *check[1:]], capture_output=True, check=False
+        ).returncode:
             assert time.monotonic() < end, (tmp_path / "log").read_text()
             assert server.poll() is None, (tmp_path / "log").read_text()
             time.sleep(0.5)
-        with urllib.request.urlopen(f"http://127.0.0.1:{other}/app", timeout=PATIENCE) as page:
+        with urllib.request.urlopen(
+            f"http://127.0.0.1:{other}/app", timeout=PATIENCE
+        ) as page:
             assert b"Slipfront" in page.read()
         assert handshake(other, f"http://localhost:{other}") == 101
         assert handshake(other, "http://elsewhere.example") == 403

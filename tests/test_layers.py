@@ -29,14 +29,14 @@ LAYERS = [
     "commands",
     "__main__",
 ]
-"""Rooms of the solver; each may import itself and what stands before it. Problem and method
-stand before all that knows settings and scenes."""
+"""Rooms of the solver; each may import itself and what stands before it. Problem and
+method stand before all that knows settings and scenes."""
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
 ABOVE = {"method", "iteration", "solve", "slabs"}
 """Files of the method that put its parts to work."""
 FLOORS = [["units", "frame", "messages"], ["worker"], ["refusals", "state"], ["views"]]
-"""Parts of the page; each may import itself, what stands beside it and before it. All others are
-above, and in no worker."""
+"""Parts of the page; each may import itself, what stands beside it and before it. All
+others are above, and in no worker."""
 
 
 def modules(package):
@@ -48,7 +48,8 @@ def modules(package):
     return found
 
 
-SOLVER, PAGE = modules("solver"), modules("app")
+SOLVER = modules("solver")
+PAGE = modules("app")
 EVERY = SOLVER | PAGE
 
 
@@ -62,7 +63,8 @@ class AtWork(ast.NodeTransformer):
 @cache
 def imports(module):
     """The names of all that a module imports, anywhere in it but for types alone."""
-    path, found = EVERY[module], set()
+    path = EVERY[module]
+    found = set()
     for node in ast.walk(AtWork().visit(ast.parse(path.read_text(encoding="utf-8")))):
         if isinstance(node, ast.Import):
             found.update(alias.name for alias in node.names)
@@ -76,12 +78,16 @@ def imports(module):
 def place(module, places):
     """Number of the place that a module has, or that above all."""
     part = module.split(".")[1]
-    found = (number for number, parts in enumerate(places) if part == parts or part in parts)
+    found = (
+        number for number, parts in enumerate(places) if part == parts or part in parts
+    )
     return next(found, len(places))
 
 
 def graphics_in(some, graphics):
-    return [one for one in some if {name.split(".")[0] for name in imports(one)} & graphics]
+    return [
+        one for one in some if {name.split(".")[0] for name in imports(one)} & graphics
+    ]
 
 
 def test_neither_the_solver_nor_a_worker_of_the_page_imports_graphics():
@@ -97,7 +103,12 @@ def test_the_engine_runs_where_graphics_cannot_be_imported():
         "from solver.commands.cli import main\n"
         "sys.exit(main(['run', 'bar', '--set', 'peak=0']))\n"
     )
-    assert subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False).returncode == 0
+    assert (
+        subprocess.run(
+            [sys.executable, "-c", program], cwd=ROOT, check=False
+        ).returncode
+        == 0
+    )
 
 
 def test_imports_inside_the_solver_go_one_way():
@@ -114,7 +125,9 @@ def test_imports_inside_the_page_go_one_way():
     parts = PAGE.keys() - {"app"}
     for module in parts:
         for name in imports(module) & parts:
-            assert place(name, FLOORS) <= place(module, FLOORS), f"{module} imports {name}"
+            assert place(name, FLOORS) <= place(module, FLOORS), (
+                f"{module} imports {name}"
+            )
 
 
 @pytest.mark.parametrize("package", [SOLVER, PAGE], ids=["solver", "app"])

@@ -12,8 +12,10 @@ from packaging.specifiers import SpecifierSet
 from solver.commands.cli import main
 
 ROOT = Path(__file__).resolve().parents[1]
-FRONT, PAGE = ROOT / "README.md", ROOT / "app" / "README.md"
-MATHEMATICS, MEASUREMENTS = ROOT / "solver" / "README.md", ROOT / "solver" / "study" / "README.md"
+FRONT = ROOT / "README.md"
+PAGE = ROOT / "app" / "README.md"
+MATHEMATICS = ROOT / "solver" / "README.md"
+MEASUREMENTS = ROOT / "solver" / "study" / "README.md"
 LESSONS = ROOT / "app" / "lessons" / "README.md"
 SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
 CASES = ROOT / "solver" / "study" / "cases" / "README.md"
@@ -55,7 +57,9 @@ def test_every_path_that_is_named_exists(readme: Path) -> None:
 
 @pytest.mark.parametrize("readme", READMES, ids=NAMES)
 def test_every_program_runs(readme: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for program in re.findall(r"^```python\n(.*?)^```", readme.read_text("utf-8"), re.M | re.S):
+    for program in re.findall(
+        r"^```python\n(.*?)^```", readme.read_text("utf-8"), re.M | re.S
+    ):
         exec(compile(program, readme.name, "exec"), {})
         assert "converged" in capsys.readouterr().out
 
@@ -66,7 +70,10 @@ def test_every_link_leads_somewhere(readme: Path) -> None:
         if target.startswith("http"):
             continue
         name, _, place = target.partition("#")
-        page = (readme.parent / name).resolve() if name else readme
+        if name:
+            page = (readme.parent / name).resolve()
+        else:
+            page = readme
         assert page.exists(), target
         assert not place or place in map(anchor, headings(page)), target
 
@@ -103,5 +110,7 @@ def test_what_may_be_installed_is_what_is_promised() -> None:
 
 
 def test_the_container_has_one_of_them() -> None:
-    (version,) = re.findall(r"^FROM python:(3\.\d+)", (ROOT / "Dockerfile").read_text(), re.M)
+    (version,) = re.findall(
+        r"^FROM python:(3\.\d+)", (ROOT / "Dockerfile").read_text(), re.M
+    )
     assert version in PROMISED

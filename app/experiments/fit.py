@@ -54,7 +54,8 @@ class FitTab(CommandTab):
     @property
     def command(self) -> Command | None:
         """The fit of the settings that are ticked to the loop, if there are some, and one."""
-        names, loop = ",".join(self.chosen.value), self.measured
+        names = ",".join(self.chosen.value)
+        loop = self.measured
         if loop is None or not names:
             return None
         arguments = ("fit", SETTINGS, "--with", MEASURED, "--vary", names, "--out", OUT)
@@ -63,7 +64,12 @@ class FitTab(CommandTab):
     @property
     def words(self) -> str:
         """What it does, and what is missing."""
-        missing = NO_LOOP if self.measured is None else "" if self.chosen.value else NO_SETTING
+        if self.measured is None:
+            missing = NO_LOOP
+        elif self.chosen.value:
+            missing = ""
+        else:
+            missing = NO_SETTING
         return f"Settings with which the run is as near to a measured loop as can be. {missing}"
 
     def show(self) -> None:
@@ -85,7 +91,10 @@ class FitTab(CommandTab):
 
     def _draw(self) -> None:
         """Draw the measured loop and the nearest so far, until there is the report."""
-        chart = self._panel() if self.job is not None or not self.written else None
+        if self.job is not None or not self.written:
+            chart = self._panel()
+        else:
+            chart = None
         self._chart.view.visible = chart is not None
         if chart is not None:
             self._chart.show(chart)
@@ -94,8 +103,13 @@ class FitTab(CommandTab):
         measured = self.measured
         if measured is None:
             return None
-        curves = [PanelCurve("measured", measured.displacement, measured.force, 5, "points")]
-        file = None if self.job is None else self.job.folder / OUT / LOOP
+        curves = [
+            PanelCurve("measured", measured.displacement, measured.force, 5, "points")
+        ]
+        if self.job is None:
+            file = None
+        else:
+            file = self.job.folder / OUT / LOOP
         if file is not None and file.exists():
             _, across, up = pd.read_csv(file).to_numpy().T
             curves.append(PanelCurve("nearest run", across, up, 1))
@@ -107,4 +121,6 @@ class FitTab(CommandTab):
         found = settings_from_toml(self.written[SETTINGS].decode())
         values = {name: getattr(found, name) for name in fittable(found)}
         self.state.tab = TABS[0]
-        self.state.adopt(found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()}))
+        self.state.adopt(
+            found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()})
+        )

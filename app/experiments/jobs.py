@@ -27,7 +27,8 @@ log = logging.getLogger(__name__)
 LOOK = 500
 """Milliseconds between two looks of a page at its work."""
 LIMIT = 60.0
-"""Seconds that a run of a sweep may take: nobody waits longer for a point of a chart."""
+"""Seconds that a run of a sweep may take: nobody waits longer for a point of a
+chart."""
 PROCESSES = "processes"
 VARIABLE = "SLIPFRONT_EXECUTOR"
 """Of the environment: where sweeps run."""
@@ -58,12 +59,16 @@ def executor() -> Executor:
 class Job:
     """A command that is waiting, running, or done.
 
-    Its arguments, as after `python -m solver`, may name the folder `OUT`, and files by the names of
-    their texts.
+    Its arguments, as after `python -m solver`, may name the folder `OUT`, and files by
+    the names of their texts.
     """
 
-    def __init__(self, arguments: Sequence[str], texts: Mapping[str, str] | None = None) -> None:
-        self._place = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
+    def __init__(
+        self, arguments: Sequence[str], texts: Mapping[str, str] | None = None
+    ) -> None:
+        self._place = TemporaryDirectory(
+            prefix="slipfront-", ignore_cleanup_errors=True
+        )
         self.folder = Path(self._place.name)
         for name, text in (texts or {}).items():
             (self.folder / name).write_text(text, encoding="utf-8")
@@ -80,7 +85,10 @@ class Job:
     def lines(self) -> list[str]:
         """What the command has printed so far, without empty lines."""
         file = self.folder / LOG
-        text = file.read_text(encoding="utf-8") if file.exists() else ""
+        if file.exists():
+            text = file.read_text(encoding="utf-8")
+        else:
+            text = ""
         return [line.strip() for line in text.splitlines() if line.strip()]
 
     @property
@@ -96,7 +104,9 @@ class Job:
             return "Waiting: another report is made first."
         if self.is_over:
             return self.failure
-        return f"{time.monotonic() - self._began:.0f} s: {(self.lines or ['Working'])[-1]}"
+        return (
+            f"{time.monotonic() - self._began:.0f} s: {(self.lines or ['Working'])[-1]}"
+        )
 
     @property
     def failure(self) -> str:
@@ -105,8 +115,12 @@ class Job:
             return "Cancelled."
         if self._future.exception() is not None:
             return "Its process stopped unexpectedly; start it again."
-        has_failed = self._future.result() not in (0, 1) or not (self.files or self.lines)
-        return "\n".join(self.lines[-3:]) if has_failed else ""
+        has_failed = self._future.result() not in (0, 1) or not (
+            self.files or self.lines
+        )
+        if has_failed:
+            return "\n".join(self.lines[-3:])
+        return ""
 
     def cancel(self) -> None:
         """End it; a process at work is ended at once."""
@@ -127,7 +141,9 @@ def share_of(named: str, users: int) -> str:
     kind, _, named_count = named.partition(":")
     count = named_count or str(processors())
     is_local = kind == PROCESSES and count.isdecimal()
-    return f"{PROCESSES}:{max(1, int(count) // users)}" if is_local else named
+    if is_local:
+        return f"{PROCESSES}:{max(1, int(count) // users)}"
+    return named
 
 
 class Sweep:
@@ -166,7 +182,12 @@ class Sweep:
         try:
             with opened(on, patience(LIMIT)) as where:
                 self.rows.extend(
-                    sweep(self.plan, where, limit=LIMIT, cancelled=self._is_cancelled.is_set)
+                    sweep(
+                        self.plan,
+                        where,
+                        limit=LIMIT,
+                        cancelled=self._is_cancelled.is_set,
+                    )
                 )
         except RefusedError as refusal:
             self.message = str(refusal)

@@ -18,7 +18,13 @@ from app.state import SEARCH, answer
 from app.units import typed, unit_of
 from app.worker.references import has_reference
 from solver.refusal import RefusedError
-from solver.settings.definitions import CurveParameter, Parameter, about, is_logarithmic, title_of
+from solver.settings.definitions import (
+    CurveParameter,
+    Parameter,
+    about,
+    is_logarithmic,
+    title_of,
+)
 from solver.settings.scene import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.quantity import Quantity
@@ -30,9 +36,11 @@ GRAMMAR = (
     "FROM:TO:NUMBER are so many values in even steps, FROM:TO:NUMBER:log in even ratios; "
     "others stand between commas."
 )
-VALUES, COARSE = 13, 10
+VALUES = 13
+COARSE = 10
 """Values of a range, and along each side of a map."""
-TENTH, HUNDREDTH = 0.1, 0.01
+TENTH = 0.1
+HUNDREDTH = 0.01
 COURSES = (4, 6, 8, 10)
 """Courses of bricks that are compared: all runs take less than a minute."""
 
@@ -60,8 +68,8 @@ class Question:
     def asked(self, settings: Settings) -> Settings:
         """Settings of the runs that answer it beside those of the page.
 
-        At once, as nobody watches them; where LATIN's own iterations are counted, these go on until
-        they are within what is asked.
+        At once, as nobody watches them; where LATIN's own iterations are counted, these
+        go on until they are within what is asked.
         """
         if settings.finish == "none":
             return settings
@@ -86,10 +94,14 @@ def question_of(text: str, settings: Settings) -> Question:
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
     names = {setting.partition("=")[0] for setting in vary}
-    is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
+    is_known = names <= variable(settings).keys() and of.partition("@")[
+        0
+    ] in quantities(settings)
     if is_known and not question.refusal(settings):
         return question
-    return next(ready for make in READY.values() if (ready := make(settings)) is not None)
+    return next(
+        ready for make in READY.values() if (ready := make(settings)) is not None
+    )
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -107,7 +119,8 @@ def quantities(settings: Settings) -> dict[str, Quantity]:
     return {
         name: quantity
         for name, quantity in QUANTITIES.items()
-        if quantity.applies(settings) and (has_reference(settings) or quantity.reads != "errors")
+        if quantity.applies(settings)
+        and (has_reference(settings) or quantity.reads != "errors")
     }
 
 
@@ -117,7 +130,9 @@ def names_of(definition: Parameter) -> list[str]:
         return ["false", "true"]
     if isinstance(definition, CurveParameter):
         return list(definition.presets)
-    return list(definition.objects) if isinstance(definition, param.Selector) else []
+    if isinstance(definition, param.Selector):
+        return list(definition.objects)
+    return []
 
 
 def proposed(settings: Settings, name: str) -> str:
@@ -137,7 +152,10 @@ def iterations_over_k(settings: Settings) -> Question:
 
 def _iterations(settings: Settings, within: float, *vary: str) -> Question:
     """Iterations until the force is within a share, or else all, over settings."""
-    of = f"iterations_to_force@{within}" if has_reference(settings) else "iterations"
+    if has_reference(settings):
+        of = f"iterations_to_force@{within}"
+    else:
+        of = "iterations"
     return Question(vary, of)
 
 
@@ -146,18 +164,23 @@ def _bricks(settings: Settings) -> Question | None:
     if "courses" not in variable(settings):
         return None
     courses = ",".join(map(str, COURSES))
-    return _iterations(settings, HUNDREDTH, f"courses={courses}", "multiscale=true,false")
+    return _iterations(
+        settings, HUNDREDTH, f"courses={courses}", "multiscale=true,false"
+    )
 
 
 def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     """Energy over other settings and the load, from a tenth of what their sliders reach on.
 
-    None where no number says how large the load is, or one of the others does nothing. The values
-    of a load alone that is positive have even ratios.
+    None where no number says how large the load is, or one of the others does nothing.
+    The values of a load alone that is positive have even ratios.
     """
-    known, vary = variable(settings), []
+    known = variable(settings)
+    vary = []
     numbers = [name for name in known if isinstance(known[name], param.Number)]
-    loads = [n for n in (*settings.CHIEF, *numbers) if n in numbers and about(known[n]).path]
+    loads = [
+        n for n in (*settings.CHIEF, *numbers) if n in numbers and about(known[n]).path
+    ]
     if not loads or not {*others} <= {*numbers}:
         return None
     for name in (*others, loads[0]):
@@ -168,7 +191,9 @@ def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     return Question(tuple(vary), "dissipation")
 
 
-TEXTS = tomllib.loads((Path(__file__).parent / "texts.toml").read_text(encoding="utf-8"))
+TEXTS = tomllib.loads(
+    (Path(__file__).parent / "texts.toml").read_text(encoding="utf-8")
+)
 """A word on each question and report, by what its button says."""
 READY: dict[str, Callable[[Settings], Question | None]] = {
     # Small ones take its third power along rods (Masing).
@@ -186,26 +211,42 @@ class Span:
     `changed` is called when somebody has changed a field.
     """
 
-    def __init__(self, label: str, changed: Callable[[], object], *, is_optional: bool) -> None:
-        self._nothing = {"–": ""} if is_optional else {}
-        self._changed, self._is_updating = changed, False
-        self.name = pmui.Select(label=label, options={"–": ""}, value="", width=260, **FIELD)
-        self.values = pmui.TextInput(label="Values", description=GRAMMAR, width=330, **FIELD)
+    def __init__(
+        self, label: str, changed: Callable[[], object], *, is_optional: bool
+    ) -> None:
+        if is_optional:
+            self._nothing = {"–": ""}
+        else:
+            self._nothing = {}
+        self._changed = changed
+        self._is_updating = False
+        self.name = pmui.Select(
+            label=label, options={"–": ""}, value="", width=260, **FIELD
+        )
+        self.values = pmui.TextInput(
+            label="Values", description=GRAMMAR, width=330, **FIELD
+        )
         self.view = pn.FlexBox(self.name, self.values)
         for field in self.view:
             field.param.watch(self._on_field, "value")
 
     def show(self, settings: Settings, text: str) -> None:
         """Show a setting and its values, in the unit of its control; "" is none."""
-        self._settings, self._is_updating = settings, True
+        self._settings = settings
+        self._is_updating = True
         name, _, values = text.partition("=")
-        titles = {_titled(known, settings): key for key, known in variable(settings).items()}
+        titles = {
+            _titled(known, settings): key for key, known in variable(settings).items()
+        }
         self.name.param.update(options={**self._nothing, **titles}, value=name)
-        definition, label = settings.definitions().get(name), "Values"
+        definition = settings.definitions().get(name)
+        label = "Values"
         if isinstance(definition, param.Number):
             unit = unit_of(definition)
             label = unit.titled(label)
-            values = _converted(values, lambda text: f"{float(text) / unit.factor:.10g}")
+            values = _converted(
+                values, lambda text: f"{float(text) / unit.factor:.10g}"
+            )
         elif definition is not None:
             label = f"Values: {', '.join(names_of(definition))}"
         self.values.param.update(label=label, value=values, visible=bool(name))
@@ -216,9 +257,11 @@ class Span:
         name = self.name.value
         if not name:
             return ""
-        definition, values = self._settings.definitions()[name], self.values.value
+        definition = self._settings.definitions()[name]
+        values = self.values.value
         if isinstance(definition, param.Number):
-            unit, si = unit_of(definition), about(definition).unit
+            unit = unit_of(definition)
+            si = about(definition).unit
             values = _converted(values, lambda text: f"{typed(text, unit, si):.12g}")
         return f"{name}={values.replace(' ', '')}"
 
@@ -227,7 +270,9 @@ class Span:
         if self._is_updating:
             return
         if event.obj is self.name:
-            self.show(self._settings, proposed(self._settings, event.new) if event.new else "")
+            self.show(
+                self._settings, proposed(self._settings, event.new) if event.new else ""
+            )
         self._changed()
 
 
@@ -235,7 +280,10 @@ def _converted(values: str, convert: Callable[[str], str]) -> str:
     """The ends of a range, or all numbers of a list, each as a function gives it."""
     sign = ":" if ":" in values else ","
     parts = values.split(sign)
-    ends = 2 if sign == ":" else len(parts)
+    if sign == ":":
+        ends = 2
+    else:
+        ends = len(parts)
     return sign.join([*map(convert, parts[:ends]), *parts[ends:]])
 
 
@@ -243,4 +291,6 @@ def _titled(definition: Parameter, settings: Settings) -> str:
     """Title of a setting, with its group where another has the same."""
     titles = [title_of(other) for other in settings.definitions().values()]
     title = title_of(definition)
-    return f"{title} ({about(definition).group})" if titles.count(title) > 1 else title
+    if titles.count(title) > 1:
+        return f"{title} ({about(definition).group})"
+    return title

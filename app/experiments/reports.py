@@ -37,16 +37,20 @@ Files = dict[str, bytes]
 class CommandTab(ABC):
     """A tab with fields for a command, which is started there, and whose report is read there.
 
-    `report` is the one that is chosen, of which `page` shows the last, and `files` has buttons that
-    save what was written; `job` is the command that is waiting or runs, `buttons` are all buttons.
+    `report` is the one that is chosen, of which `page` shows the last, and `files` has
+    buttons that save what was written; `job` is the command that is waiting or runs,
+    `buttons` are all buttons.
     """
 
     def __init__(self, state: PageState, tab: str, *fields: Any) -> None:
-        self.state, self._tab = state, tab
+        self.state = state
+        self._tab = tab
         self.job: Job | None = None
         self._done: dict[str, Files] = {}
         self.start_button = button("Start", self.start, icon="play_arrow", **LOOKS)
-        self.cancel_button = button("Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS)
+        self.cancel_button = button(
+            "Cancel", self.cancel, icon="stop", variant="outlined", **LOOKS
+        )
         self._words = PlainText(margin=(0, 8))
         self.progress = PlainText(margin=(6, 8))
         self.files = pn.Row(margin=0)
@@ -109,7 +113,10 @@ class CommandTab(ABC):
         job = self.job
         if job is None:
             return
-        self.progress.object = f"{self._started}: {job.progress}" if job.progress else ""
+        if job.progress:
+            self.progress.object = f"{self._started}: {job.progress}"
+        else:
+            self.progress.object = ""
         if not job.is_over:
             return
         if not job.failure:
@@ -121,14 +128,21 @@ class CommandTab(ABC):
         """Show what is chosen, and the report if there is one."""
         if self.state.tab != self._tab:
             return
-        is_busy, files = self.job is not None, self.written
+        is_busy = self.job is not None
+        files = self.written
         self._words.object = self.words
-        label = "Do it again" if files else "Start"
-        self.start_button.param.update(disabled=is_busy or self.command is None, label=label)
+        if files:
+            label = "Do it again"
+        else:
+            label = "Start"
+        self.start_button.param.update(
+            disabled=is_busy or self.command is None, label=label
+        )
         self.cancel_button.visible = is_busy
         self.page.object = shown(files)
         self.files[:] = [
-            download(name, name, lambda data=data: data, **LOOKS) for name, data in files.items()
+            download(name, name, lambda data=data: data, **LOOKS)
+            for name, data in files.items()
         ]
 
 
@@ -156,7 +170,9 @@ class Reports(CommandTab):
     @property
     def command(self) -> Command:
         """The command of the report that is chosen."""
-        return (*COMMANDS[self.report], "--out", OUT), {SETTINGS: dump(self.state.settings)}
+        return (*COMMANDS[self.report], "--out", OUT), {
+            SETTINGS: dump(self.state.settings)
+        }
 
     @property
     def words(self) -> str:
@@ -168,7 +184,10 @@ def shown(files: Files) -> str:
     """The page among a report's files, in a frame; its links to runs lead to this server (HTML)."""
     for name, data in files.items():
         if name.endswith(".html"):
-            path = pn.state.location.pathname if pn.state.location is not None else ""
+            if pn.state.location is not None:
+                path = pn.state.location.pathname
+            else:
+                path = ""
             text = data.decode().replace(PAGE, path or "app")
             text = text.replace("<style>", '<base target="_parent"><style>', 1)
             return FRAME.format(title=escape(name), page=escape(text))

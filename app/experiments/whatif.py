@@ -71,7 +71,11 @@ class WhatIf:
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")
         self._scale = pmui.Select(
-            label="on a scale", options=list(SCALES), value=next(iter(SCALES)), width=150, **FIELD
+            label="on a scale",
+            options=list(SCALES),
+            value=next(iter(SCALES)),
+            width=150,
+            **FIELD,
         )
         self._scale.param.watch(lambda event: self.sweep and self._draw(), "value")
         self._start = button("Draw", self.start, icon="play_arrow", **FIELD)
@@ -79,7 +83,8 @@ class WhatIf:
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
         self.mesh = button(MESH, self._on_mesh, icon="grid_on", **look)
         self._ready = {
-            title: button(title, partial(self._on_ready, title), **look) for title in READY
+            title: button(title, partial(self._on_ready, title), **look)
+            for title in READY
         }
         self.message = PlainText(margin=(2, 8))
         self._meshed = PlainText(margin=(10, 8))
@@ -107,7 +112,8 @@ class WhatIf:
 
     def look(self) -> None:
         """Show what is new of the runs and of the meshes."""
-        sweep, job = self.sweep, self._job
+        sweep = self.sweep
+        job = self._job
         if sweep is not None and self._seen != (len(sweep.rows), sweep.is_over):
             self._draw()
         if job is not None:
@@ -121,11 +127,14 @@ class WhatIf:
         """Rows of the sweep so far, as CSV in SI, with all settings."""
         if self.sweep is None:
             return ""
-        return csv_of(self.sweep.plan, sorted(self.sweep.rows, key=lambda row: row.number))
+        return csv_of(
+            self.sweep.plan, sorted(self.sweep.rows, key=lambda row: row.number)
+        )
 
     def chart(self) -> Chart:
         """What has come so far."""
-        plan, rows = self.sweep.plan, list(self.sweep.rows)
+        plan = self.sweep.plan
+        rows = list(self.sweep.rows)
         text = lambda value, unit: unit_for(abs(value), unit)(value, 4)  # noqa: E731
         return chart_of(plan, rows, 0, text, logarithmic=SCALES[self._scale.value])
 
@@ -136,13 +145,16 @@ class WhatIf:
         """
         if self.state.tab != "What if":
             return
-        settings, before = self.state.settings, self.question
+        settings = self.state.settings
+        before = self.question
         self.question = question_of(self.state.question, settings)
         self._is_updating = True
         for span, text in zip(self.spans, (*self.question.vary, ""), strict=False):
             span.show(settings, text)
         name, _, at = self.question.of.partition("@")
-        options = {quantity.title: key for key, quantity in quantities(settings).items()}
+        options = {
+            quantity.title: key for key, quantity in quantities(settings).items()
+        }
         self._of.param.update(options=options, value=name)
         parameter = QUANTITIES[name].parameter
         self._at.param.update(value=at, visible=parameter is not None)
@@ -161,11 +173,15 @@ class WhatIf:
         """Take the question from the fields; one that is refused stays there to be mended."""
         if self._is_updating:
             return
-        settings, of = self.state.settings, self._of.value
+        settings = self.state.settings
+        of = self._of.value
         parameter = QUANTITIES[of].parameter
         if parameter is not None:
             at = self._at.value.strip() or (str(TENTH) if parameter.needed else "")
-            of = f"{of}@{at}" if at else of
+            if at:
+                of = f"{of}@{at}"
+            else:
+                of = of
         try:
             texts = [span.text() for span in self.spans]
             question = Question(tuple(filter(None, texts)), of)
@@ -192,14 +208,20 @@ class WhatIf:
 
     def _draw(self) -> None:
         """Show what has come."""
-        sweep, settings = self.sweep, self.state.settings
+        sweep = self.sweep
+        settings = self.state.settings
         self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
-        words = counts(sweep.plan, sweep.rows) if sweep.is_over else sweep.progress
+        if sweep.is_over:
+            words = counts(sweep.plan, sweep.rows)
+        else:
+            words = sweep.progress
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
         texts = TEXTS["questions"].items()
-        told = [text for title, text in texts if READY[title](settings) == self.question]
+        told = [
+            text for title, text in texts if READY[title](settings) == self.question
+        ]
         self.message.object = " ".join([sweep.message, words, *told]).strip()
         self._chart.show(self.chart())
 
@@ -208,4 +230,6 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
     """Whether a plan fixes what settings say."""
     varied = {axis.name: None for axis in plan.axes}
     is_same_scene = settings.scene == plan.settings.scene
-    return is_same_scene and settings.values() | varied == plan.settings.values() | varied
+    return (
+        is_same_scene and settings.values() | varied == plan.settings.values() | varied
+    )

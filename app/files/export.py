@@ -69,7 +69,9 @@ models.forEach((model, n) => { model[names[n]] = values[n][i] })
 def program(settings: Settings) -> str:
     """A Python program that gives the numbers of a run again, with all its settings."""
     values = indent(pformat(settings.values(), sort_dicts=False), "    ").lstrip()
-    return PROGRAM.format(scene=settings.scene, values=values, errors=has_reference(settings))
+    return PROGRAM.format(
+        scene=settings.scene, values=values, errors=has_reference(settings)
+    )
 
 
 def history_table(frame: Frame) -> str:
@@ -81,14 +83,16 @@ def history_table(frame: Frame) -> str:
 def plot_table(view: View, frame: Frame) -> str:
     """What a plot shows (CSV, with comments that begin with #): a line for each point of a curve.
 
-    Columns are those of the plot's sources, in the units of its axes; paths are numbered, and a
-    curve has the name of its source.
+    Columns are those of the plot's sources, in the units of its axes; paths are
+    numbered, and a curve has the name of its source.
     """
     axes = [*view.figure.xaxis[:1], *view.figure.yaxis[:1]]
     names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
     tables = []
     for key, source in view.sources.items():
-        table = pd.DataFrame({name: list(column) for name, column in source.data.items()})
+        table = pd.DataFrame(
+            {name: list(column) for name, column in source.data.items()}
+        )
         paths = [name for name in table if any(np.ndim(cell) for cell in table[name])]
         if paths:
             table[paths] = table[paths].map(np.ravel)
@@ -100,8 +104,16 @@ def plot_table(view: View, frame: Frame) -> str:
 
 def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
     settings = frame.run.settings
-    at = "answer" if frame.is_answer else f"iteration {frame.iteration}"
-    first = [f"Slipfront, {settings.scene}, {at}", *head, "settings:", *dump(settings).splitlines()]
+    if frame.is_answer:
+        at = "answer"
+    else:
+        at = f"iteration {frame.iteration}"
+    first = [
+        f"Slipfront, {settings.scene}, {at}",
+        *head,
+        "settings:",
+        *dump(settings).splitlines(),
+    ]
     return "".join(f"# {line}\n" for line in first) + table.to_csv(index=False)
 
 
@@ -110,15 +122,21 @@ def offline_page(
 ) -> str:
     """A run as one page that needs nothing beside it (HTML): its plots at all instants.
 
-    Views and ghost are those in sight, which are not touched. The save buttons of the plots write
-    SVG.
+    Views and ghost are those in sight, which are not touched. The save buttons of the
+    plots write SVG.
     """
-    copies, settings = _copies(views), escape(dump(frame.run.settings))
-    instants, end = frame.run.instants, float(frame.run.instants[-1])
+    copies = _copies(views)
+    settings = escape(dump(frame.run.settings))
+    instants = frame.run.instants
+    end = float(frame.run.instants[-1])
     columns = thinned(len(instants), MOST_INSTANTS)
     at = int(np.argmin(np.abs(columns - frame.run.column(selection.phase))))
     slider = Slider(
-        start=0, end=len(columns) - 1, value=at, title="Instant", sizing_mode="stretch_width"
+        start=0,
+        end=len(columns) - 1,
+        value=at,
+        title="Instant",
+        sizing_mode="stretch_width",
     )
     caption = Div(text="", sizing_mode="stretch_width")
     rest = [view.figure for view in copies if view.name not in HEIGHTS]
@@ -129,16 +147,21 @@ def offline_page(
             caption,
             *(view.figure for view in copies if view.name in HEIGHTS),
             grid(rest, ncols=2, sizing_mode="stretch_width"),
-            Div(text=f"<details><summary>All settings</summary><pre>{settings}</pre></details>"),
+            Div(
+                text=f"<details><summary>All settings</summary><pre>{settings}</pre></details>"
+            ),
             sizing_mode="stretch_width",
         )
     )
 
     def show(place: int) -> None:
-        time, unit = float(instants[columns[place]]), unit_for(end, "s")
+        time = float(instants[columns[place]])
+        unit = unit_for(end, "s")
         caption.text = f"{escape(frame.run.sentence)} At {unit(time)} of {unit(end)}."
         for view in copies:
-            view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
+            view.update(
+                frame, replace(selection, phase=time / end if end else 0.0), ghost
+            )
 
     slider.js_on_change("value", _replay(page, len(columns), show))
     # The page begins with the one that is looked at.
@@ -160,8 +183,11 @@ def _copies(views: Sequence[View]) -> list[View]:
     for view in copies:
         made = view.figure
         made.output_backend = "svg"
-        made.sizing_mode, made.height = "stretch_width", HEIGHTS.get(view.name, HEIGHT)
-        made.tools = [tool for tool in made.tools if not isinstance(tool, PointDrawTool)]
+        made.sizing_mode = "stretch_width"
+        made.height = HEIGHTS.get(view.name, HEIGHT)
+        made.tools = [
+            tool for tool in made.tools if not isinstance(tool, PointDrawTool)
+        ]
         for tool in made.select({"type": SaveTool}):
             tool.filename = view.name
     return copies
@@ -179,7 +205,9 @@ def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS
         for (model, name), values in changes.items():
             value = getattr(model, name)
             values.append(dict(value) if name == "data" else value)
-    changes = {key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1}
+    changes = {
+        key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1
+    }
     models, names = ([key[i] for key in changes] for i in (0, 1))
     moved = {"models": models, "names": names, "values": list(changes.values())}
     return CustomJS(args=moved, code=SHOW)
@@ -201,4 +229,7 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
         slug = title.lower().replace(" ", "-").replace("/", "-")
         files[f"{title} (.csv)"] = f"-{slug}.csv", make
     name = f"slipfront-{frame.run.settings.scene}"
-    return [download(label, name + end, make, **LOOK) for label, (end, make) in files.items()]
+    return [
+        download(label, name + end, make, **LOOK)
+        for label, (end, make) in files.items()
+    ]

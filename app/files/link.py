@@ -24,12 +24,13 @@ SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """What an address has of a page's state beside settings."""
 DEFAULTS = {name: PageState.param[name].default for name in SHARED}
 LONGEST = 1500
-"""Characters of a value in an address; mail, chat and proxies cut what is much longer."""
+"""Characters of a value in an address; mail, chat and proxies cut what is much
+longer."""
 
 Place = dict[str, Any]
-"""What an address says, by the names of `PageState`: `settings` in any case; the room is "class" in
-the address. Beside that the `instant` as a share of the interval, and the `iteration` at which the
-run waits."""
+"""What an address says, by the names of `PageState`: `settings` in any case; the room
+is "class" in the address. Beside that the `instant` as a share of the interval, and the
+`iteration` at which the run waits."""
 _CHECKED: dict[str, Any] = {
     "instant": SettingGroup("").quantity(0.0, (0.0, 1.0), (0.0, 1.0), ""),
     "iteration": SettingGroup("").count(0, (0, 100_000), (0, 100_000), ""),
@@ -41,15 +42,20 @@ _CHECKED: dict[str, Any] = {
 class Link:
     """Keeps the address of a page, and brings the page to an address that one goes back to.
 
-    Each change is an entry of the browser's history, so that Back undoes it; but for one that is
-    dragged, and instants and iterations. `query` is the address from the question mark on.
+    Each change is an entry of the browser's history, so that Back undoes it; but for
+    one that is dragged, and instants and iterations. `query` is the address from the
+    question mark on.
     """
 
     def __init__(self, state: PageState, browser: Browser) -> None:
-        self._state, self._browser, self._location = state, browser, pn.state.location
+        self._state = state
+        self._browser = browser
+        self._location = pn.state.location
         self.query = query_of(place_of(state))
         browser.on_change("search", lambda name, old, new: new and self.go(new))
-        state.param.watch(lambda *events: self._write(), ["settings", "is_dragged", *SHARED])
+        state.param.watch(
+            lambda *events: self._write(), ["settings", "is_dragged", *SHARED]
+        )
 
     def _write(self) -> None:
         """Have the address say what is shown."""
@@ -60,7 +66,10 @@ class Link:
         if self._location is not None:
             # After going back the location has not heard where the browser is.
             is_same = self._location.search == query
-            self._location.search = f"{query}&" if is_same else query
+            if is_same:
+                self._location.search = f"{query}&"
+            else:
+                self._location.search = query
 
     def copy(self) -> str:
         """Have the browser copy the whole link; what is to be said of it."""
@@ -96,7 +105,8 @@ def place_of(state: PageState) -> Place:
 
 def link_of(state: PageState) -> tuple[str, str]:
     """The whole link to what is shown, instant and iteration too, and what it had to leave out."""
-    frame, is_held = state.frame, not state.running or state.frame is not state.newest
+    frame = state.frame
+    is_held = not state.running or state.frame is not state.newest
     is_waiting = frame is not None and not frame.is_answer and is_held
     place = place_of(state) | {
         # Who leads a class has its key there, too.
@@ -104,10 +114,16 @@ def link_of(state: PageState) -> tuple[str, str]:
         "instant": round(state.selection.phase, 4),
         "iteration": frame.iteration if is_waiting else 0,
     }
-    root = pn.state.location.href.partition("?")[0] if pn.state.location is not None else ""
+    if pn.state.location is not None:
+        root = pn.state.location.href.partition("?")[0]
+    else:
+        root = ""
     long = too_long(state.settings)
     titles = ", ".join(title_of(state.settings.definitions()[name]) for name in long)
-    message = f"Too long for a link, so that a saved file has it alone: {titles}." if long else ""
+    if long:
+        message = f"Too long for a link, so that a saved file has it alone: {titles}."
+    else:
+        message = ""
     return root + query_of(place), message
 
 
@@ -115,11 +131,14 @@ def query_of(place: Place) -> str:
     """The address that says what differs from the defaults, or from those of a lesson or a case."""
     if place.get("room"):
         return f"?class={quote(place['room'])}"
-    settings, lesson = place["settings"], LESSONS.get(place.get("lesson", ""))
-    base, pairs = default_settings(settings.scene), {"scene": settings.scene}
+    settings = place["settings"]
+    lesson = LESSONS.get(place.get("lesson", ""))
+    base = default_settings(settings.scene)
+    pairs = {"scene": settings.scene}
     for kind, known in KNOWN.items():
         if (name := place.get(kind)) in known:
-            base, pairs = settings_of(known[name]), {kind: name}
+            base = settings_of(known[name])
+            pairs = {kind: name}
     long = too_long(settings)
     pairs |= {
         name: json.dumps(value, separators=(",", ":"))
@@ -129,11 +148,19 @@ def query_of(place: Place) -> str:
     if long:
         pairs["file"] = ",".join(long)
     first = DEFAULTS | {"plots": plots_of(place.get("case", "")), "iteration": 0}
-    first["instant"] = lesson.instant if lesson else Selection().phase
+    if lesson:
+        first["instant"] = lesson.instant
+    else:
+        first["instant"] = Selection().phase
     for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view"):
         if place.get(name, first[name]) != first[name]:
-            pairs[name] = ",".join(place[name]) if name == "plots" else str(place[name])
-    return "?" + "&".join(f"{name}={quote(text, safe=',:[]')}" for name, text in pairs.items())
+            if name == "plots":
+                pairs[name] = ",".join(place[name])
+            else:
+                pairs[name] = str(place[name])
+    return "?" + "&".join(
+        f"{name}={quote(text, safe=',:[]')}" for name, text in pairs.items()
+    )
 
 
 def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
@@ -145,7 +172,10 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     # Panel begins a page in the theme.
     pairs.pop("theme", "")
     refused: list[str] = []
-    place: Place = {"room": pairs.pop("class", ""), "question": pairs.pop("question", "")}
+    place: Place = {
+        "room": pairs.pop("class", ""),
+        "question": pairs.pop("question", ""),
+    }
     base, opened = _base(pairs, refused)
     place |= opened
     if "lesson" in opened:
@@ -156,14 +186,22 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     place["plots"] = [name for name in plots if name in KINDS]
     refused += [f"there is no plot {name[:40]}" for name in plots if name not in KINDS]
     for name in [name for name in _CHECKED if name in pairs]:
-        text, definition = pairs.pop(name), _CHECKED[name]
+        text = pairs.pop(name)
+        definition = _CHECKED[name]
         try:
-            value = text if isinstance(definition, param.Selector) else parse(text)
+            if isinstance(definition, param.Selector):
+                value = text
+            else:
+                value = parse(text)
             place[name] = checked_value(definition, name, value)
         except RefusedError as refusal:
             refused.append(str(refusal))
     for name in filter(None, pairs.pop("file", "").split(",")):
-        if present is not None and present.scene == base.scene and name in base.definitions():
+        if (
+            present is not None
+            and present.scene == base.scene
+            and name in base.definitions()
+        ):
             base = base.replace(**{name: getattr(present, name)})
         else:
             refused.append(f"{name[:40]} is too long for it: open its file")
@@ -176,12 +214,15 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
     """Settings from which an address says what differs, and the lesson or case that has them."""
-    scene, names = pairs.pop("scene", ""), {kind: pairs.pop(kind, "") for kind in KNOWN}
+    scene = pairs.pop("scene", "")
+    names = {kind: pairs.pop(kind, "") for kind in KNOWN}
     for kind, name in names.items():
         found = KNOWN[kind].get(name)
         if found is not None:
             if scene not in ("", found.settings.scene):
-                refused.append(f"the {kind} has a scene of its own, {found.settings.scene}")
+                refused.append(
+                    f"the {kind} has a scene of its own, {found.settings.scene}"
+                )
             return settings_of(found), {kind: name}
         if name:
             refused.append(f"there is no {kind} {name[:40]}")
@@ -196,7 +237,10 @@ def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Set
         try:
             return base.replace(**values)
         except RefusedError as refusal:
-            name = refusal.name if refusal.name in values else next(reversed(values))
+            if refusal.name in values:
+                name = refusal.name
+            else:
+                name = next(reversed(values))
             value = values.pop(name)
             is_known = refusal.name in base.definitions()
             message = message_of(refusal, base, name, value)
@@ -205,5 +249,7 @@ def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Set
 
 def too_long(settings: Settings) -> list[str]:
     """Names of the settings whose values are too long for an address."""
-    tables = {n: value for n, value in settings.values().items() if isinstance(value, tuple)}
+    tables = {
+        n: value for n, value in settings.values().items() if isinstance(value, tuple)
+    }
     return [name for name, table in tables.items() if len(json.dumps(table)) > LONGEST]

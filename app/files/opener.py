@@ -53,9 +53,20 @@ def files_panel(state: PageState, width: int) -> pn.Column:
         state.adopt(default_settings(state.settings.scene))
 
     return pn.Column(
-        download("Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look),
+        download(
+            "Save settings (.toml)",
+            "settings.toml",
+            lambda: dump(state.settings),
+            **look,
+        ),
         opener.view,
-        button("All settings to default", reset, icon="restart_alt", variant="outlined", **look),
+        button(
+            "All settings to default",
+            reset,
+            icon="restart_alt",
+            variant="outlined",
+            **look,
+        ),
         margin=0,
     )
 
@@ -63,22 +74,33 @@ def files_panel(state: PageState, width: int) -> pn.Column:
 class TableOpener:
     """A button that opens a file, what was understood of it, and a dialog of its columns.
 
-    In the dialog `use` is what the table is used as, and `heads` are the names and units of its
-    columns. What is chosen holds at once.
+    In the dialog `use` is what the table is used as, and `heads` are the names and
+    units of its columns. What is chosen holds at once.
     """
 
     def __init__(self, state: PageState, label: str, accept: str, width: int) -> None:
-        self._state, self._is_updating = state, False
+        self._state = state
+        self._is_updating = False
         self._table: Table | None = None
         look: dict[str, Any] = {"margin": (4, 0), "size": "small", "width": width}
         outlined = {**look, "variant": "outlined"}
-        self.file = pmui.FileInput(label=label, accept=accept, description=HELP, **outlined)
+        self.file = pmui.FileInput(
+            label=label, accept=accept, description=HELP, **outlined
+        )
         self.message = PlainText(margin=0)
         self.columns_button = button(
-            "Columns and units", self.show, icon="view_column", visible=False, **outlined
+            "Columns and units",
+            self.show,
+            icon="view_column",
+            visible=False,
+            **outlined,
         )
         self.remove_button = button("", self._forget, icon="close", **outlined)
-        wide: dict[str, Any] = {"size": "small", "margin": (6, 6), "sizing_mode": "stretch_width"}
+        wide: dict[str, Any] = {
+            "size": "small",
+            "margin": (6, 6),
+            "sizing_mode": "stretch_width",
+        }
         self.use = pmui.Select(label="Use it as", **wide)
         self.heads = pmui.TextInput(label="Columns", **wide)
         self._rows = pn.pane.DataFrame(None, index=False, margin=(0, 6), max_height=190)
@@ -90,7 +112,10 @@ class TableOpener:
         )
         buttons = self.file, self.columns_button, self.remove_button
         self.view = pn.Column(
-            pn.FlexBox(*buttons, margin=0, gap="0 8px"), self.message, self.dialog, margin=0
+            pn.FlexBox(*buttons, margin=0, gap="0 8px"),
+            self.message,
+            self.dialog,
+            margin=0,
         )
         self.file.param.watch(lambda event: self._open(), "value")
         for field in (self.use, self.heads):
@@ -116,9 +141,14 @@ class TableOpener:
     def _read(self, source: str, data: bytes) -> tuple[Content, str]:
         state = self._state
         if source.lower().endswith(".toml"):
-            settings, changed = read_settings(data.decode("utf-8-sig", "replace"), source)
+            settings, changed = read_settings(
+                data.decode("utf-8-sig", "replace"), source
+            )
             definitions = settings.definitions()
-            told = [f"{title_of(definitions[name])}: {text}." for name, text in changed.items()]
+            told = [
+                f"{title_of(definitions[name])}: {text}."
+                for name, text in changed.items()
+            ]
             message = f"{source}: settings of the scene {settings.scene}."
             return settings, " ".join([message, *told])
         self._table = table = table_of(data, source)
@@ -147,7 +177,9 @@ class TableOpener:
             self._take(self._read_as)
 
     def _read_as(self) -> tuple[Content, str]:
-        return read_as(self.use.value, renamed(self._table, self.heads.value), self._state)
+        return read_as(
+            self.use.value, renamed(self._table, self.heads.value), self._state
+        )
 
     def _take(self, read: Callable[[], tuple[Content, str]]) -> Content | None:
         """What is read, which the page shows or runs; None where it is refused, as is said."""
@@ -170,12 +202,17 @@ class TableOpener:
     def _on_brought(self) -> None:
         brought = self._state.brought
         self.remove_button.visible = brought is not None
-        self.remove_button.label = f"Remove {brought.source}" if brought is not None else "Remove"
+        if brought is not None:
+            self.remove_button.label = f"Remove {brought.source}"
+        else:
+            self.remove_button.label = "Remove"
 
 
 def names_of(table: Table) -> list[str]:
     """Names and units of the columns; of those without a name their numbers."""
     return [
-        f"{column.name or place} [{column.unit}]" if column.unit else column.name or str(place)
+        f"{column.name or place} [{column.unit}]"
+        if column.unit
+        else column.name or str(place)
         for place, column in enumerate(table.columns, start=1)
     ]

@@ -27,13 +27,16 @@ MOST_DRAGGED = 200
 class CurveDialog:
     """A dialog that has the points of one path; what is done there holds at once.
 
-    They are in their units in `source`, where they are dragged, and as a table in `text`.
+    They are in their units in `source`, where they are dragged, and as a table in
+    `text`.
     """
 
     def __init__(self, name: str, state: PageState) -> None:
-        self._name, self._state = name, state
+        self._name = name
+        self._state = state
         definition = state.settings.definitions()[name]
-        self._columns, is_path = definition.columns, definition.is_path
+        self._columns = definition.columns
+        is_path = definition.is_path
         self._is_updating = False
         self.source = ColumnDataSource({"x": [], "y": []})
         self.source.on_change("data", lambda attribute, old, new: self._on_drag())
@@ -46,11 +49,18 @@ class CurveDialog:
         )
         self.text.param.watch(lambda event: self._take(event.new, "the text"), "value")
         self._file = pmui.FileInput(label="Open a table (.csv, .xlsx)", accept=TABLES)
-        self._file.param.watch(lambda event: self._take(event.new, self._file.filename), "value")
+        self._file.param.watch(
+            lambda event: self._take(event.new, self._file.filename), "value"
+        )
         self._message = PlainText(margin=(0, 5))
-        self._figure = self._plot() if is_path else None
+        if is_path:
+            self._figure = self._plot()
+        else:
+            self._figure = None
         plot = (
-            pn.pane.Bokeh(self._figure, sizing_mode="stretch_width", height=220, margin=5),
+            pn.pane.Bokeh(
+                self._figure, sizing_mode="stretch_width", height=220, margin=5
+            ),
             "Drag a point; tap to add one, tap it and press Backspace to take it away.",
         )
         self.view = dialog(
@@ -66,7 +76,10 @@ class CurveDialog:
         """Show the points that hold, those of the preset where there are none yet."""
         settings = self._state.settings
         value = getattr(settings, self._name)
-        points = settings.points(self._name) if isinstance(value, str) else value
+        if isinstance(value, str):
+            points = settings.points(self._name)
+        else:
+            points = value
         units = settings.curve_units(self._name)
         self._units = units_of_points(settings.scene, self._name, units)
         table = pd.DataFrame(np.array(points) / [unit.factor for unit in self._units])
@@ -87,7 +100,9 @@ class CurveDialog:
         self._is_updating = False
 
     def _plot(self) -> figure:
-        made = figure(height=220, tools="", toolbar_location=None, x_range=(0, 1), y_range=(0, 1))
+        made = figure(
+            height=220, tools="", toolbar_location=None, x_range=(0, 1), y_range=(0, 1)
+        )
         made.line("x", "y", source=self.source, color=LATIN, width=2)
         self._points = made.scatter("x", "y", source=self.source, color=LATIN, size=11)
         self._tool = PointDrawTool(renderers=[self._points])
@@ -98,14 +113,20 @@ class CurveDialog:
         """Leave room around the points, and title the axes."""
         titles = [u.titled(c) for c, u in zip(self._columns, self._units, strict=True)]
         self._figure.xaxis.axis_label, self._figure.yaxis.axis_label = titles
-        for axis, values in ((self._figure.x_range, x), (self._figure.y_range, [0.0, *y])):
-            low, high = float(np.min(values)), float(np.max(values))
+        for axis, values in (
+            (self._figure.x_range, x),
+            (self._figure.y_range, [0.0, *y]),
+        ):
+            low = float(np.min(values))
+            high = float(np.max(values))
             room = (high - low or 1.0) * (0.05 if axis is self._figure.x_range else 0.2)
             axis.update(start=low - room, end=high + room)
 
     def _table(self, points: pd.DataFrame) -> str:
         columns = zip(self._columns, self._units, strict=True)
-        heads = [f"{title} [{unit.name}]" if unit.name else title for title, unit in columns]
+        heads = [
+            f"{title} [{unit.name}]" if unit.name else title for title, unit in columns
+        ]
         return points.to_csv(header=heads, index=False, float_format="%.6g")
 
     def _on_drag(self) -> None:

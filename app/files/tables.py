@@ -23,7 +23,9 @@ Content = Settings | OtherResults | MeasuredLoop
 def use_on(state: PageState, table: Table) -> str:
     """What a table is used as by its head: a loop, results, or the path of that name."""
     use = use_of(table, axes_on(state))
-    return path_of(table, state.settings) if use is Use.PATH else str(use)
+    if use is Use.PATH:
+        return path_of(table, state.settings)
+    return str(use)
 
 
 def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
@@ -55,10 +57,15 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     points, message = curve_of(table, definition, name, settings.curve_units(name))
     changed = settings.replace(**{name: points})
     message = f"{title_of(definition)}: {message}."
-    message += "".join(f" {doubt}." for doubt in path_doubts(table, settings, name, points))
+    message += "".join(
+        f" {doubt}." for doubt in path_doubts(table, settings, name, points)
+    )
     if definition.abscissa == "time":
         ends = max(ends_of_tables(changed).values(), default=0.0)
-        changed = changed.replace(duration=ends) if ends > 0.0 else changed
+        if ends > 0.0:
+            changed = changed.replace(duration=ends)
+        else:
+            changed = changed
         message += f" The run lasts {changed.duration:g} s."
     return changed, message
 
@@ -73,7 +80,9 @@ def renamed(table: Table, heads: str) -> Table:
 
     One name more is that of a last column, the number of each row from 0.
     """
-    columns = [column_of(place, 1, head.strip()) for place, head in enumerate(heads.split(","))]
+    columns = [
+        column_of(place, 1, head.strip()) for place, head in enumerate(heads.split(","))
+    ]
     width = len(table.columns)
     if len(columns) not in (width, width + 1):
         raise table.refuse(f"it has {width} columns: write as many names, or one more")
@@ -90,19 +99,26 @@ def path_of(table: Table, settings: Settings) -> str:
     """The path over time that the head of a table names, or the only one, or that of the load."""
     paths = paths_of(settings)
     named = paths.keys() & {column.key for column in table.columns}
-    loads = [name for name, definition in paths.items() if about(definition).group == "Load"]
+    loads = [
+        name for name, definition in paths.items() if about(definition).group == "Load"
+    ]
     chosen = list(named or (paths if len(paths) == 1 else loads))
     if len(chosen) == 1:
         return chosen[0]
     if not paths:
-        raise table.refuse("no load path applies: have a side displaced or loaded first")
+        raise table.refuse(
+            "no load path applies: have a side displaced or loaded first"
+        )
     first = next(iter(paths))
-    raise table.refuse(f"name one of {', '.join(paths)} in its first line, as in time,{first}")
+    raise table.refuse(
+        f"name one of {', '.join(paths)} in its first line, as in time,{first}"
+    )
 
 
 def axes_on(state: PageState) -> Axes:
     """Titles and units of the loop of the page's run."""
-    frame, settings = state.frame, state.settings
+    frame = state.frame
+    settings = state.settings
     if frame is not None and frame.run.settings.scene == settings.scene:
         return frame.run.across, frame.run.up
     return settings.structure().axes

@@ -51,20 +51,33 @@ def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
 
 def _known_beside_found(case: Case, state: PageState) -> str:
     """What is known beside what the run finds (Markdown)."""
-    frame, quantity, is_known = state.frame, case.quantity, _is_known(case, state.settings)
-    found = math.nan if frame is None else frame.readings.get(quantity.name, math.nan)
-    run, off = PENDING, ""
+    frame = state.frame
+    quantity = case.quantity
+    is_known = _is_known(case, state.settings)
+    if frame is None:
+        found = math.nan
+    else:
+        found = frame.readings.get(quantity.name, math.nan)
+    run = PENDING
+    off = ""
     if math.isfinite(found):
         run = _written(found, quantity)
-        off = f" ({100.0 * abs(found / case.known - 1.0):.1f} % off)" if is_known else ""
-    known = "known" if is_known else "known before the change"
+        if is_known:
+            off = f" ({100.0 * abs(found / case.known - 1.0):.1f} % off)"
+        else:
+            off = ""
+    if is_known:
+        known = "known"
+    else:
+        known = "known before the change"
     words = f"{known} **{_written(case.known, quantity)}**, this run **{run}**{off}"
     return f"{quantity.title}: {words}"
 
 
 def _is_known(case: Case, settings: Settings) -> bool:
     """Whether what is known is of these settings, however they are solved."""
-    definitions, mesh = settings.definitions(), {*settings.MESH, "instants"}
+    definitions = settings.definitions()
+    mesh = {*settings.MESH, "instants"}
     return all(
         name in mesh or about(definitions[name]).group in ANSWERS_STAY
         for name in settings.changed(settings_of(case))

@@ -20,7 +20,9 @@ from solver.study.trade_case import Case, all_cases
 _READ = map(lesson_from_file, Path(__file__).parent.glob("*.toml"))
 LESSONS = {
     lesson.name: lesson
-    for lesson in sorted(_READ, key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order))
+    for lesson in sorted(
+        _READ, key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order)
+    )
 }
 """By name, in order, those of one subject together."""
 CASES = {case.name: case for case in all_cases()}
@@ -38,26 +40,34 @@ KINDS = {kind.name: kind for card in CARDS for kind in card}
 def settings_of(lesson: Lesson | Case) -> Settings:
     """Settings with which a page begins a lesson or a case.
 
-    One sees the search, unless its file has another: lessons with the paper's method show every
-    iterate as it is.
+    One sees the search, unless its file has another: lessons with the paper's method
+    show every iterate as it is.
     """
     settings = lesson.settings
-    return settings.replace(**SEARCH) if settings.finish == "at-once" else settings
+    if settings.finish == "at-once":
+        return settings.replace(**SEARCH)
+    return settings
 
 
 def plots_of(case: str) -> list[str]:
     """Names of the plots that come to the front with a case; none without one."""
-    return list(CASES[case].views) if case in CASES else []
+    if case in CASES:
+        return list(CASES[case].views)
+    return []
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
     """The plots that stand beside a lesson; before the choice only those that leave it open."""
-    return tuple(KINDS[name] for name in (lesson.views if is_answered else lesson.beside))
+    return tuple(
+        KINDS[name] for name in (lesson.views if is_answered else lesson.beside)
+    )
 
 
 def readings_of(lesson: Lesson) -> list[str]:
     """Names of the quantities in what a lesson says."""
-    return list(dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation)))))
+    return list(
+        dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation))))
+    )
 
 
 def parts_of(paragraph: str) -> list[str]:
@@ -82,14 +92,19 @@ def _value(frame: Frame | None, name: str) -> str:
     """A quantity of a frame's run with its unit, as far as the run has come."""
     if frame is None or name not in frame.readings:
         return PENDING
-    value, quantity = frame.readings[name], reading(name)
+    value = frame.readings[name]
+    quantity = reading(name)
     if not math.isfinite(value) and frame.status is None:
         return PENDING
     if math.isnan(value):
         return "–"
     if math.isinf(value):
         # All that is counted and may never come are iterations.
-        return "not reached" if quantity.unit else f"more than {frame.iteration}"
+        if quantity.unit:
+            return "not reached"
+        return f"more than {frame.iteration}"
     if quantity.is_share:
         return percent(value)
-    return unit_for(abs(value), quantity.unit)(value) if quantity.unit else number(value)
+    if quantity.unit:
+        return unit_for(abs(value), quantity.unit)(value)
+    return number(value)

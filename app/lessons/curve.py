@@ -16,8 +16,8 @@ from solver.study.lessons import Lesson
 class DrawnCurve:
     """A figure over a setting on which the expected curve is drawn, and then the measured one.
 
-    `drawn` and `measured` are the sources of what was drawn by hand, and of what the checkpoints
-    of the `lesson` measure.
+    `drawn` and `measured` are the sources of what was drawn by hand, and of what the
+    checkpoints of the `lesson` measure.
     """
 
     def __init__(self, lesson: Lesson) -> None:

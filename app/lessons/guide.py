@@ -42,9 +42,10 @@ text_button = partial(button, margin=(3, 8, 3, 0))
 class Guide:
     """The lesson or the case that a page is in, if it is in one.
 
-    `view` stands beside the plots, `dialogs` are the lists of all lessons and of all cases;
-    `changed` is called when another one is shown. The transport plays the picture while a question
-    is open; `open_counts` has a class see how many predicted what.
+    `view` stands beside the plots, `dialogs` are the lists of all lessons and of all
+    cases; `changed` is called when another one is shown. The transport plays the
+    picture while a question is open; `open_counts` has a class see how many predicted
+    what.
     """
 
     def __init__(
@@ -54,8 +55,10 @@ class Guide:
         changed: Callable[[], None],
         open_counts: Callable[[], None],
     ) -> None:
-        self._state, self._transport = state, transport
-        self._changed, self._open_counts = changed, open_counts
+        self._state = state
+        self._transport = transport
+        self._changed = changed
+        self._open_counts = open_counts
         self._texts: list[tuple[pn.pane.Markdown, Callable[[], str]]] = []
         self._controls: list[SettingControl] = []
         self._curve: DrawnCurve | None = None
@@ -66,7 +69,9 @@ class Guide:
             "lesson": dialog("Lessons", width_option="md"),
             "case": dialog("Cases of the trade", width_option="md"),
         }
-        state.param.watch(lambda *events: self.show(), ["lesson", "case", "prediction", "poll"])
+        state.param.watch(
+            lambda *events: self.show(), ["lesson", "case", "prediction", "poll"]
+        )
         state.param.watch(lambda event: self._follow_settings(), "settings")
         state.param.watch(lambda event: self.update(), "frame")
 
@@ -80,7 +85,8 @@ class Guide:
 
     def offer(self, kind: str) -> None:
         """Show the list of all lessons, or of all cases."""
-        listed, begin = self.dialogs[kind], partial(self.open, kind)
+        listed = self.dialogs[kind]
+        begin = partial(self.open, kind)
         if not listed.objects:
             listed[:] = [gallery(begin) if kind == "case" else _titles(begin)]
         listed.open = True
@@ -94,7 +100,9 @@ class Guide:
     def kinds(self) -> tuple[type[View], ...] | None:
         """The plots that stand beside it; None without a lesson."""
         lesson = LESSONS.get(self._state.lesson)
-        return kinds_of(lesson, is_answered=not self._state.is_asked) if lesson else None
+        if lesson:
+            return kinds_of(lesson, is_answered=not self._state.is_asked)
+        return None
 
     def predict(self, choice: int) -> None:
         """Take a prediction, which alone, or of who leads, goes on to the answer."""
@@ -106,23 +114,32 @@ class Guide:
 
     def show(self) -> None:
         """Show what is open: of a lesson the question or the answer, and what a class predicts."""
-        state, lesson = self._state, LESSONS.get(self._state.lesson)
+        state = self._state
+        lesson = LESSONS.get(self._state.lesson)
         shown = state.lesson, state.case, state.is_asked
         if shown != self._shown:
             self._shown = shown
             self._build(lesson, CASES.get(state.case))
         if lesson is not None:
-            self._choices[:] = [*self._choices_of(lesson, state.poll), *self._of_class(state.poll)]
+            self._choices[:] = [
+                *self._choices_of(lesson, state.poll),
+                *self._of_class(state.poll),
+            ]
 
     def _build(self, lesson: Lesson | None, case: Case | None) -> None:
-        state, parts, readings = self._state, list[Any](), list[str]()
+        state = self._state
+        parts = list[Any]()
+        readings = list[str]()
         self._transport.stop()
-        self._texts, self._controls = [], []
+        self._texts = []
+        self._controls = []
         if lesson is not None:
             self._prepare_curve(lesson)
-            parts, readings = self._parts(lesson), readings_of(lesson)
+            parts = self._parts(lesson)
+            readings = readings_of(lesson)
         elif case is not None:
-            parts, readings = self._parts_of_case(case), [case.quantity.name]
+            parts = self._parts_of_case(case)
+            readings = [case.quantity.name]
         state.readings = readings
         self.view.param.update(objects=parts, visible=bool(parts))
         self._changed()
@@ -130,16 +147,23 @@ class Guide:
             self._look(lesson)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
-        is_asked, curve = self._state.is_asked, self._curve
+        is_asked = self._state.is_asked
+        curve = self._curve
         if is_asked or curve is None or curve.lesson is not lesson:
-            curve = self._curve = DrawnCurve(lesson) if lesson.draw else None
+            if lesson.draw:
+                curve = self._curve = DrawnCurve(lesson)
+            else:
+                curve = self._curve = None
         if curve is not None and not is_asked:
-            # A figure's own models change under the document's lock, which a click does not have.
+            # A figure's own models change under the document's lock, which a click does
+            # not have.
             pn.state.execute(curve.reveal, schedule=True)
 
     def _parts_of_case(self, case: Case) -> list[Any]:
         buttons = pn.FlexBox(
-            text_button("As it was", partial(self.open, "case", case.name), variant="outlined"),
+            text_button(
+                "As it was", partial(self.open, "case", case.name), variant="outlined"
+            ),
             text_button("All settings", self._end),
             margin=(8, 0),
         )
@@ -158,7 +182,10 @@ class Guide:
 
     def _parts(self, lesson: Lesson) -> list[Any]:
         """The question, and after the choice the answer with what explains it."""
-        figures = [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
+        if self._curve:
+            figures = [pn.pane.Bokeh(self._curve.figure, margin=0)]
+        else:
+            figures = []
         question = [*self._paragraphs((f"**{lesson.question}**",)), self._choices]
         explore = text_button("Explore freely", self._end, variant="text")
         if self._state.is_asked:
@@ -167,14 +194,28 @@ class Guide:
         explanation = self._paragraphs(lesson.explanation)
         buttons = pn.FlexBox(*self._onward(lesson), explore, margin=(8, 0))
         head = self._paragraphs((f"### {lesson.title}",))
-        return [*head, *question, self._verdict(lesson), *figures, *explanation, buttons]
+        return [
+            *head,
+            *question,
+            self._verdict(lesson),
+            *figures,
+            *explanation,
+            buttons,
+        ]
 
     def _verdict(self, lesson: Lesson) -> pmui.Alert:
         """The right choice and why, in the colour of whether it was predicted."""
-        prediction, choice = self._state.prediction, lesson.choices[lesson.right]
-        is_right, is_open = prediction == lesson.right, prediction in (None, WITHOUT)
+        prediction = self._state.prediction
+        choice = lesson.choices[lesson.right]
+        is_right = prediction == lesson.right
+        is_open = prediction in (None, WITHOUT)
         text = f"{'Right: ' if is_right else ''}{choice}. {lesson.why}"
-        severity = "info" if is_open else "success" if is_right else "warning"
+        if is_open:
+            severity = "info"
+        elif is_right:
+            severity = "success"
+        else:
+            severity = "warning"
         return pmui.Alert(
             object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"
         )
@@ -183,10 +224,14 @@ class Guide:
         """The way to the next lesson, which a follower waits for, and the handout."""
         make = partial(handout, self._state, lesson, self._curve)
         on_paper = download("Handout", f"{lesson.name}.html", make, size="small")
-        following, poll = dict(pairwise(LESSONS)).get(lesson.name), self._state.poll
+        following = dict(pairwise(LESSONS)).get(lesson.name)
+        poll = self._state.poll
         if following is None or not (poll is None or poll.leads):
             return [on_paper]
-        return [text_button("Next lesson", lambda: self.open("lesson", following)), on_paper]
+        return [
+            text_button("Next lesson", lambda: self.open("lesson", following)),
+            on_paper,
+        ]
 
     def _paragraphs(self, paragraphs: tuple[str, ...]) -> list[Any]:
         """Panes of text, with controls where they are named."""
@@ -213,7 +258,10 @@ class Guide:
 
     def _choices_of(self, lesson: Lesson, poll: Poll | None) -> list[pmui.Button]:
         """Buttons of the choices; with what a class predicts of each once that is open."""
-        counts = poll.counts if poll is not None else ()
+        if poll is not None:
+            counts = poll.counts
+        else:
+            counts = ()
         is_asked = self._state.is_asked
         if not (is_asked or counts):
             # Whoever is right or wrong reads it below.
@@ -223,7 +271,9 @@ class Guide:
                 f"{choice}: {counts[number]}" if counts else choice,
                 lambda number=number: self.predict(number),
                 variant="contained" if number == self._state.prediction else "outlined",
-                color="success" if not is_asked and number == lesson.right else "primary",
+                color="success"
+                if not is_asked and number == lesson.right
+                else "primary",
                 disabled=not is_asked,
                 **looks("choice"),
             )
@@ -235,13 +285,26 @@ class Guide:
         is_asked = self._state.is_asked
         if poll is None:
             show = text_button("Show me", lambda: self.predict(WITHOUT), variant="text")
-            return [show] if is_asked else []
-        waits = " The answer comes with the class." if is_asked and not poll.leads else ""
-        parts = [pn.pane.Markdown(f"{poll.predicted} of {poll.present} have predicted.{waits}")]
+            if is_asked:
+                return [show]
+            return []
+        if is_asked and not poll.leads:
+            waits = " The answer comes with the class."
+        else:
+            waits = ""
+        parts = [
+            pn.pane.Markdown(
+                f"{poll.predicted} of {poll.present} have predicted.{waits}"
+            )
+        ]
         if poll.leads and not poll.counts:
-            parts.append(text_button("Open the counts", self._open_counts, variant="outlined"))
+            parts.append(
+                text_button("Open the counts", self._open_counts, variant="outlined")
+            )
         if poll.leads and is_asked:
-            parts.append(text_button("Go on to the answer", lambda: self.predict(WITHOUT)))
+            parts.append(
+                text_button("Go on to the answer", lambda: self.predict(WITHOUT))
+            )
         return parts
 
     def _follow_settings(self) -> None:
@@ -264,7 +327,9 @@ def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
     for subject in SUBJECTS:
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
         buttons = [
-            text_button(lesson.title, partial(begin, name), **looks("choice"), variant="text")
+            text_button(
+                lesson.title, partial(begin, name), **looks("choice"), variant="text"
+            )
             for name, lesson in LESSONS.items()
             if lesson.subject == subject
         ]

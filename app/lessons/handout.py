@@ -21,7 +21,8 @@ from app.views.scene import Scene
 from app.views.view import View
 from solver.study.lessons import Lesson
 
-WIDTH, HEIGHT = 660, 230
+WIDTH = 660
+HEIGHT = 230
 """Pixels of the picture; two plots stand side by side in its width."""
 PAGE = Path(__file__).with_suffix(".html").read_text(encoding="utf-8")
 
@@ -33,13 +34,18 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
     """
     address = address_for_others()
     picture = _drawn(Scene(state), state, lesson, WIDTH, HEIGHT)
-    kinds = [kind for kind in kinds_of(lesson, is_answered=True) if kind.applies(state.settings)]
+    kinds = [
+        kind
+        for kind in kinds_of(lesson, is_answered=True)
+        if kind.applies(state.settings)
+    ]
     figures = {"picture": picture}
     for kind in kinds:
         figures[kind.name] = _drawn(kind(state), state, lesson, WIDTH // 2 - 10, HEIGHT)
     plots = [kind.name for kind in kinds]
     if curve is not None:
-        blank, measured = DrawnCurve(lesson), DrawnCurve(lesson)
+        blank = DrawnCurve(lesson)
+        measured = DrawnCurve(lesson)
         measured.drawn.data = dict(curve.drawn.data)
         measured.reveal()
         figures |= {"blank": blank.figure, "curve": measured.figure}
@@ -58,7 +64,9 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
             "choices": lesson.choices,
             "right": lesson.choices[lesson.right],
             "why": lesson.why,
-            "explanation": _html(tuple(map(without_controls, lesson.explanation)), state),
+            "explanation": _html(
+                tuple(map(without_controls, lesson.explanation)), state
+            ),
             "plots": [figures[name].name for name in plots],
             "has_curve": curve is not None,
             "address": f"{address}?lesson={lesson.name}" if address else "",
@@ -67,12 +75,16 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
     )
 
 
-def _drawn(view: View, state: PageState, lesson: Lesson, width: int, height: int) -> Any:
+def _drawn(
+    view: View, state: PageState, lesson: Lesson, width: int, height: int
+) -> Any:
     """A figure of its own, for paper."""
     figure = view.figure
     figure.update(sizing_mode=None, width=width, height=height, toolbar_location=None)
     if state.frame is not None:
-        selection = replace(state.selection, phase=lesson.instant, interface=lesson.interface)
+        selection = replace(
+            state.selection, phase=lesson.instant, interface=lesson.interface
+        )
         view.update(state.frame, selection, None)
     return figure
 

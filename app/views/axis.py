@@ -28,10 +28,14 @@ class Axis:
     """
 
     def __init__(self, made: figure, side: str, title: str, unit: str = "") -> None:
-        self._made, self._side, self._range = made, side, getattr(made, f"{side}_range")
+        self._made = made
+        self._side = side
+        self._range = getattr(made, f"{side}_range")
         self._is_log = isinstance(getattr(made, f"{side}_scale"), LogScale)
-        self._title, self._si = title, unit
-        self._unit, self._key = Unit(""), None
+        self._title = title
+        self._si = unit
+        self._unit = Unit("")
+        self._key = None
         self._label()
 
     def __call__(self, values: ArrayLike) -> Floats:
@@ -45,26 +49,36 @@ class Axis:
     def rename(self, title: str, unit: str) -> None:
         """Show another quantity."""
         if (title, unit) != (self._title, self._si):
-            self._title, self._si, self._key = title, unit, None
+            self._title = title
+            self._si = unit
+            self._key = None
 
     def hold(self, key: object, *curves: ArrayLike, margin: float = 0.0) -> None:
         """Show all values of curves in SI, and all that was shown with the same key.
 
-        With another key, as of another run, it chooses the unit anew. The margin is a share of the
-        distance, and is left free on either side; a logarithmic axis shows whole decades.
+        With another key, as of another run, it chooses the unit anew. The margin is a
+        share of the distance, and is left free on either side; a logarithmic axis shows
+        whole decades.
         """
         low, high = extent(curves)
         if key != self._key:
-            self._key, self._held = key, (low, high)
+            self._key = key
+            self._held = (low, high)
             self._unit = unit_for(max(abs(low), abs(high)), self._si)
             self._label()
         low, high = self._held = min(self._held[0], low), max(self._held[1], high)
         if self._is_log:
-            low, high = np.log10(max(low, FLOOR)), np.log10(high)
+            low = np.log10(max(low, FLOOR))
+            high = np.log10(high)
             self.span(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
         else:
-            room = margin * (high - low) if high > low else self._unit.factor
-            self.span((low - room) / self._unit.factor, (high + room) / self._unit.factor)
+            if high > low:
+                room = margin * (high - low)
+            else:
+                room = self._unit.factor
+            self.span(
+                (low - room) / self._unit.factor, (high + room) / self._unit.factor
+            )
 
     def span(self, low: float, high: float) -> None:
         """Show what lies between two values on the axis; zooming stays until these change."""
@@ -95,11 +109,16 @@ def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
     """Smallest and largest value of all, as far as they are finite; zeros where there is none."""
     parts = [part for curve in curves if (part := np.asarray(curve)).size]
     ends = [(float(part.min()), float(part.max())) for part in parts]
-    lows, highs = zip(*[e for e in ends if all(map(math.isfinite, e))] or [(0.0, 0.0)], strict=True)
+    lows, highs = zip(
+        *[e for e in ends if all(map(math.isfinite, e))] or [(0.0, 0.0)], strict=True
+    )
     return min(lows), max(highs)
 
 
 def rounded_up(size: float, steps: Iterable[float] = (1.0, 2.0, 5.0, 10.0)) -> float:
     """A size rounded up to a step times a power of ten; 1 for none."""
-    power = 10.0 ** math.floor(math.log10(size)) if size > 0.0 else 1.0
+    if size > 0.0:
+        power = 10.0 ** math.floor(math.log10(size))
+    else:
+        power = 1.0
     return next(step * power for step in steps if step * power >= size)

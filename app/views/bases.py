@@ -16,14 +16,17 @@ from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
 from app.worker.geometry import thinned
 from solver.study.quantities.reduction_measures import can_be_clipped
 
-LEAST, FEWEST = 1e-4, 8
+LEAST = 1e-4
+FEWEST = 8
 """Of singular values, the least size and the fewest that the axes show."""
 MODES = [str(number) for number in range(MOST_MODES)]
 LARGEST = 1_000_000
-"""Values of a field up to which all curves take no longer than a second, in which the worker obeys
-no order (measured: 0.9 s for 1001 x 999)."""
-FLOOR, EXACT = 1e-6, 1e-9
-"""Smallest error that is shown, and error up to which clips are exact but for rounding."""
+"""Values of a field up to which all curves take no longer than a second, in which the
+worker obeys no order (measured: 0.9 s for 1001 x 999)."""
+FLOOR = 1e-6
+EXACT = 1e-9
+"""Smallest error that is shown, and error up to which clips are exact but for
+rounding."""
 
 
 class Spectra(ExtraView):
@@ -35,11 +38,15 @@ class Spectra(ExtraView):
     applies = staticmethod(lambda settings: settings.instants > 1)
 
     def _make(self) -> None:
-        made = self.begin(("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0))
+        made = self.begin(
+            ("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0)
+        )
         whole(made.xaxis[0])
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
         color = {"field": "part", "transform": self._colors}
-        lines = self.add("values", "MultiLine", "xs ys", also="part", color=color, width=1.8)
+        lines = self.add(
+            "values", "MultiLine", "xs ys", also="part", color=color, width=1.8
+        )
         hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
         self._bar = color_bar(made, self._colors, ticker=ticker)
@@ -50,7 +57,9 @@ class Spectra(ExtraView):
         modes = np.arange(1.0, MOST_VALUES + 1.0, dtype=np.float32)
         xs = [modes[: len(values)] for values in ys]
         self.fill("values", xs=xs, ys=ys, part=thinned(count, MOST_SPECTRA) + 1.0)
-        self.x.rename("mode; the colour is the substructure" if count > 1 else "mode", "")
+        self.x.rename(
+            "mode; the colour is the substructure" if count > 1 else "mode", ""
+        )
         self.x.hold(frame.run.number, [1, max([FEWEST, *map(len, ys)])])
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)
@@ -75,7 +84,9 @@ class SpaceModes(ModePlot):
     name = "Space modes"
 
     # Those of plane bodies are no curves.
-    applies = staticmethod(lambda given: given.applies("pgd_modes") and given.kind != "plane")
+    applies = staticmethod(
+        lambda given: given.applies("pgd_modes") and given.kind != "plane"
+    )
 
     def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         self.x.rename(f"x ({modes['text']})", "m")
@@ -89,7 +100,9 @@ class TimeFunctions(ModePlot):
 
     name = "Time functions"
 
-    applies = staticmethod(lambda settings: settings.applies("pgd_modes") and settings.instants > 1)
+    applies = staticmethod(
+        lambda settings: settings.applies("pgd_modes") and settings.instants > 1
+    )
 
     def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         run = frame.run
@@ -109,7 +122,9 @@ class ClipErrors(ExtraView):
     needs = frozenset({"clips"})
 
     applies = staticmethod(
-        lambda given: can_be_clipped(given) and 1 < given.instants <= LARGEST / given.n_nodes
+        lambda given: (
+            can_be_clipped(given) and 1 < given.instants <= LARGEST / given.n_nodes
+        )
     )
 
     def _make(self) -> None:
@@ -118,11 +133,15 @@ class ClipErrors(ExtraView):
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),
         )  # fmt: skip
         colors = {"SVD": LATIN, "PGD": DISPLACEMENT, "clips": ERROR}
-        lines = [self.add(name, color=color, width=2.5) for name, color in colors.items()]
+        lines = [
+            self.add(name, color=color, width=2.5) for name, color in colors.items()
+        ]
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         lines.append(self.add("alone", "Scatter", size=11, **ring))
         lines[-1].name = "clips"
-        self.add("table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
+        self.add(
+            "table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5
+        )
         self.legend("SVD", "PGD", "clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
 
@@ -132,10 +151,16 @@ class ClipErrors(ExtraView):
         numbers = np.concatenate([way[0] for way in kept.values()])
         self.x.hold(frame.run.number, np.clip(numbers[numbers > 0], 1.0, 10.0 * table))
         size, missed = (float(part) for part in clips["clips"][:, 0])
-        exactness = "exact" if missed <= EXACT else percent(missed)
+        if missed <= EXACT:
+            exactness = "exact"
+        else:
+            exactness = percent(missed)
         titles = {"clips": f"clips, {clips['branches']} × 2 vectors: {exactness}"}
         for name in ("SVD", "PGD", "clips"):
-            curve = _shown(kept[name]) if name in kept else np.zeros((2, 0))
+            if name in kept:
+                curve = _shown(kept[name])
+            else:
+                curve = np.zeros((2, 0))
             self.draw(name, *curve, titles.get(name, ""))
         self.show("clips", True)
         self.draw("alone", [max(size, 1.0)], [max(missed, 1.6 * FLOOR)])

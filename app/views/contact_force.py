@@ -6,11 +6,21 @@ import numpy as np
 
 from app.frame import Floats, Frame, InterfaceFields, Selection
 from app.views.axis import extent
-from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
+from app.views.colors import (
+    BESIDE,
+    CUT,
+    ERROR,
+    EXACT,
+    GHOST,
+    LATIN,
+    PRESSURE,
+    REFERENCE,
+)
 from app.views.view import View, hover, joined
 from solver.study.comparison import FRICTION, OtherResults
 
-ROOM, MOST = 1.15, 2.0
+ROOM = 1.15
+MOST = 2.0
 """What is seen of forces, over their bound or reference: at least, and at most."""
 
 
@@ -43,27 +53,43 @@ class ContactForce(View):
             friction="LATIN", pressure="pressure", reference="reference", error="error",
             bound="±µp", exact="closed form", ghost="ghost", beside="beside",
         )  # fmt: skip
-        tips = {"x": "@x{0.000}", "LATIN": "@latin{0.000}", "reference": "@reference{0.000}"}
+        tips = {
+            "x": "@x{0.000}",
+            "LATIN": "@latin{0.000}",
+            "reference": "@reference{0.000}",
+        }
         hover(made, lines, tips)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the contact forces along the selected interface."""
-        run, name = frame.run, selection.interface_of(frame.run)
-        fields, interface = frame.contact.get(name), run.interfaces[name]
+        run = frame.run
+        name = selection.interface_of(frame.run)
+        fields = frame.contact.get(name)
+        interface = run.interfaces[name]
         if fields is None:
             return
-        column, reference = run.column(selection.phase), run.reference.get(name)
-        is_plane, has_pressure = run.settings.kind == "plane", fields.pressure is not None
+        column = run.column(selection.phase)
+        reference = run.reference.get(name)
+        is_plane = run.settings.kind == "plane"
+        has_pressure = fields.pressure is not None
         self.y.rename("traction" if is_plane else "force", "Pa" if is_plane else "N/m")
         curves = run.known("friction") + (run.known("pressure") if has_pressure else [])
-        exact = [curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2]
+        exact = [
+            curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2
+        ]
         self._scale(frame, name, fields, [curve.up for curve in exact])
         places = interface.positions
         # The error is nothing where there is no reference.
         for quantity in ("friction", "pressure"):
             both = [getattr(each, quantity) for each in (fields, reference or fields)]
-            latin, known = both if both[0] is not None else np.zeros((2, 0, column + 1))
-            forces = {"latin": self.y(latin[:, column]), "reference": self.y(known[:, column])}
+            if both[0] is not None:
+                latin, known = both
+            else:
+                latin, known = np.zeros((2, 0, column + 1))
+            forces = {
+                "latin": self.y(latin[:, column]),
+                "reference": self.y(known[:, column]),
+            }
             title = quantity if has_pressure else "LATIN"
             self.fill(quantity, title, x=self.x(places[: len(latin)]), **forces)
         self.draw("reference", *_curves(places, reference, column))
@@ -74,7 +100,9 @@ class ContactForce(View):
         bound = bound[:, min(column, bound.shape[1] - 1)]
         self.draw("bound", *joined([(places, bound), (places, -bound)]))
         self.fill("cuts", x=self.x(interface.cuts))
-        self.fill("place", x=self.x([] if selection.place is None else [selection.place]))
+        self.fill(
+            "place", x=self.x([] if selection.place is None else [selection.place])
+        )
         self.draw("exact", *joined([(c.across, c.up[:, column]) for c in exact]))
         past = None
         if ghost is not None:
@@ -85,15 +113,24 @@ class ContactForce(View):
         self.draw("ghost", *_curves(places, past, column), self.ghost_name)
         self._show_beside(frame, float(run.instants[run.column(selection.phase)]))
 
-    def _scale(self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]) -> None:
+    def _scale(
+        self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]
+    ) -> None:
         """Hold all that is known, and of iterates what does not dwarf it."""
-        run, key, bound = frame.run, (*frame.stage[:2], name), frame.run.interfaces[name].bound
+        run = frame.run
+        key = (*frame.stage[:2], name)
+        bound = frame.run.interfaces[name].bound
         known = run.reference.get(name, fields if bound is None else None)
-        bounds = [] if bound is None else [bound, -bound]
+        if bound is None:
+            bounds = []
+        else:
+            bounds = [bound, -bound]
         low, high = extent([*_given(known), *exact, *bounds])
         most = MOST * max(abs(low), abs(high))
         self.x.hold(key, run.interfaces[name].positions)
-        self.y.hold(key, [ROOM * low, ROOM * high], np.clip(extent(_given(fields)), -most, most))
+        self.y.hold(
+            key, [ROOM * low, ROOM * high], np.clip(extent(_given(fields)), -most, most)
+        )
 
     def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at its nearest instant, and name it."""
@@ -114,5 +151,8 @@ def _curves(places: Floats, fields: InterfaceFields | None, column: int) -> Floa
 
 
 def _given(fields: InterfaceFields | None) -> list[Floats]:
-    both = [] if fields is None else [fields.friction, fields.pressure]
+    if fields is None:
+        both = []
+    else:
+        both = [fields.friction, fields.pressure]
     return [field for field in both if field is not None]

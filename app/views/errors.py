@@ -13,9 +13,11 @@ from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFER
 from app.views.view import View, hover
 from app.worker.references import has_reference
 
-LEAST, MOST = 1e-4, 10.0
+LEAST = 1e-4
+MOST = 10.0
 """What is seen at least, which indicators do not widen."""
-LEAST_IN_TIME, MOST_IN_TIME = 1e-2, 2.0
+LEAST_IN_TIME = 1e-2
+MOST_IN_TIME = 2.0
 """What is seen at least over run time."""
 SHORTEST = 20
 CURVES = {
@@ -25,7 +27,8 @@ CURVES = {
     "behaviour": ("k-free", PRESSURE, 1.2, "solid"),
     "indicator": ("η", REFERENCE, 1.2, "solid"),
 }
-"""Title, colour, width and dash of each scalar of the history; the first is drawn on top."""
+"""Title, colour, width and dash of each scalar of the history; the first is drawn on
+top."""
 
 
 class ErrorPlot(View):
@@ -36,7 +39,12 @@ class ErrorPlot(View):
         return newest if newest.run.number == frame.run.number else frame
 
     def _plot(
-        self, name: str, history: Mapping[str, Floats], across: str, up: str, title: str = ""
+        self,
+        name: str,
+        history: Mapping[str, Floats],
+        across: str,
+        up: str,
+        title: str = "",
     ) -> None:
         """Draw a column of a history over another one, as far as both are positive and finite."""
         x, y = (history.get(column, np.zeros(0)) for column in (across, up))
@@ -50,7 +58,9 @@ class Convergence(ErrorPlot):
     name = "Convergence"
 
     def _make(self) -> None:
-        made = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST))
+        made = self.begin(
+            ("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST)
+        )
         whole(made.xaxis[0])
         self.add("shown", "VSpan", "x", color=REFERENCE, line_width=1.5)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
@@ -68,13 +78,20 @@ class Convergence(ErrorPlot):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
         newest = self._newest(frame)
-        run, history = newest.run, _searched(newest)
+        run = newest.run
+        history = _searched(newest)
         for column in CURVES:
             self._plot(column, history, "iteration", column)
         error = self.sources["error_force"].data
         self.draw("newest", error["x"][-1:], error["y"][-1:])
-        past = {} if ghost is None else _searched(ghost)
-        column = "error_force" if len(error["x"]) else "estimated_error"
+        if ghost is None:
+            past = {}
+        else:
+            past = _searched(ghost)
+        if len(error["x"]):
+            column = "error_force"
+        else:
+            column = "estimated_error"
         self._plot("ghost", past, "iteration", column, self.ghost_name)
         ghosts = self.sources["ghost"].data
         self.y.hold(run.number, [LEAST, MOST], error["y"])
@@ -83,7 +100,10 @@ class Convergence(ErrorPlot):
         is_back = frame is not newest and not frame.is_answer
         self.fill("shown", x=[frame.iteration] if is_back else [])
         foot = self.figure.y_range.reset_start
-        answer = [newest.iteration] if newest.is_answer else []
+        if newest.is_answer:
+            answer = [newest.iteration]
+        else:
+            answer = []
         self.draw("answer", answer, [1.6 * foot for _ in answer])
 
 
@@ -109,7 +129,9 @@ class ErrorTime(ErrorPlot):
         ticks = [f * 10.0**e for e in range(-4, 6) for f in (1, 2, 5)]
         made.xaxis.ticker = FixedTicker(ticks=ticks)
         made.xaxis.formatter = PrintfTickFormatter(format="%g")
-        self.add("reference", "VSpan", "x", color=REFERENCE, line_width=2, line_dash="dashed")
+        self.add(
+            "reference", "VSpan", "x", color=REFERENCE, line_width=2, line_dash="dashed"
+        )
         ghost = self.add("ghost", color=GHOST, width=2, dash="dotted")
         now = self.add("now", color=ERROR, width=3)
         self.add("newest", "Scatter", color=ERROR, size=8)
@@ -119,13 +141,23 @@ class ErrorTime(ErrorPlot):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the errors of the search so far."""
         newest = self._newest(frame)
-        run, past = newest.run, ghost.history if ghost is not None else {}
+        run = newest.run
+        if ghost is not None:
+            past = ghost.history
+        else:
+            past = {}
         self._plot("now", newest.history, "seconds", "error_force")
         self._plot("ghost", past, "seconds", "error_force", self.ghost_name)
-        now, ghosts = self.sources["now"].data, self.sources["ghost"].data
+        now = self.sources["now"].data
+        ghosts = self.sources["ghost"].data
         self.draw("newest", now["x"][-1:], now["y"][-1:])
-        seconds = [run.reference_seconds] if np.isfinite(run.reference_seconds) else []
+        if np.isfinite(run.reference_seconds):
+            seconds = [run.reference_seconds]
+        else:
+            seconds = []
         self.fill("reference", x=seconds)
         if len(now["x"]) or len(ghosts["x"]):
             self.x.hold(newest.stage, now["x"], ghosts["x"], seconds)
-            self.y.hold(run.number, now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME])
+            self.y.hold(
+                run.number, now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME]
+            )

@@ -58,21 +58,30 @@ class HysteresisLoop(View):
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the loop of the iterate, and the instant on it."""
-        run, nothing = frame.run, np.zeros((2, 0))
+        run = frame.run
+        nothing = np.zeros((2, 0))
         self.x.rename(*run.across)
         self.y.rename(*run.up)
         exact = next(((curve.across, curve.up) for curve in run.known("loop")), nothing)
-        reference = nothing if run.reference_loop is None else run.reference_loop
+        if run.reference_loop is None:
+            reference = nothing
+        else:
+            reference = run.reference_loop
         brought = (frame.extras.get("beside") or {}).get("brought")
         beside = _beside(brought, frame)
         for axis, row in ((self.x, 0), (self.y, 1)):
             curves = frame.loop[row], exact[row], reference[row], beside[row]
             axis.hold(frame.stage, *curves, [0.0], margin=0.08)
-        is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
+        is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (
+            run.across,
+            run.up,
+        )
         self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)
         self.draw("exact", *exact)
-        self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
+        self.draw(
+            "ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name
+        )
         self.draw("beside", *beside, brought.source if brought else "")
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
 
@@ -85,7 +94,9 @@ def _beside(
         return brought.displacement, brought.force
     if brought is None or brought.quantity != comparison.DISPLACEMENT:
         return np.zeros(0), np.zeros(0)
-    x, t, instants = brought.positions, brought.times, frame.run.instants
+    x = brought.positions
+    t = brought.times
+    instants = frame.run.instants
     end = x[np.abs(x - frame.run.geometry.description.length).argmin()]
     rows = np.flatnonzero((x == end) & (t <= instants[-1]))
     rows = rows[np.argsort(t[rows])]
@@ -97,7 +108,9 @@ class CyclePlot(ExtraView):
 
     needs = frozenset({"cycles"})
 
-    applies = staticmethod(lru_cache(maxsize=64)(lambda settings: cycles_in(settings) > 1))
+    applies = staticmethod(
+        lru_cache(maxsize=64)(lambda settings: cycles_in(settings) > 1)
+    )
 
     def _add_legend(self) -> None:
         """Name the first and the last cycle, and what becomes of slip."""
@@ -122,17 +135,22 @@ class Cycles(CyclePlot):
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
         super()._show(cycles, frame, selection)
-        run, loop = frame.run, frame.loop
+        run = frame.run
+        loop = frame.loop
         self.x.rename(*run.across)
         self.y.rename(*run.up)
         for axis, values in ((self.x, loop[0]), (self.y, loop[1])):
             axis.hold(frame.stage, values, margin=0.08)
-        x, y = self.x(loop[0]), self.y(loop[1])
-        count, columns = len(cycles["energy"]), cycles["columns"]
+        x = self.x(loop[0])
+        y = self.y(loop[1])
+        count = len(cycles["energy"])
+        columns = cycles["columns"]
         shown = thinned(count, MOST_LOOPS)
         parts = [slice(columns[n], columns[n + 1] + 1) for n in shown]
         colors = np.array(scaled(count))[shown].tolist()
-        self.fill("loops", xs=[x[p] for p in parts], ys=[y[p] for p in parts], color=colors)
+        self.fill(
+            "loops", xs=[x[p] for p in parts], ys=[y[p] for p in parts], color=colors
+        )
         self.draw("now", *loop[:, [run.column(selection.phase)]])
 
 
@@ -154,7 +172,9 @@ class CycleEnergy(CyclePlot):
         count = len(energy)
         self.x.span(0.5, count + 0.5)
         self.y.hold(frame.stage, [0.0], energy, 1.1 * energy)
-        self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
+        self.fill(
+            "bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count)
+        )
 
 
 class SlipPlane(View):
@@ -165,7 +185,9 @@ class SlipPlane(View):
 
     # Two points rub, whose friction follows from what presses them.
     applies = staticmethod(
-        lambda settings: settings.opens and settings.jumps == 4 and settings.law == FrictionLaw()
+        lambda settings: (
+            settings.opens and settings.jumps == 4 and settings.law == FrictionLaw()
+        )
     )
 
     def _make(self) -> None:
@@ -183,13 +205,15 @@ class SlipPlane(View):
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show where both have slipped so far, and the lines at which they slip now."""
-        slips, column = frame.extras.get("slips", {}), frame.run.column(selection.phase)
+        slips = frame.extras.get("slips", {})
+        column = frame.run.column(selection.phase)
         self.show("held", slips is None)
         if not slips:
             for name in self.sources:
                 self.draw(name, [], [])
             return
-        slip, corners = slips["slip"], slips["room"].T
+        slip = slips["slip"]
+        corners = slips["room"].T
         both = np.concatenate([slip, corners], axis=1)
         for axis, values in zip((self.x, self.y), both, strict=True):
             axis.hold(frame.run.number, values, margin=0.1)
@@ -199,7 +223,9 @@ class SlipPlane(View):
         far = FAR * np.ptp(both, axis=1).max()
         for number, name in enumerate(("left", "right")):
             rows = slice(number, None, 2)
-            self.draw(name, *_lines(slips["matrix"][rows], slips["limit"][rows, column], far))
+            self.draw(
+                name, *_lines(slips["matrix"][rows], slips["limit"][rows, column], far)
+            )
 
 
 def _lines(matrix: Floats, limit: Floats, far: float) -> Floats:

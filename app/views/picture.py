@@ -16,7 +16,8 @@ from app.views.layout import BAND, IMAGE, Layout, is_opposite, turned
 from solver.arrays import Array
 
 MECHANISM = 0.12
-"""Share of the height of all bodies that the largest motion of a mechanism is drawn as."""
+"""Share of the height of all bodies that the largest motion of a mechanism is drawn
+as."""
 Columns = dict[str, Any]
 Strokes = list[tuple[Array, str, float]]
 """Lines, NaN between them, with a colour and a width, px."""
@@ -29,21 +30,35 @@ class Picture:
     """
 
     def __init__(
-        self, frame: Frame, column: int, layout: Layout, factor: float, peaks: Mapping[str, float]
+        self,
+        frame: Frame,
+        column: int,
+        layout: Layout,
+        factor: float,
+        peaks: Mapping[str, float],
     ) -> None:
-        self.frame, self.column, self.layout = frame, column, layout
-        self._factor, self._peaks = factor, peaks
-        self._geometry, self._described = frame.run.geometry, layout.description
+        self.frame = frame
+        self.column = column
+        self.layout = layout
+        self._factor = factor
+        self._peaks = peaks
+        self._geometry = frame.run.geometry
+        self._described = layout.description
         # Values of a description are not thinned.
         instant = frame.run.instants[column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
         tilt = self._described.tilt
-        self.tilt = 0.0 if tilt is None else float(tilt[self._now])
+        if tilt is None:
+            self.tilt = 0.0
+        else:
+            self.tilt = float(tilt[self._now])
 
     @cached_property
     def nodes(self) -> Array:
         """Deformed nodes, px from the middle of the foot."""
-        return self._moved(self._geometry.nodes, self.frame.deformed.nodes[:, :, self.column])
+        return self._moved(
+            self._geometry.nodes, self.frame.deformed.nodes[:, :, self.column]
+        )
 
     @cached_property
     def points(self) -> Array:
@@ -58,9 +73,12 @@ class Picture:
     @cached_property
     def arrows(self) -> list[Arrows]:
         """Those of all that acts."""
-        layout, behind, arrows = self.layout, self.frame.run.settings.behind(), []
+        layout = self.layout
+        behind = self.frame.run.settings.behind()
+        arrows = []
         for act in self._described.acts:
-            setting, peak = behind.get(act.where), self._peaks[act.where]
+            setting = behind.get(act.where)
+            peak = self._peaks[act.where]
             places = self._follow(act.places * layout.size)
             arrows.append(Arrows(act, setting, places, layout, peak, self._now))
         return arrows
@@ -68,7 +86,9 @@ class Picture:
     @property
     def draggable(self) -> list[Arrows]:
         """Those with a setting behind them."""
-        return [arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)]
+        return [
+            arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)
+        ]
 
     def columns(self) -> dict[str, Columns]:
         """Columns of all sources, by their names; of bare bodies without status of what rubs."""
@@ -79,16 +99,18 @@ class Picture:
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
         handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
         marks = {"line_color": [color_of(arrows.act) for arrows in self.draggable]}
-        rims, bands = (
-            _drawn(self._geometry.rims, self.nodes),
-            [] if self.layout.is_bare else self._bands(),
-        )
+        rims = _drawn(self._geometry.rims, self.nodes)
+        if self.layout.is_bare:
+            bands = []
+        else:
+            bands = self._bands()
         # The last are on top.
         strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3), *bands]
         strokes.append((gapped(self.nodes[self._at_break]), ERROR, 3.0))
         heads: Strokes = []
         for arrows in self.arrows:
-            color, width = color_of(arrows.act), 1.6 if len(arrows.lines) > 3 else 3.2
+            color = color_of(arrows.act)
+            width = 1.6 if len(arrows.lines) > 3 else 3.2
             strokes.append((arrows.strokes, color, width))
             heads.append((gapped(arrows.heads), color, 1.0))
         return {
@@ -136,7 +158,9 @@ class Picture:
     def _follow(self, places: Array) -> Array:
         """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
         away = ((self._geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
-        return self._moved(places, self.frame.deformed.nodes[away.argmin(axis=1), :, self.column])
+        return self._moved(
+            places, self.frame.deformed.nodes[away.argmin(axis=1), :, self.column]
+        )
 
     @cached_property
     def _at_break(self) -> Array:
@@ -160,7 +184,8 @@ class Picture:
         }
 
     def _holds(self) -> Array:
-        layout, length = self.layout, self._described.length
+        layout = self.layout
+        length = self._described.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
         strokes = strokes_of(layout, self._factor, self._now, feet)
         if self._described.tilt is not None:
@@ -171,10 +196,12 @@ class Picture:
 
     def _bands(self) -> Strokes:
         """What rubs, by its status, on a rim where there is contact."""
-        status, chains = self.frame.deformed.status[:, self.column], self._geometry.chains
+        status = self.frame.deformed.status[:, self.column]
+        chains = self._geometry.chains
         lines = bands(self.points, chains, status)
         width = min(
-            BAND, 0.35 * self.layout.size[1] * self.layout.scale[1] / self._described.bodies
+            BAND,
+            0.35 * self.layout.size[1] * self.layout.scale[1] / self._described.bodies,
         )
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
@@ -186,25 +213,36 @@ class Picture:
 
     def _words(self) -> Columns:
         """What acts, and the slope; moved inwards where it would be cut."""
-        layout, texts, places, aligns, colors = self.layout, [], [], [], []
+        layout = self.layout
+        texts = []
+        places = []
+        aligns = []
+        colors = []
         above = [act for act in self._described.acts if act.where.startswith("top")]
         for arrows in self.arrows:
-            act, (place, align) = arrows.act, anchor_of(arrows, layout)
+            act = arrows.act
+            (place, align) = anchor_of(arrows, layout)
             # What presses from above and below alike is said once.
-            if not act.where.startswith("bottom") or not any(is_opposite(act, a) for a in above):
+            if not act.where.startswith("bottom") or not any(
+                is_opposite(act, a) for a in above
+            ):
                 texts.append(text_of(act, self._now))
                 places.append(self.page(place))
                 aligns.append(align)
                 colors.append(color_of(act))
         if self._described.tilt is not None:
-            corner = np.array([0.5 * self._described.length * layout.scale[0] + 30.0, -14.0])
+            corner = np.array(
+                [0.5 * self._described.length * layout.scale[0] + 30.0, -14.0]
+            )
             texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
             places.append(corner + layout.origin)
             aligns.append("left")
             colors.append(FORCE)
         x, y = np.reshape(places, (-1, 2)).T
         widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
-        left = widths * [{"left": 0.0, "center": 0.5, "right": 1.0}[align] for align in aligns]
+        left = widths * [
+            {"left": 0.0, "center": 0.5, "right": 1.0}[align] for align in aligns
+        ]
         return {
             "x": np.clip(x, left, np.maximum(layout.width - widths + left, left)),
             "y": np.clip(y, 8.0, layout.height - 8.0),
@@ -217,13 +255,20 @@ class Picture:
 def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:
     """Lines along contact points by their status, each to the middle between it and the next.
 
-    Points, shape (n, 2), are NaN where their chain is broken, and so are lines behind stretches.
+    Points, shape (n, 2), are NaN where their chain is broken, and so are lines behind
+    stretches.
     """
     is_joined = chains[1:] == chains[:-1]
     cuts = np.flatnonzero(~is_joined | (status[1:] != status[:-1]))
-    middles = np.where(is_joined[cuts, None], 0.5 * (points[cuts + 1] + points[cuts]), np.nan)
-    path = np.append(np.insert(points, cuts + 1, middles, axis=0), [[np.nan, np.nan]], axis=0)
-    before, after = (np.insert(status, cuts + 1, status[side]) for side in (cuts, cuts + 1))
+    middles = np.where(
+        is_joined[cuts, None], 0.5 * (points[cuts + 1] + points[cuts]), np.nan
+    )
+    path = np.append(
+        np.insert(points, cuts + 1, middles, axis=0), [[np.nan, np.nan]], axis=0
+    )
+    before, after = (
+        np.insert(status, cuts + 1, status[side]) for side in (cuts, cuts + 1)
+    )
     lines = {}
     for kind in np.unique(status):
         is_on = np.append((before == kind) | (after == kind), False)

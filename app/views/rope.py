@@ -33,15 +33,20 @@ class WireSection(ExtraView):
     applies = staticmethod(lambda settings: settings.kind == "helices")
 
     def _make(self) -> None:
-        made = self.begin(match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d())
-        made.axis.visible, made.center = False, []
+        made = self.begin(
+            match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d()
+        )
+        made.axis.visible = False
+        made.center = []
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         self.add(
             "wires", "Circle", "x y radius line_color line_width", also="stress",
             fill_color={"field": "stress", "transform": self.colors},
         )  # fmt: skip
         # Without data BokehJS would complain of ranges that follow them.
-        nothing = {column: [0.0] for column in ("x", "y", "radius", "line_width", "stress")}
+        nothing = {
+            column: [0.0] for column in ("x", "y", "radius", "line_width", "stress")
+        }
         self.fill("wires", **nothing, line_color=["white"])
         self.bar = color_bar(made, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
@@ -56,7 +61,8 @@ class WireSection(ExtraView):
         self.colors.update(low=low, high=max(high, low + 1e-9))
         self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['place'])}"
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
-        slips, chosen = cut["slips"][:, column], cut["wires"] == number
+        slips = cut["slips"][:, column]
+        chosen = cut["wires"] == number
         rings = [
             STATUS[int(slip)] if slip else ERROR if is_chosen else EDGE
             for slip, is_chosen in zip(slips, chosen, strict=True)
@@ -102,17 +108,27 @@ class AxialForces(ExtraView):
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
         """Show the force in each wire, the broken one in its own colour."""
         run = frame.run
-        column, known = run.column(selection.phase), run.known("axial force")
-        x, names, stuck = axial["x"], axial["names"], axial["stuck"]
+        column = run.column(selection.phase)
+        known = run.known("axial force")
+        x = axial["x"]
+        names = axial["names"]
+        stuck = axial["stuck"]
         key = (*frame.stage, *names)
         along = run.interfaces[selection.interface_of(run)].positions
         self.x.hold(key, x, along)
         ups = [curve.up for curve in known]
         self.y.hold(key, axial["force"], *ups, stuck, [0.0], margin=0.05)
-        self.draw("exact", *joined([(curve.across, curve.up[:, column]) for curve in known]))
+        self.draw(
+            "exact", *joined([(curve.across, curve.up[:, column]) for curve in known])
+        )
         self.draw("stuck", x[: len(stuck)], stuck[:, column])
         colors = iter(COLORS * 2)
         for line, wire in zip(self._lines, names, strict=False):
-            color, width = (ERROR, 3.5) if "broken" in wire else (next(colors), 2.0)
+            if "broken" in wire:
+                color = ERROR
+                width = 3.5
+            else:
+                color = next(colors)
+                width = 2.0
             line.glyph.update(line_color=color, line_width=width)
         self.draw_each(WIRES, x, axial["force"][:, :, column], names)

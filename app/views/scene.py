@@ -21,14 +21,18 @@ from app.views.layout import layout_of
 from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
 
-WIDTH, HEIGHT = 950.0, 190.0
+WIDTH = 950.0
+HEIGHT = 190.0
 """Of the figure until the browser tells, px."""
-NEAR, CLOSE = 22.0, 14.0
+NEAR = 22.0
+CLOSE = 14.0
 """Pixels within which a handle is held, and an interface is tapped."""
 KEPT = 0.3, 1.5
 """Shares of the full length between which arrows stay as they are scaled."""
-WIDEST, LEAST = 9.0, 0.01
-"""Width of the line of the largest thrust, px, and the share of it below which none is drawn."""
+WIDEST = 9.0
+LEAST = 0.01
+"""Width of the line of the largest thrust, px, and the share of it below which none is
+drawn."""
 
 
 class Scene(View):
@@ -58,11 +62,22 @@ class Scene(View):
 
     def _draw(self, made: figure) -> None:
         self.add("image", "Patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
-        look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8, "line_alpha": 0.55}
+        look = {
+            "fill_color": BODY,
+            "line_color": EDGE,
+            "line_width": 0.8,
+            "line_alpha": 0.55,
+        }
         self.add("bodies", "Patch", fill_alpha=0.0 if self.is_bare else 0.5, **look)
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
         self.add("strokes", "MultiLine", "xs ys line_color line_width")
-        self.add("heads", "Patches", "xs ys line_color", fill_color="line_color", also="line_width")
+        self.add(
+            "heads",
+            "Patches",
+            "xs ys line_color",
+            fill_color="line_color",
+            also="line_width",
+        )
         look = {"size": 11, "fill_color": "white", "line_width": 2.5}
         self.add("marks", "Scatter", "x y line_color", **look)
         self.add(
@@ -70,25 +85,34 @@ class Scene(View):
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         self.mark(KEYS | {"note": UNSEEN})
-        keys = () if self.is_bare else KEYS
+        if self.is_bare:
+            keys = ()
+        else:
+            keys = KEYS
         self._keys = self.legend(*keys, "note", place="center")
         self._keys.location = "bottom_left"
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant."""
-        made, run, shown = self.figure, frame.run, self._shown
+        made = self.figure
+        run = frame.run
+        shown = self._shown
         self._shown = frame, selection, ghost
         type_size = float(self.words.removesuffix("px"))
         layout = layout_of(run.geometry, self.is_bare, type_size, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
-            self._factor, self._peaks = None, {}
+            self._factor = None
+            self._peaks = {}
         if self._factor is None or shown is None or shown[0] is not frame:
             largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
             self._factor = layout.fitting(largest, self._factor)
             self._scale_arrows(frame)
-        made.x_range.end, made.y_range.end = layout.width, layout.height
+        made.x_range.end = layout.width
+        made.y_range.end = layout.height
         column = run.column(selection.phase)
-        self.picture = picture = Picture(frame, column, layout, self._factor, self._peaks)
+        self.picture = picture = Picture(
+            frame, column, layout, self._factor, self._peaks
+        )
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
         past: dict[str, Any] = {"x": [], "y": []}
@@ -102,7 +126,9 @@ class Scene(View):
         note = f"displacement × {number(self._factor)}"
         self.show("note", note + ", thickness not to scale" * is_rods)
         rows = layout.key_rows
-        self._keys.update(orientation="horizontal" if rows else "vertical", nrows=rows or "auto")
+        self._keys.update(
+            orientation="horizontal" if rows else "vertical", nrows=rows or "auto"
+        )
 
     def _scale_arrows(self, frame: Frame) -> None:
         """Keep how long arrows are for their values, while they stay long enough and fit."""
@@ -124,7 +150,9 @@ class Scene(View):
         if picture is None or not picture.draggable:
             return
         at = picture.to_local(event.x, event.y)
-        nearest = min(picture.draggable, key=lambda each: float(np.hypot(*(each.handle - at))))
+        nearest = min(
+            picture.draggable, key=lambda each: float(np.hypot(*(each.handle - at)))
+        )
         if np.hypot(*(nearest.handle - at)) <= NEAR:
             self._held = nearest, picture
             self.state.is_dragged = True
@@ -135,7 +163,8 @@ class Scene(View):
 
     def _let_go(self, event: Any) -> None:
         if self._held is not None:
-            name, value = self._held[0].setting, self._value(event)
+            name = self._held[0].setting
+            value = self._value(event)
             self._held = None
             self.state.release(name, value)
 
@@ -152,7 +181,8 @@ class Scene(View):
         picture = self.picture
         if picture is None:
             return
-        run, at = picture.frame.run, picture.to_local(event.x, event.y)
+        run = picture.frame.run
+        at = picture.to_local(event.x, event.y)
         middles = picture.nodes[run.geometry.quads].mean(axis=1)
         nearest = np.hypot(*(middles - at).T).argmin()
         chosen: dict[str, Any] = {"substructure": int(run.geometry.parts[nearest])}
@@ -191,7 +221,14 @@ class Stress(ExtraScene):
     def _draw(self, made: figure) -> None:
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         color = {"field": "value", "transform": self.colors}
-        self.add("stress", "Patches", "xs ys", also="value", fill_color=color, line_color=color)
+        self.add(
+            "stress",
+            "Patches",
+            "xs ys",
+            also="value",
+            fill_color=color,
+            line_color=color,
+        )
         self.bar = color_bar(made, self.colors)
         super()._draw(made)
 
@@ -200,10 +237,14 @@ class Stress(ExtraScene):
         largest = float(np.abs(values).max())
         unit = unit_for(largest, si)
         # It seldom changes.
-        high = rounded_up(0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0))
+        high = rounded_up(
+            0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
+        )
         signed = float(values.min()) < -1e-3 * largest
         self.colors.update(
-            palette=RdBu11 if signed else Cividis256, low=-high if signed else 0.0, high=high
+            palette=RdBu11 if signed else Cividis256,
+            low=-high if signed else 0.0,
+            high=high,
         )
         self.bar.title = f"{title}, {unit.name}"
         corners = picture.many(picture.nodes[picture.frame.run.geometry.quads])
@@ -213,12 +254,15 @@ class Stress(ExtraScene):
 class Thrust(ExtraScene):
     """How many bodies find their load its way: resultants of joints from middle to middle.
 
-    Lines are as wide as forces are large; the largest of all instants is the widest line.
+    Lines are as wide as forces are large; the largest of all instants is the widest
+    line.
     """
 
     name = "Thrust"
     needs = frozenset({"thrust"})
-    applies = staticmethod(lambda settings: settings.has_joints and settings.n_bodies > 2)
+    applies = staticmethod(
+        lambda settings: settings.has_joints and settings.n_bodies > 2
+    )
 
     def _draw(self, made: figure) -> None:
         super()._draw(made)

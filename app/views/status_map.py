@@ -38,24 +38,34 @@ class StatusMap(View):
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the status of every point at every instant."""
-        run, name = frame.run, selection.interface_of(frame.run)
-        fields, interface = frame.contact.get(name), run.interfaces[name]
+        run = frame.run
+        name = selection.interface_of(frame.run)
+        fields = frame.contact.get(name)
+        interface = run.interfaces[name]
         if fields is None:
             return
         self.x.hold((run.number, name), interface.positions)
         self.y.hold((run.number, name), run.instants)
-        x, y = edges(interface.positions)[[0, -1]], edges(run.instants)[[0, -1]]
-        (left, right), (low, high) = self.x(x), self.y(y)
+        x = edges(interface.positions)[[0, -1]]
+        y = edges(run.instants)[[0, -1]]
+        (left, right) = self.x(x)
+        (low, high) = self.y(y)
         size = {"dw": [right - left], "dh": [high - low]}
         self.fill("status", image=[fields.status.T], x=[left], y=[low], **size)
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
-        self.fill("place", x=self.x([] if selection.place is None else [selection.place]))
+        self.fill(
+            "place", x=self.x([] if selection.place is None else [selection.place])
+        )
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
-        lines = np.zeros((4, 0)) if ghost is None else _boundary(ghost, selection)
-        (x0, x1), (y0, y1) = self.x(lines[::2]), self.y(lines[1::2])
+        if ghost is None:
+            lines = np.zeros((4, 0))
+        else:
+            lines = _boundary(ghost, selection)
+        (x0, x1) = self.x(lines[::2])
+        (y0, y1) = self.y(lines[1::2])
         self.fill("ghost", self.ghost_name, x0=x0, y0=y0, x1=x1, y1=y1)
 
     def _select(self, event: Any) -> None:
@@ -73,7 +83,8 @@ def _boundary(frame: Frame, selection: Selection) -> Floats:
     if name not in frame.contact:
         return np.zeros((4, 0))
     status = frame.contact[name].status
-    x, t = edges(frame.run.interfaces[name].positions), edges(frame.run.instants)
+    x = edges(frame.run.interfaces[name].positions)
+    t = edges(frame.run.instants)
     i, j = np.nonzero(status[1:] != status[:-1])
     upright = np.stack([x[i + 1], t[j], x[i + 1], t[j + 1]])
     i, j = np.nonzero(status[:, 1:] != status[:, :-1])

@@ -19,7 +19,8 @@ from solver.arrays import Array
 
 PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
 """Colours of the paths."""
-LOW, HIGH = -1.5, 2.7
+LOW = -1.5
+HIGH = 2.7
 """Of the axis up: the paths lie between -1 and 1, their names above."""
 
 
@@ -32,8 +33,11 @@ class Timeline(View):
         made = self._made = bare(40, (-0.01, 1.01), (LOW, HIGH))
         self._number = 0
         axis = made.xaxis
-        axis.major_label_standoff, axis.axis_line_alpha = 1, 0.4
-        axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
+        axis.major_label_standoff = 1
+        axis.axis_line_alpha = 0.4
+        axis.major_tick_out = 3
+        axis.major_tick_in = 0
+        axis.minor_tick_line_alpha = 0.0
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
         self.add("paths", "MultiLine", "xs ys line_color line_width")
         look = {"y": LOW, "length": 0, "angle": np.pi / 2, "color": ERROR, "alpha": 0.5}
@@ -41,7 +45,8 @@ class Timeline(View):
         self.add("now", "Scatter", color=FORCE, size=13)
         self.mark(PATHS | {"time": UNSEEN})
         self.legend(*PATHS, "time", place="center")
-        # The range has bounds, so that the tool only keeps a touch from scrolling the page.
+        # The range has bounds, so that the tool only keeps a touch from scrolling the
+        # page.
         made.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             made.on_event(event, self._select)
@@ -52,7 +57,8 @@ class Timeline(View):
         if run.number != self._number:
             self._number = run.number
             self._show_paths(run)
-        column, area = run.column(selection.phase), self.sources["area"].data
+        column = run.column(selection.phase)
+        area = self.sources["area"].data
         self.fill("instant", x=[area["x"][column]])
         self.fill("now", x=[area["x"][column]], y=[area["y2"][column]])
 
@@ -63,7 +69,9 @@ class Timeline(View):
         # The bounds first: the browser moves ends that are outside.
         self.figure.x_range.update(bounds=ends, start=ends[0], end=ends[1])
         titles, values = zip(*paths_of(run)[: len(PATHS)], strict=True)
-        ups = [np.float32(each / (np.abs(each).max(initial=0.0) or 1.0)) for each in values]
+        ups = [
+            np.float32(each / (np.abs(each).max(initial=0.0) or 1.0)) for each in values
+        ]
         # The first is on top.
         self.fill(
             "paths",
@@ -91,14 +99,22 @@ def paths_of(run: Run) -> list[tuple[str, Array]]:
         given.append(("tilt", np.degrees(described.tilt), Unit("°")))
     for place, act in enumerate(described.acts):
         if not any(is_opposite(act, other) for other in described.acts[:place]):
-            values = act.values if act.values.ndim == 1 else act.values[len(act.values) // 2]
+            if act.values.ndim == 1:
+                values = act.values
+            else:
+                values = act.values[len(act.values) // 2]
             given.append((act.symbol, values, unit_of(act)))
-    changing, constant = [], []
+    changing = []
+    constant = []
     for symbol, values, unit in given:
         # Adding 0 takes the sign from a zero.
-        low, high = float(values.min()) + 0.0, float(values.max()) + 0.0
+        low = float(values.min()) + 0.0
+        high = float(values.max()) + 0.0
         changes = high - low > 1e-6 * max(abs(low), abs(high))
-        text = f"{number(low / unit.factor)} to {unit(high)}" if changes else unit(high)
+        if changes:
+            text = f"{number(low / unit.factor)} to {unit(high)}"
+        else:
+            text = unit(high)
         path = f"{symbol} = {text}", np.interp(run.instants, described.instants, values)
         (changing if changes else constant).append(path)
     return [*changing, *constant] or [("nothing acts", np.zeros(len(run.instants)))]

@@ -40,11 +40,14 @@ from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
 SHORT = 200
-"""Numbers of a curve up to which it is sent as a list, which then takes less time than an array."""
-TEXT, WORDS = "12px", "14px"
+"""Numbers of a curve up to which it is sent as a list, which then takes less time than
+an array."""
+TEXT = "12px"
+WORDS = "14px"
 """Sizes of what is written in plots, and of what belongs to arrows."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
-"""Keeps sizes that are not the theme's, as the browser sets these when it draws a figure."""
+"""Keeps sizes that are not the theme's, as the browser sets these when it draws a
+figure."""
 ABOVE = {"margin-left": "-60px", "top": "-1px"}
 """Has a legend begin at the left end of the figure."""
 CLOSE = """
@@ -52,7 +55,8 @@ CLOSE = """
 .bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
-"""Lets a legend of seven entries stand in one line; the theme keeps them farther apart."""
+"""Lets a legend of seven entries stand in one line; the theme keeps them farther
+apart."""
 
 
 HIDE = """
@@ -61,14 +65,16 @@ const is_mark = shown.name == null
 const others = (each) => each.name == shown.name && each != shown
 for (const each of is_mark ? [shown] : plot.renderers.filter(others)) each.visible = !each.visible
 """
-"""Hides the glyph that a copy in the legend is of, or shows it again; marks stay as they are."""
+"""Hides the glyph that a copy in the legend is of, or shows it again; marks stay as
+they are."""
 
 
 class View:
     """A figure, made when it is first seen, below a legend that names what is there.
 
-    A click on an entry of the legend hides its curve. What is done in the figure, as a tap, selects
-    in the state of the page. `x` and `y` are the axes, `sources` what is drawn, by name.
+    A click on an entry of the legend hides its curve. What is done in the figure, as a
+    tap, selects in the state of the page. `x` and `y` are the axes, `sources` what is
+    drawn, by name.
     """
 
     name: ClassVar[str]
@@ -79,7 +85,8 @@ class View:
     """Whether it says anything about a run with such settings."""
 
     def __init__(self, state: PageState) -> None:
-        self.state, self._type = state, TEXT
+        self.state = state
+        self._type = TEXT
         self._made: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
         self._items: dict[str, LegendItem] = {}
@@ -87,17 +94,24 @@ class View:
     @cached_property
     def figure(self) -> figure:
         """The figure."""
-        # Nothing in it is selected or left out: what would say so is shared, as each model counts.
-        self._selects = {"selected": models.Selection(), "selection_policy": UnionRenderers()}
+        # Nothing in it is selected or left out: what would say so is shared, as each
+        # model counts.
+        self._selects = {
+            "selected": models.Selection(),
+            "selection_policy": UnionRenderers(),
+        }
         self._filter = AllIndices()
         self._make()
-        size, self._type = self._type, TEXT
+        size = self._type
+        self._type = TEXT
         self.magnify(size)
         return self._made
 
     def magnify(self, size: str) -> None:
         """Have its type in a size, as CSS has it."""
-        made, keep, is_same = self._made, CustomJS(code=KEEP), size == self._type
+        made = self._made
+        keep = CustomJS(code=KEEP)
+        is_same = size == self._type
         self._type = size
         if is_same or made is None:
             return
@@ -107,7 +121,9 @@ class View:
         for words in made.select(models.Text):
             words.text_font_size = self.words
         for model in (*made.axis, *made.select(Title), *made.select(ColorBar)):
-            names = [name for name in model.properties() if name.endswith("text_font_size")]
+            names = [
+                name for name in model.properties() if name.endswith("text_font_size")
+            ]
             sizes = dict.fromkeys(names, size)
             model.update(tags=[sizes] if size != TEXT else [], **sizes)
             if not model.js_property_callbacks:
@@ -131,7 +147,9 @@ class View:
         """What the run is called that is drawn beside the present one."""
         return "last run" if self.state.pinned is None else "pinned run"
 
-    def begin(self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any) -> figure:
+    def begin(
+        self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any
+    ) -> figure:
         """A new figure whose axes have a title and an SI unit; `add` fills it."""
         made = self._made = figure(
             sizing_mode="stretch_both",
@@ -145,13 +163,18 @@ class View:
             **({"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more),
         )
         made.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
-        made.toolbar.autohide, made.toolbar.logo = True, None
-        made.min_border, made.min_border_right = 2, 10
+        made.toolbar.autohide = True
+        made.toolbar.logo = None
+        made.min_border = 2
+        made.min_border_right = 10
         made.outline_line_color = None
-        made.axis.major_label_standoff, made.axis.minor_tick_line_color = 3, None
-        made.axis.major_tick_in, made.axis.major_tick_out = 0, 3
+        made.axis.major_label_standoff = 3
+        made.axis.minor_tick_line_color = None
+        made.axis.major_tick_in = 0
+        made.axis.major_tick_out = 3
         made.grid.grid_line_alpha = 0.3
-        self.x, self.y = Axis(made, "x", *x), Axis(made, "y", *y)
+        self.x = Axis(made, "x", *x)
+        self.y = Axis(made, "y", *y)
         return made
 
     def add(
@@ -168,16 +191,21 @@ class View:
 
         The source has also other columns, for whoever hovers, or other glyphs on it.
         """
-        kind, own = getattr(models, glyph), columns.split()
+        kind = getattr(models, glyph)
+        own = columns.split()
         if (on or name) not in self.sources:
-            self.sources[on or name] = self._source({each: [] for each in (*own, *also.split())})
+            self.sources[on or name] = self._source(
+                {each: [] for each in (*own, *also.split())}
+            )
         look = {column: column for column in own} | look
         return self._render(self.sources[on or name], kind(**visuals(kind, look)), name)
 
     def _render(
         self, source: ColumnDataSource, glyph: Glyph, name: str | None = None
     ) -> GlyphRenderer:
-        without = {f"{state}_glyph": None for state in ("selection", "nonselection", "muted")}
+        without = {
+            f"{state}_glyph": None for state in ("selection", "nonselection", "muted")
+        }
         view = CDSView(filter=self._filter)
         return self._made.add_glyph(source, glyph, name=name, view=view, **without)
 
@@ -196,15 +224,19 @@ class View:
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their own names or by titles.
 
-        It shows copies of them without data: it is made anew whenever the data of what it shows
-        change.
+        It shows copies of them without data: it is made anew whenever the data of what
+        it shows change.
         """
         titles = {name: name for name in names} | titles
         drawn = {r.name: r for r in reversed(self._made.renderers) if r.name in titles}
-        columns = {column for each in drawn.values() for column in each.data_source.data}
+        columns = {
+            column for each in drawn.values() for column in each.data_source.data
+        }
         nowhere = self._source({column: [np.nan] for column in columns})
         for name, each in drawn.items():
-            self._items[name] = LegendItem(renderers=[self._render(nowhere, each.glyph, name)])
+            self._items[name] = LegendItem(
+                renderers=[self._render(nowhere, each.glyph, name)]
+            )
         for name, title in titles.items():
             self._items[name].label = value(title)
         box = legend(self._made, [self._items[name] for name in titles], place)
@@ -226,7 +258,11 @@ class View:
         """Fill a source; the legend has it, by a title, if there is anything in it."""
         target = self.sources[name]
         columns = {column: _sent(values) for column, values in columns.items()}
-        new = [column for column in columns if not _equal(target.data[column], columns[column])]
+        new = [
+            column
+            for column in columns
+            if not _equal(target.data[column], columns[column])
+        ]
         # What is the same is not sent again.
         if len(new) == 1 < len(columns):
             target.data[new[0]] = columns[new[0]]
@@ -239,7 +275,11 @@ class View:
         self.fill(name, title, x=self.x(x), y=self.y(y))
 
     def draw_each(
-        self, names: Sequence[str], x: ArrayLike, ys: Sequence[ArrayLike], titles: Sequence[str]
+        self,
+        names: Sequence[str],
+        x: ArrayLike,
+        ys: Sequence[ArrayLike],
+        titles: Sequence[str],
     ) -> None:
         """Draw curves over the same places; names that are left over are of none."""
         for name, y, title in zip_longest(names, ys, titles):
@@ -260,7 +300,9 @@ class ExtraView(View):
         raise NotImplementedError
 
 
-def bare(least: int, across: tuple[float, float], up: tuple[float, float], **more: Any) -> figure:
+def bare(
+    least: int, across: tuple[float, float], up: tuple[float, float], **more: Any
+) -> figure:
     """A figure without tools, frame and grid, at least so many pixels high, with ends of axes."""
     made = figure(
         sizing_mode="stretch_both", min_height=least, tools="", toolbar_location=None, title=None,
@@ -282,7 +324,9 @@ def color_bar(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     return bar
 
 
-def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]) -> None:
+def hover(
+    made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]
+) -> None:
     """Show values where the pointer is: names, and columns of the renderers' sources."""
     made.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
 
@@ -292,7 +336,10 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
     names = kind.properties()
     properties = {}
     for trait, given in look.items():
-        both = [trait] if trait in names else [f"line_{trait}", f"fill_{trait}"]
+        if trait in names:
+            both = [trait]
+        else:
+            both = [f"line_{trait}", f"fill_{trait}"]
         properties |= {name: given for name in both if name in names}
     return properties
 
@@ -301,8 +348,12 @@ def _sent(values: Any) -> Any:
     """Values with short curves as lists: an array is sent by itself, in two messages."""
     if isinstance(values, list):
         return [_sent(each) for each in values]
-    is_short = isinstance(values, np.ndarray) and values.ndim == 1 and len(values) <= SHORT
-    return values.tolist() if is_short else values
+    is_short = (
+        isinstance(values, np.ndarray) and values.ndim == 1 and len(values) <= SHORT
+    )
+    if is_short:
+        return values.tolist()
+    return values
 
 
 def _equal(old: Any, new: Any) -> bool:

@@ -22,13 +22,24 @@ from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.settings.definitions import SettingError
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
-from solver.study.quantities.cycles import LoadCycles, cycles_of, ends_of, fate_of, slips_of
-from solver.study.quantities.reduction_measures import can_be_clipped, clips_in, products_in
+from solver.study.quantities.cycles import (
+    LoadCycles,
+    cycles_of,
+    ends_of,
+    fate_of,
+    slips_of,
+)
+from solver.study.quantities.reduction_measures import (
+    can_be_clipped,
+    clips_in,
+    products_in,
+)
 
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
 
-MOST_SPECTRA, MOST_VALUES = 24, 64
+MOST_SPECTRA = 24
+MOST_VALUES = 64
 """Substructures, and singular values of each, that are shown at most."""
 MOST_MODES = 5
 """Modes that are shown at most."""
@@ -37,7 +48,9 @@ MOST_MODES = 5
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in substructures, over the largest of these."""
     places = thinned(len(iterate.problem.substructures), MOST_SPECTRA)
-    parts = decompositions(iterate.problem, iterate.boundary_force, places, is_force=True)
+    parts = decompositions(
+        iterate.problem, iterate.boundary_force, places, is_force=True
+    )
     shown = [part.values[:MOST_VALUES] for part in parts]
     largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
     return [floats(np.asarray(part) / largest) for part in shown]
@@ -46,18 +59,24 @@ def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
 def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
     """Slips of two points, and the lines A w = b between which both stick.
 
-    "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4, n_instants), N,
-    whose first and third lines are those of the left point; "room", the corners of where both may
-    stay in the whole last cycle, (n_corners, 2), m. None where contact alone holds the body, whose
-    slip says nothing of what presses it.
+    "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4,
+    n_instants), N, whose first and third lines are those of the left point; "room", the
+    corners of where both may stay in the whole last cycle, (n_corners, 2), m. None
+    where contact alone holds the body, whose slip says nothing of what presses it.
     """
     space = _slip_space(sampler)
     if space is None:
         return None
     ((law, slip, _),) = slips_of(iterate)
     ends = ends_of(sampler.settings)
-    last = slice(ends[-2], ends[-1] + 1) if len(ends) > 1 else None
-    room = np.zeros((0, 2)) if last is None else room_of_two(space, last)
+    if len(ends) > 1:
+        last = slice(ends[-2], ends[-1] + 1)
+    else:
+        last = None
+    if last is None:
+        room = np.zeros((0, 2))
+    else:
+        room = room_of_two(space, last)
     moved = np.cumsum(law.mean_by_point(slip), axis=1)
     return {
         "slip": floats(moved[:, sampler.columns]),
@@ -83,8 +102,9 @@ def _slip_space(sampler: Sampler) -> SlipSpace | None:
 def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """The iterate, cycle by cycle of its load; None where that has none.
 
-    "columns" of the instants at which cycles begin, and the last one ends, (n_cycles + 1,);
-    "energy" that friction takes in each, (n_cycles,), J; "text", what becomes of slip.
+    "columns" of the instants at which cycles begin, and the last one ends, (n_cycles +
+    1,); "energy" that friction takes in each, (n_cycles,), J; "text", what becomes of
+    slip.
     """
     found = cycles_of(sampler.settings, iterate)
     if not len(found):
@@ -120,21 +140,28 @@ def _fate_text(cycles: LoadCycles) -> str:
 def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """The largest modes of the selected substructure's separated basis; None without bases.
 
-    "x" along rods, (n_places,), m; "space", (n_modes, n_places), over the largest entry of each;
-    "time", (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the
-    basis.
+    "x" along rods, (n_places,), m; "space", (n_modes, n_places), over the largest entry
+    of each; "time", (n_modes, n_instants), m; "substructure" from 0; "text", what the
+    iteration did to the basis.
     """
     if not iterate.bases:
         return None
     last = len(iterate.bases) - 1
-    place = last if needs.substructure is None else min(max(needs.substructure, 0), last)
-    basis, problem = iterate.bases[place], sampler.problem
+    if needs.substructure is None:
+        place = last
+    else:
+        place = min(max(needs.substructure, 0), last)
+    basis = iterate.bases[place]
+    problem = sampler.problem
     # Rows of two interfaces that meet at a point move together.
     rows = problem.row_dofs[problem.substructures[place].rows]
     dofs, first = np.unique(rows, return_index=True)
     space = basis.displacement_modes[first, :MOST_MODES].T
     size = _signed_size(space)
-    time = basis.time_functions(place)[:MOST_MODES, sampler.columns] * problem.scales.displacement
+    time = (
+        basis.time_functions(place)[:MOST_MODES, sampler.columns]
+        * problem.scales.displacement
+    )
     kept = thinned(len(dofs), MOST_POINTS)
     return {
         "x": floats(problem.positions[dofs[kept]]),
@@ -161,13 +188,18 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
 
     None where it cannot be kept as clips.
 
-    "table", how many values it has; "branches", times that the load goes one way; and for each of
-    "SVD", "PGD" (None without bases) and "clips" the numbers and errors, (2, n).
+    "table", how many values it has; "branches", times that the load goes one way; and
+    for each of "SVD", "PGD" (None without bases) and "clips" the numbers and errors,
+    (2, n).
     """
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
-    fitted, bases = clips_in(sampler.settings, iterate), iterate.bases
-    pieces = of_bases(iterate.problem, iterate.boundary_force, bases) if bases else None
+    fitted = clips_in(sampler.settings, iterate)
+    bases = iterate.bases
+    if bases:
+        pieces = of_bases(iterate.problem, iterate.boundary_force, bases)
+    else:
+        pieces = None
     return {
         "table": fitted.given.size,
         "branches": fitted.branches,
@@ -186,7 +218,9 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
 
     And the relative "distance" of the iterate to it, NaN where both share too few rows.
     """
-    brought, loop, distance = needs.brought, sampler.loop, np.nan
+    brought = needs.brought
+    loop = sampler.loop
+    distance = np.nan
     if isinstance(brought, MeasuredLoop):
         if brought.units != (loop.across[1], loop.up[1]):
             return None
@@ -212,4 +246,5 @@ EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {
     "clips": clips,
     "beside": beside,
 }
-"""By the name that a view needs them by; bodies of one kind have more (`Drawn.extras`)."""
+"""By the name that a view needs them by; bodies of one kind have more
+(`Drawn.extras`)."""

@@ -18,12 +18,15 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.refusal import RefusedError
 
-NICENESS, NICEST = 5, 19
-"""Of a worker that is alone, so that pages stay alive (at 10 its first picture waits 0.1 s), and
-beside fourteen others: thirty at 5 would leave the server a fifth of a processor."""
+NICENESS = 5
+NICEST = 19
+"""Of a worker that is alone, so that pages stay alive (at 10 its first picture waits
+0.1 s), and beside fourteen others: thirty at 5 would leave the server a fifth of a
+processor."""
 UNSEEN = 30.0
 """Seconds without a picture on the screen after which a run waits: nobody sees it."""
-LONG, LARGE = 60.0, 2e9
+LONG = 60.0
+LARGE = 2e9
 """Seconds and bytes of a run from which it waits to be agreed to."""
 PAUSE = messages.Pace(0.0)
 HEARTBEAT = 2.0
@@ -50,7 +53,8 @@ class WorkerLoop:
         self._references = ReferenceCache()
         self._runner: Runner | None = None
         self._number = 0
-        self._needs, self._is_ready = Needs(), True
+        self._needs = Needs()
+        self._is_ready = True
         self._shown_at = time.monotonic()
         threading.Thread(target=self._beat, daemon=True).start()
 
@@ -67,7 +71,8 @@ class WorkerLoop:
         if runner.rest(self._is_ready) == 0.0:
             runner.advance()
         if self._is_ready and runner.is_presentable:
-            self._is_ready, self._shown_at = False, time.monotonic()
+            self._is_ready = False
+            self._shown_at = time.monotonic()
             self._send(messages.NewFrame(runner.frame(self._needs)))
 
     def _rest(self) -> float | None:
@@ -75,7 +80,9 @@ class WorkerLoop:
         runner = self._runner
         if runner is None or self._is_unseen:
             return None
-        return 0.0 if self._is_ready and runner.is_presentable else runner.rest(self._is_ready)
+        if self._is_ready and runner.is_presentable:
+            return 0.0
+        return runner.rest(self._is_ready)
 
     @property
     def _is_unseen(self) -> bool:
@@ -100,7 +107,8 @@ class WorkerLoop:
 
     def _begin(self, start: Start) -> None:
         self._send(messages.Began(start.number))
-        self._number, self._runner = start.number, None
+        self._number = start.number
+        self._runner = None
         runner = Runner(start, self._references, self._is_superseded, self._is_halted)
         cost = runner.cost
         if (cost.seconds > LONG or cost.memory > LARGE) and not start.is_agreed:
@@ -118,7 +126,9 @@ class WorkerLoop:
             raise
         except Exception as problem:  # a page outlives a fault of the engine
             text = f"The run broke ({type(problem).__name__}: {problem})."
-            self._fail(f"{text} Change a setting, or lower the numbers of elements and instants.")
+            self._fail(
+                f"{text} Change a setting, or lower the numbers of elements and instants."
+            )
 
     def _fail(self, text: str) -> None:
         self._runner = None
@@ -139,7 +149,9 @@ class WorkerLoop:
         while self._connection.poll(timeout):
             order = self._connection.recv()
             if isinstance(order, Start):
-                self._orders = deque(o for o in self._orders if isinstance(o, Ready | Needs))
+                self._orders = deque(
+                    o for o in self._orders if isinstance(o, Ready | Needs)
+                )
             self._orders.append(order)
             timeout = 0.0
 

@@ -14,8 +14,8 @@ from app.messages import Order, Report
 from app.worker.loop import main
 
 PROCESSES = get_context("forkserver")
-# Workers share the memory of these modules; the script that serves imports the last, and so would
-# each of them.
+# Workers share the memory of these modules; the script that serves imports the last,
+# and so would each of them.
 PROCESSES.set_forkserver_preload(["app.worker.loop", "panel.command"])
 # One thread a worker: pages share the processors. The fork server inherits it.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -26,14 +26,19 @@ SILENT = 8.0
 class Worker:
     """A process that runs what it is told.
 
-    `hear` is called with this and each report, and with None once the process has ended, on a
-    thread of its own. The more others there are, the nicer it is: the server goes before all.
+    `hear` is called with this and each report, and with None once the process has
+    ended, on a thread of its own. The more others there are, the nicer it is: the
+    server goes before all.
     """
 
-    def __init__(self, hear: Callable[[Worker, Report | None], None], others: int = 0) -> None:
+    def __init__(
+        self, hear: Callable[[Worker, Report | None], None], others: int = 0
+    ) -> None:
         self._hear: Callable[[Worker, Report | None], None] | None = hear
         self._connection, theirs = PROCESSES.Pipe()
-        self._process: Any = PROCESSES.Process(target=main, args=(theirs, others), daemon=True)
+        self._process: Any = PROCESSES.Process(
+            target=main, args=(theirs, others), daemon=True
+        )
         self._process.start()
         theirs.close()
         self._heard = time.monotonic()

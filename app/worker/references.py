@@ -14,8 +14,8 @@ from solver.reference.solution import Reference, fingerprint
 from solver.settings.scene import Settings
 
 MOST_JUMPS = 1500
-"""Jumps up to which a reference takes no longer than some seconds; its time grows with their cube
-(measured: layers 8 s for 1900, a wall 1 s for 1400)."""
+"""Jumps up to which a reference takes no longer than some seconds; its time grows with
+their cube (measured: layers 8 s for 1900, a wall 1 s for 1400)."""
 ENTRIES = 8
 
 

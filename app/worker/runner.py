@@ -21,23 +21,29 @@ from solver.scenes.method import method_of
 
 HURRY = 0.1
 """Seconds that a run which follows a dragged slider has to end before it is shown."""
-WHOLE_LASTS, FIRST = 3.0, 0.25
-"""Seconds that a search takes at the pace `WHOLE`, and those before its second iterate. Intervals
-shrink by one ratio: each of the first iterates is seen, and a hundred last as long as thirty."""
+WHOLE_LASTS = 3.0
+FIRST = 0.25
+"""Seconds that a search takes at the pace `WHOLE`, and those before its second iterate.
+Intervals shrink by one ratio: each of the first iterates is seen, and a hundred last as
+long as thirty."""
 LATE = 0.1
-"""Seconds that iterations may be behind and catch up: pictures are painted in between."""
+"""Seconds that iterations may be behind and catch up: pictures are painted in
+between."""
 
 
 class Pacing:
     """The pace of a run, as in `Start`, and the steps that were asked for."""
 
     def __init__(self, pace: float, steps: int = 0) -> None:
-        self._pace, self._steps, self._done = pace, steps, 0
+        self._pace = pace
+        self._steps = steps
+        self._done = 0
         self._due = time.monotonic()
 
     def change(self, pace: float) -> None:
         """Go on at another pace."""
-        self._pace, self._steps = pace, 0
+        self._pace = pace
+        self._steps = 0
         self._due = min(self._due, time.monotonic() + self._interval())
 
     def step(self) -> None:
@@ -55,21 +61,26 @@ class Pacing:
         """Seconds until the next iteration is due; None waits for an order."""
         if self._steps:
             return 0.0
-        return None if self._pace == 0.0 else max(self._due - time.monotonic(), 0.0)
+        if self._pace == 0.0:
+            return None
+        return max(self._due - time.monotonic(), 0.0)
 
     def _interval(self) -> float:
         if self._pace == WHOLE:
             return FIRST * float((1.0 - FIRST / WHOLE_LASTS) ** self._done)
-        return 1.0 / self._pace if 0.0 < self._pace < math.inf else 0.0
+        if 0.0 < self._pace < math.inf:
+            return 1.0 / self._pace
+        return 0.0
 
 
 class Runner:
     """One run: its first iteration, then the reference, then the others as they are due.
 
-    It is `interrupted` where an order waits that ends it; where one waits that halts it a status
-    step is given up until it goes on. The problem is shown by `sampler`; it has
-    the newest `iterate`, a `history` with a record of each, and at its end a `status`. `pacing`
-    says when the next iteration is due, `has_news` whether anything changed since the last frame.
+    It is `interrupted` where an order waits that ends it; where one waits that halts it
+    a status step is given up until it goes on. The problem is shown by `sampler`; it
+    has the newest `iterate`, a `history` with a record of each, and at its end a
+    `status`. `pacing` says when the next iteration is due, `has_news` whether anything
+    changed since the last frame.
     """
 
     def __init__(
@@ -82,8 +93,10 @@ class Runner:
         self.settings = settings = start.settings
         self.is_dragged = start.is_dragged
         began = time.perf_counter()
-        problem, latin = discretise(settings), method_of(settings)
-        is_compared, most = has_reference(settings), settings.max_iterations
+        problem = discretise(settings)
+        latin = method_of(settings)
+        is_compared = has_reference(settings)
+        most = settings.max_iterations
         self.cost: RunCost = run_cost(problem, latin, most, with_reference=is_compared)
         spent = time.perf_counter() - began
         self.sampler = Sampler(problem, settings, start.number)
@@ -93,7 +106,8 @@ class Runner:
         self.has_news = False
         self.pacing = Pacing(start.pace, start.steps)
         self._iterates = judged(problem, latin, spent=spent, interrupted=halted)
-        self._references, self._interrupted = references, interrupted
+        self._references = references
+        self._interrupted = interrupted
         self._is_compared = False
         self._distance: Distance | None = None
         self._hurries_until = time.monotonic() + (HURRY if start.is_dragged else 0.0)
@@ -111,9 +125,15 @@ class Runner:
     def rest(self, is_seen: bool = True) -> float | None:
         """Seconds until there is something to do; None waits for an order, or to be seen."""
         is_to_be_seen = self.is_dragged and (self.has_news or not is_seen)
-        if self.iterate is None or self.hurries or not (self._is_compared or is_to_be_seen):
+        if (
+            self.iterate is None
+            or self.hurries
+            or not (self._is_compared or is_to_be_seen)
+        ):
             return 0.0
-        return None if self.status is not None else self.pacing.rest()
+        if self.status is not None:
+            return None
+        return self.pacing.rest()
 
     def advance(self) -> None:
         """Do one piece of work."""
@@ -130,7 +150,8 @@ class Runner:
     def _iterate(self) -> None:
         iterate, decision = next(self._iterates)
         self.pacing.count(iterate.number)
-        self.status, self.has_news = decision.status, True
+        self.status = decision.status
+        self.has_news = True
         if self.status is not None and self.status.ending is Ending.DIVERGED:
             return
         self.iterate = iterate

@@ -27,10 +27,12 @@ from solver.settings.scene import Settings
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun
 
-MOST_INSTANTS, MOST_POINTS = 401, 401
+MOST_INSTANTS = 401
+MOST_POINTS = 401
 """Instants, and points of an interface, that a frame has at most."""
 MOST_VALUES = 100_000
-"""Values of a field up to which a frame has the contact of all interfaces, and not of one."""
+"""Values of a field up to which a frame has the contact of all interfaces, and not of
+one."""
 MOST_ITERATIONS = 1000
 """Entries of the history that a frame has at most."""
 SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("modes", "is_answer"))
@@ -39,20 +41,24 @@ SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("modes", "is_an
 class Sampler:
     """Thin the fields of one problem, and turn nodal forces into forces per length or area.
 
-    `run` is what all frames share, to which `complete` adds the reference. Of what is solved,
-    `columns` are the instants, and `rows` the points by interface, that are shown; `drawn` is the
-    bodies as they are drawn.
+    `run` is what all frames share, to which `complete` adds the reference. Of what is
+    solved, `columns` are the instants, and `rows` the points by interface, that are
+    shown; `drawn` is the bodies as they are drawn.
     """
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
-        self.problem, self.settings = problem, settings
+        self.problem = problem
+        self.settings = settings
         self.columns = thinned(problem.n_instants, MOST_INSTANTS)
         self.rows = {
-            name: thinned(len(law.positions), MOST_POINTS) for name, law in problem.rubbing.items()
+            name: thinned(len(law.positions), MOST_POINTS)
+            for name, law in problem.rubbing.items()
         }
         self.loop = settings.structure().loop(problem)
         kind = {"plane": DrawnMesh, "helices": DrawnRope}.get(settings.kind, DrawnRods)
-        self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(problem, settings, self.columns)
+        self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(
+            problem, settings, self.columns
+        )
         self.run = Run(
             number=number,
             settings=settings,
@@ -83,18 +89,28 @@ class Sampler:
 
     def collapse(self, collapse: Collapse) -> None:
         """Add the mechanism by which the structure begins to fail, and when."""
-        moved = self.drawn.nodes_of(collapse.mechanism * self.problem.scales.displacement)
-        self.run = replace(self.run, is_compared=True, mechanism=moved, collapses_at=collapse.time)
+        moved = self.drawn.nodes_of(
+            collapse.mechanism * self.problem.scales.displacement
+        )
+        self.run = replace(
+            self.run, is_compared=True, mechanism=moved, collapses_at=collapse.time
+        )
 
     def frame(
-        self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs
+        self,
+        iterate: Iterate,
+        history: Sequence[Record],
+        status: Status | None,
+        needs: Needs,
     ) -> Frame:
         """What is shown of an iterate, with the extras that views need."""
         needs = replace(needs, interface=self.run.interface(needs.interface))
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, made_loop=self.loop)
         kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
-        scalars = {n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS}
+        scalars = {
+            n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS
+        }
         return Frame(
             run=self.run,
             iteration=iterate.iterations,
@@ -112,8 +128,12 @@ class Sampler:
         )
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        known = {name: partial(extra, self) for name, extra in EXTRAS.items()} | self.drawn.extras
-        return {name: known[name](iterate, needs) for name in needs.extras & known.keys()}
+        known = {
+            name: partial(extra, self) for name, extra in EXTRAS.items()
+        } | self.drawn.extras
+        return {
+            name: known[name](iterate, needs) for name in needs.extras & known.keys()
+        }
 
     def _names(self, needs: Needs) -> tuple[str, ...]:
         """Interfaces whose contact a frame has."""
@@ -123,17 +143,25 @@ class Sampler:
         return (needs.interface,)
 
     def _interface(self, name: str) -> FrictionInterface:
-        law, rows = self.problem.rubbing[name], self.rows[name]
+        law = self.problem.rubbing[name]
+        rows = self.rows[name]
         bound = coefficient = None
         if law.opens:
             coefficient = floats(law.mean_by_point(law.tangential.friction)[rows, None])
         else:
             highest = law.by_point(law.tangential.highest)[rows]
-            highest = highest[:, self.columns] if highest.shape[1] > 1 else highest
-            bound = floats(highest * self.problem.scales.force / self._lengths(name)[:, None])
+            if highest.shape[1] > 1:
+                highest = highest[:, self.columns]
+            else:
+                highest = highest
+            bound = floats(
+                highest * self.problem.scales.force / self._lengths(name)[:, None]
+            )
         cuts = law.positions[np.bincount(law.points) > 1]
         positions = floats(law.positions[rows])
-        return FrictionInterface(positions, floats(cuts), bound, coefficient, law.is_spring)
+        return FrictionInterface(
+            positions, floats(cuts), bound, coefficient, law.is_spring
+        )
 
     def _lengths(self, name: str) -> Array:
         """Length or area that each shown point of an interface stands for."""
@@ -145,8 +173,10 @@ class Sampler:
     ) -> Mapping[str, InterfaceFields]:
         contact = {}
         for name in names:
-            nodal, lengths = shown.contact(name), self._lengths(name)[:, None]
-            kept, pressure = np.ix_(self.rows[name], self.columns), nodal.normal_force
+            nodal = shown.contact(name)
+            lengths = self._lengths(name)[:, None]
+            kept = np.ix_(self.rows[name], self.columns)
+            pressure = nodal.normal_force
             contact[name] = InterfaceFields(
                 floats(nodal.tangential_force[kept] / lengths),
                 None if pressure is None else floats(pressure[kept] / lengths),

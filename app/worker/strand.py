@@ -1,8 +1,8 @@
 """A strand that is bent: as it is seen from the side, and what views of its wires need.
 
-From the side one sees the wires in front of its outer layer: one looks across the plane of bending
-onto the cylinder that they share. Each has its strip of it, and half of them are hidden behind it
-at any place; the outermost fibre is below.
+From the side one sees the wires in front of its outer layer: one looks across the plane
+of bending onto the cylinder that they share. Each has its strip of it, and half of them
+are hidden behind it at any place; the outermost fibre is below.
 """
 
 from __future__ import annotations
@@ -17,36 +17,54 @@ from scipy.ndimage import binary_dilation
 
 from app.frame import Bytes, DeformedGeometry, Floats, Geometry
 from app.messages import Needs
-from app.worker.geometry import MOST_POINTS, Extras, StressField, floats, mesh_of, thinned
+from app.worker.geometry import (
+    MOST_POINTS,
+    Extras,
+    StressField,
+    floats,
+    mesh_of,
+    thinned,
+)
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.rope.rope import Rope
-from solver.discrete.rope.wire_forces import cut_at, stress_at, wire_forces, wire_stresses
+from solver.discrete.rope.wire_forces import (
+    cut_at,
+    stress_at,
+    wire_forces,
+    wire_stresses,
+)
 from solver.latin import Iterate
 from solver.settings.scene import Settings
 
-A_TURN, FEWEST, MOST = 20, 40, 100
-"""Steps along the strand for each turn of an outer wire, and their number in any case."""
+A_TURN = 20
+FEWEST = 40
+MOST = 100
+"""Steps along the strand for each turn of an outer wire, and their number in any
+case."""
 SHOWN_SHARE = 0.12 * np.pi
-"""Angle from the edges of what is in front within which a wire has no line of contact."""
+"""Angle from the edges of what is in front within which a wire has no line of
+contact."""
 
 
 class DrawnRope:
     """Strips of the wires in front, and a line of contact along each.
 
-    Under a uniform curvature one wire stands for a layer, and passes half a turn from the outermost
-    fibre to the innermost; the other half is its mirror image.
+    Under a uniform curvature one wire stands for a layer, and passes half a turn from
+    the outermost fibre to the innermost; the other half is its mirror image.
     """
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         rope = settings.structure()
         assert isinstance(rope, Rope)
-        self._rope, self._columns = rope, columns
+        self._rope = rope
+        self._columns = columns
         description = rope.described()
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
         self._first = len(rope.wires) - len(wires)
-        self._lay, self._helix = wires[0].made.lay, wires[0].radius
+        self._lay = wires[0].made.lay
+        self._helix = wires[0].radius
         self._radius = 0.5 * description.height
         self._count = sum(wire.stands_for for wire in wires)
         turns = description.length * np.tan(abs(self._lay)) / (2 * np.pi * self._helix)
@@ -54,21 +72,31 @@ class DrawnRope:
         self._z = np.linspace(0.0, description.length, n_steps + 1)
         numbers, steps, grids = zip(*self._strips(), strict=True)
         mesh = mesh_of(grids, numbers)
-        middles = np.concatenate([0.5 * (self._z[own[1:]] + self._z[own[:-1]]) for own in steps])
-        self._quad_wires, _, self._quad_points, _ = self._nearest(mesh["parts"], middles)
+        middles = np.concatenate(
+            [0.5 * (self._z[own[1:]] + self._z[own[:-1]]) for own in steps]
+        )
+        self._quad_wires, _, self._quad_points, _ = self._nearest(
+            mesh["parts"], middles
+        )
         rows = np.concatenate([np.tile(own, 2) for own in steps])
         self._nodes_moved = self._moved(rows, mesh["nodes"][:, 1])
         rows, heights, chains, self._points, self._sides = self._lines()
         self._points_moved = self._moved(rows, np.nan_to_num(heights))
         points = floats(np.stack([self._z[rows], heights], axis=1))
-        self.geometry = Geometry(description=description, points=points, chains=chains, **mesh)
+        self.geometry = Geometry(
+            description=description, points=points, chains=chains, **mesh
+        )
         self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
         self.extras["section"] = self._section
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the strand is bent, which is given, and where its wires slip."""
-        status = iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
-        return DeformedGeometry(self._nodes_moved, self._points_moved, status.astype(np.int8))
+        status = (
+            iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
+        )
+        return DeformedGeometry(
+            self._nodes_moved, self._points_moved, status.astype(np.int8)
+        )
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Mean stress over the section of every wire."""
@@ -96,11 +124,18 @@ class DrawnRope:
                 steps = np.flatnonzero(binary_dilation(np.ptp(edges, axis=0) > 1e-9))
                 if len(steps):
                     z = np.broadcast_to(self._z[steps], (2, len(steps)))
-                    yield number, steps, np.stack([z, self._height(edges[:, steps])], axis=-1)
+                    yield (
+                        number,
+                        steps,
+                        np.stack([z, self._height(edges[:, steps])], axis=-1),
+                    )
 
-    def _nearest(self, numbers: Array, place: Array) -> tuple[Indices, Indices, Indices, Bytes]:
+    def _nearest(
+        self, numbers: Array, place: Array
+    ) -> tuple[Indices, Indices, Indices, Bytes]:
         """Wire, contact point, node and sign of slip at places on outer wires."""
-        wires, sides = self._first + numbers, np.ones(len(place), dtype=np.int8)
+        wires = self._first + numbers
+        sides = np.ones(len(place), dtype=np.int8)
         share = place / self._z[-1]
         if not self._rope.is_clamped:
             turned = np.sign(self._lay) * self._angle(numbers, place)
@@ -112,7 +147,9 @@ class DrawnRope:
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
         """The nearest contact points, and their nodes, at shares of the length of wires."""
         elements = self._rope.elements
-        node = np.clip(np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1))
+        node = np.clip(
+            np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1)
+        )
         return wires * (elements - 1) + node - 1, node
 
     def _lines(self) -> tuple[Indices, Array, Indices, Indices, Bytes]:
@@ -132,16 +169,23 @@ class DrawnRope:
     def _moved(self, rows: Indices, heights: Array) -> Floats:
         """Displacement of heights at steps, (n, 2, n_instants): sections stay plane and normal."""
         up, slope = self._bent
-        return floats(np.stack([slope[rows] * (self._radius - heights)[:, None], up[rows]], axis=1))
+        return floats(
+            np.stack(
+                [slope[rows] * (self._radius - heights)[:, None], up[rows]], axis=1
+            )
+        )
 
     @cached_property
     def _bent(self) -> tuple[Array, Array]:
         """Height and slope of the axis, (n_steps, n_instants), from the clamp or the middle."""
-        rope, z = self._rope, self._z
+        rope = self._rope
+        z = self._z
         if rope.is_clamped:
             wire = rope.wires[self._first]
             columns = wire.curvature[:, self._columns].T
-            curvature = np.stack([np.interp(z, wire.along, values) for values in columns], axis=1)
+            curvature = np.stack(
+                [np.interp(z, wire.along, values) for values in columns], axis=1
+            )
         else:
             curvature = np.tile(rope.curvature[self._columns], (len(z), 1))
         slope = cumulative_trapezoid(curvature, dx=z[1], axis=0, initial=0.0)
@@ -154,10 +198,12 @@ class DrawnRope:
 
     def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         """Axial force in the selected wire, as in rods, and what it would be if nothing slipped."""
-        rope, columns = self._rope, self._columns
+        rope = self._rope
+        columns = self._columns
         names = [wire.name for wire in rope.wires]
         number = names.index(needs.interface)
-        wire, places = rope.wires[number], thinned(rope.elements, MOST_POINTS)
+        wire = rope.wires[number]
+        places = thinned(rope.elements, MOST_POINTS)
         stuck = wire.tension[columns] + wire.stuck_force(columns)
         force = wire_forces(rope, iterate.displacement, columns)[number]
         middles = 0.5 * (wire.along[1:] + wire.along[:-1])
@@ -171,11 +217,12 @@ class DrawnRope:
     def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         """All wires that a section at the selected place cuts, or at the clamp; first the core.
 
-        "place" along the strand, m; "wires", the interface of each, -1 for the core, (n,);
-        "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean "stress", Pa, and
-        "slips", its status, (n, n_instants).
+        "place" along the strand, m; "wires", the interface of each, -1 for the core,
+        (n,); "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean
+        "stress", Pa, and "slips", its status, (n, n_instants).
         """
-        rope, columns = self._rope, self._columns
+        rope = self._rope
+        columns = self._columns
         place = float(np.clip(needs.place or 0.0, 0.0, rope.seen_length))
         cut = cut_at(rope, place)
         lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
@@ -183,13 +230,19 @@ class DrawnRope:
         slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
         core = rope.section.core
         stretched = core.young / rope.section.stiffness * rope.tension[columns]
-        stress = stress_at(rope, cut, wire_stresses(rope, iterate.displacement, columns))
+        stress = stress_at(
+            rope, cut, wire_stresses(rope, iterate.displacement, columns)
+        )
         radii = [0.5 * rope.wires[number].made.diameter for number in cut.wire]
         return {
             "place": place,
             "wires": np.append(-1, cut.wire),
-            "centres": floats(np.concatenate([[[0.0, 0.0]], cut.centres * (1.0, -1.0)])),
+            "centres": floats(
+                np.concatenate([[[0.0, 0.0]], cut.centres * (1.0, -1.0)])
+            ),
             "radii": floats(np.array([0.5 * core.diameter, *radii])),
             "stress": floats(np.concatenate([stretched[None], stress])),
-            "slips": np.concatenate([np.zeros((1, len(columns))), slips]).astype(np.int8),
+            "slips": np.concatenate([np.zeros((1, len(columns))), slips]).astype(
+                np.int8
+            ),
         }

@@ -47,14 +47,16 @@ from solver.study.quantities.finished import (
 )
 from solver.study.quantities.quantity import Quantity
 
-REFUSED, OUT_OF_MEMORY = 2, 3
+REFUSED = 2
+OUT_OF_MEMORY = 3
 """Exit codes."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit code of one command.
 
-    0: converged. 1: stopped otherwise. 2: refused input. 3: out of memory. 130: ended by Ctrl-C.
+    0: converged. 1: stopped otherwise. 2: refused input. 3: out of memory. 130: ended
+    by Ctrl-C.
     """
     try:
         return _exit_code(arguments)
@@ -70,7 +72,10 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
         parser.error(f"unrecognized arguments: {' '.join(options)}")
     chosen.passed_on = options
     if sys.stdout is None:
-        print("slipfront: nothing can be printed: standard output is closed", file=sys.stderr)
+        print(
+            "slipfront: nothing can be printed: standard output is closed",
+            file=sys.stderr,
+        )
         return REFUSED
     code = 0
     try:
@@ -83,7 +88,8 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
         warn(f"there is nothing to compare with: {refusal}")
         return REFUSED
     except OSError as trouble:
-        # Python must not complain at its own end, as where whoever reads has enough ("| head").
+        # Python must not complain at its own end, as where whoever reads has enough ("|
+        # head").
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(trouble, BrokenPipeError):
             warn(f"nothing can be printed: {why(trouble)}")
@@ -97,12 +103,21 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     is_installed = Path(sys.argv[0]).stem == "slipfront"
-    prog = "slipfront" if is_installed else "python -m solver"
+    if is_installed:
+        prog = "slipfront"
+    else:
+        prog = "python -m solver"
     parser = argparse.ArgumentParser(prog=prog, description=__doc__)
     commands = parser.add_subparsers(required=True)
-    run = add_command(commands, "run", "run one scene to its stop rule", _run, of_scene=True)
-    run.add_argument("--out", type=Path, metavar="FILE.npz", help="write the result here")
-    run.add_argument("--json", action="store_true", help="print the key figures as JSON")
+    run = add_command(
+        commands, "run", "run one scene to its stop rule", _run, of_scene=True
+    )
+    run.add_argument(
+        "--out", type=Path, metavar="FILE.npz", help="write the result here"
+    )
+    run.add_argument(
+        "--json", action="store_true", help="print the key figures as JSON"
+    )
     run.add_argument(
         "--no-reference",
         action="store_false",
@@ -125,7 +140,9 @@ def _parser() -> argparse.ArgumentParser:
         "--of", default="", metavar="NAME,...", help="print quantities of the run, too"
     )
     add_command(commands, "scenes", "list the scenes", _scenes)
-    settings = add_command(commands, "settings", "list the settings of a scene", _settings)
+    settings = add_command(
+        commands, "settings", "list the settings of a scene", _settings
+    )
     settings.add_argument("scene")
     add_reports(commands)
     add_checks(commands)
@@ -138,7 +155,9 @@ def _parser() -> argparse.ArgumentParser:
 def _run(chosen: argparse.Namespace) -> int:
     limit = math.inf if chosen.limit is None else chosen.limit
     if chosen.limit is not None and not 0.0 < limit < math.inf:
-        raise SettingError("--limit", limit, "seconds above 0", "give more, or leave it out")
+        raise SettingError(
+            "--limit", limit, "seconds above 0", "give more, or leave it out"
+        )
     asked = [reading(name.strip()) for name in chosen.of.split(",") if name.strip()]
     place = "a file in an existing folder that can be written"
     if chosen.out is not None:
@@ -154,18 +173,24 @@ def _run(chosen: argparse.Namespace) -> int:
     method = replace(method, stop=replace(method.stop, seconds=limit))
     watch = chosen.reference or any(one.reads == "indicators" for one in asked)
     announce(settings, problem, reference=chosen.reference, limit=limit)
-    known = _known(problem, limit) if chosen.reference else Known()
+    if chosen.reference:
+        known = _known(problem, limit)
+    else:
+        known = Known()
     distance = None
     if known.reference is not None:
         distance = distance_to(known.reference, problem)
     if chosen.slab is None:
         solution = solve(problem, method, distance=distance, watch=watch, spent=spent)
     else:
-        solution = solve_in_slabs(problem, method, chosen.slab, distance=distance, spent=spent)
+        solution = solve_in_slabs(
+            problem, method, chosen.slab, distance=distance, spent=spent
+        )
     if chosen.out is not None:
         with refusing(chosen.out, place):
             save_result(chosen.out, settings, solution)
-    # Matrices are small: threads that wait for each other take longer than the whole run.
+    # Matrices are small: threads that wait for each other take longer than the whole
+    # run.
     with one_blas_thread:
         loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
     if loose:
@@ -251,7 +276,9 @@ def _told(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
 
 
 def _number(value: float, unit: str) -> str:
-    return "none" if math.isnan(value) else f"{value:.6g} {unit}".strip()
+    if math.isnan(value):
+        return "none"
+    return f"{value:.6g} {unit}".strip()
 
 
 def _known(problem: Problem, limit: float) -> Known:
@@ -273,7 +300,8 @@ def _scenes(_chosen: argparse.Namespace) -> int:
 
 def _settings(chosen: argparse.Namespace) -> int:
     kind = scene_settings(chosen.scene)
-    definitions, papers = kind.definitions(), kind.defaults("paper")
+    definitions = kind.definitions()
+    papers = kind.defaults("paper")
     width = max(map(len, definitions)) + 1
     for name, definition in definitions.items():
         unit = about(definition).unit or "-"

@@ -63,7 +63,9 @@ def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
 
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
     """Table of the file that `--with` names."""
-    data = read_bytes(chosen.file, partial(SettingError, "--with", str(chosen.file), allowed))
+    data = read_bytes(
+        chosen.file, partial(SettingError, "--with", str(chosen.file), allowed)
+    )
     return read_table(data, chosen.file.name, "--with", allowed)
 
 
@@ -106,10 +108,12 @@ def announce(
 ) -> None:
     """Print what a long or large run will take, before it begins.
 
-    `run` is what it is called, `reference` whether there is one beside it, and `limit` the seconds
-    after which it ends.
+    `run` is what it is called, `reference` whether there is one beside it, and `limit`
+    the seconds after which it ends.
     """
-    cost = run_cost(problem, method_of(settings), settings.max_iterations, with_reference=reference)
+    cost = run_cost(
+        problem, method_of(settings), settings.max_iterations, with_reference=reference
+    )
     if not cost.is_large:
         return
     line = f"{run} will take about {cost}"

@@ -32,11 +32,20 @@ from solver.study.stability import Row, extreme_cases, judged_runs, passed
 from solver.study.sweep.executors import FORMS, opened
 from solver.study.sweep.plan import FORM, LOST, STUCK, Plan, plan_of
 from solver.study.sweep.plan import Row as SweepRow
-from solver.study.sweep.report import counts, csv_of, growth, lines_of, rows_in, sections, title_of
+from solver.study.sweep.report import (
+    counts,
+    csv_of,
+    growth,
+    lines_of,
+    rows_in,
+    sections,
+    title_of,
+)
 from solver.study.sweep.run import patience, sweep
 from solver.study.trade_case import case_from_file
 
-TABLE, PAGE = "sweep.csv", "sweep.html"
+TABLE = "sweep.csv"
+PAGE = "sweep.html"
 LIMIT = 600.0
 """Seconds that a run may take, unless somebody says otherwise."""
 OFTEN = 3.0
@@ -48,27 +57,47 @@ def add_reports(commands: Any) -> None:
     purpose = "draw the paper's Figs. 3 to 8 again"
     add_command(commands, "figures", purpose, _figures, to_folder=True)
     purpose = "error against run time, all methods side by side"
-    parser = add_command(commands, "study", purpose, _study, of_scene=True, to_folder=True)
-    parser.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
-    parser.add_argument("--large", action="store_true", help="sizes that take minutes, too")
+    parser = add_command(
+        commands, "study", purpose, _study, of_scene=True, to_folder=True
+    )
+    parser.add_argument(
+        "--repeats", type=int, default=5, help="passes whose median is taken"
+    )
+    parser.add_argument(
+        "--large", action="store_true", help="sizes that take minutes, too"
+    )
     purpose = "stiff and extreme cases, or random runs, each with a verdict"
     parser = add_command(commands, "stability", purpose, _stability, to_folder=True)
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
+    parser.add_argument(
+        "scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all"
+    )
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--quick", action="store_true", help="a quarter of the cases")
-    kinds.add_argument("--random", type=int, metavar="N", help="so many random runs, instead")
+    kinds.add_argument(
+        "--random", type=int, metavar="N", help="so many random runs, instead"
+    )
     parser.add_argument("--seed", type=int, default=1, help="of the random runs")
     purpose = "what is known beside what is found, row by row"
     parser = add_command(commands, "proof", purpose, _proof, to_folder=True)
     own = "cases of one's own (.toml)"
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
     purpose = "quantities of a run over up to two settings"
-    parser = add_command(commands, "sweep", purpose, _sweep, of_scene=True, to_folder=True)
-    parser.add_argument("--vary", action="append", default=[], metavar="RANGE", help=FORM)
-    parser.add_argument("--of", required=True, metavar="NAME,...", help="what is asked of a run")
+    parser = add_command(
+        commands, "sweep", purpose, _sweep, of_scene=True, to_folder=True
+    )
+    parser.add_argument(
+        "--vary", action="append", default=[], metavar="RANGE", help=FORM
+    )
+    parser.add_argument(
+        "--of", required=True, metavar="NAME,...", help="what is asked of a run"
+    )
     parser.add_argument("--on", default="processes", metavar="EXECUTOR", help=FORMS)
-    parser.add_argument("--limit", type=float, default=LIMIT, help="seconds that a run may take")
-    parser.add_argument("--cold", action="store_true", help="start no run from its neighbour")
+    parser.add_argument(
+        "--limit", type=float, default=LIMIT, help="seconds that a run may take"
+    )
+    parser.add_argument(
+        "--cold", action="store_true", help="start no run from its neighbour"
+    )
 
 
 def _figures(chosen: argparse.Namespace) -> int:
@@ -85,17 +114,25 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 def _study(chosen: argparse.Namespace) -> int:
     if chosen.repeats < 1:
-        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+        raise SettingError(
+            "--repeats", chosen.repeats, "a whole number from 1", "give 1 or more"
+        )
     settings, _ = given(chosen)
     with writing(chosen.out):
-        # What is measured is written at once: the rest takes longer, and somebody may end it.
+        # What is measured is written at once: the rest takes longer, and somebody may
+        # end it.
         curves = error_against_time(settings, chosen.repeats)
         study.write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
         study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
     print("\n".join(study.conditions(settings, chosen.repeats)), end="\n\n")
     print(aligned(study.table(curves)))
-    print("", aligned(study.sizes_table(settings, sizes)), *study.notes(settings, sizes), sep="\n")
+    print(
+        "",
+        aligned(study.sizes_table(settings, sizes)),
+        *study.notes(settings, sizes),
+        sep="\n",
+    )
     print_files(f"{len(study.FILES)} files", chosen.out)
     return 0
 
@@ -105,7 +142,9 @@ def _stability(chosen: argparse.Namespace) -> int:
     for name, least in (("random", 1), ("seed", 0)):
         value = getattr(chosen, name)
         if value is not None and value < least:
-            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
+            raise SettingError(
+                f"--{name}", value, f"a whole number from {least}", "raise it"
+            )
     cases = extreme_cases(scenes, quick=chosen.quick)
     if chosen.random is not None:
         cases = random_cases(scenes, chosen.random, chosen.seed)
@@ -145,7 +184,12 @@ def _sweep(chosen: argparse.Namespace) -> int:
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
     print_tables(tables)
-    warn(*(f"{name} does nothing with the other settings as they are" for name in plan.idle()))
+    warn(
+        *(
+            f"{name} does nothing with the other settings as they are"
+            for name in plan.idle()
+        )
+    )
     with writing(chosen.out):
         rows = rows_in(chosen.out / TABLE, plan)
         is_ended = False
@@ -174,14 +218,22 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
         # As a whole, in case that its last line was cut off
         write(table, csv_of(plan, list(rows.values())))
         with table.open("a", encoding="utf-8", newline="") as lines:
-            before, began = len(known), time.monotonic()
+            before = len(known)
+            began = time.monotonic()
             printed = began
-            runs = sweep(plan, executor, done=set(known), limit=chosen.limit, warm=not chosen.cold)
+            runs = sweep(
+                plan,
+                executor,
+                done=set(known),
+                limit=chosen.limit,
+                warm=not chosen.cold,
+            )
             for row in runs:
                 rows[row.number] = known[row.number] = row
                 lines.write(lines_of(plan, [row]))
                 lines.flush()
-                now, done = time.monotonic(), len(known)
+                now = time.monotonic()
+                done = len(known)
                 if now - printed > OFTEN:
                     left = (now - began) / (done - before) * (plan.size - done)
                     line = f"{done} of {plan.size} runs, {left:.0f} s left"

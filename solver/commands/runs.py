@@ -52,21 +52,34 @@ def add_checks(commands: Any) -> None:
     """Add the commands."""
     purpose = "whether elements and instants are enough for a quantity"
     mesh = add_command(commands, "mesh", purpose, _mesh, of_scene=True)
-    mesh.add_argument("--of", required=True, metavar="NAME", help="what is asked of a run")
+    mesh.add_argument(
+        "--of", required=True, metavar="NAME", help="what is asked of a run"
+    )
     purpose = "how far a run is from a measured loop, or another program"
     compare = add_command(commands, "compare", purpose, _compare, of_scene=True)
-    compare.add_argument("--interface", default="", metavar="NAME", help="the first one without")
+    compare.add_argument(
+        "--interface", default="", metavar="NAME", help="the first one without"
+    )
     purpose = "settings that bring a run nearest to a measured loop"
     fitting = add_command(commands, "fit", purpose, _fit, of_scene=True, to_folder=True)
     most = f"up to {MOST} settings"
     fitting.add_argument("--vary", required=True, metavar="NAME,...", help=most)
     for parser in (compare, fitting):
         parser.add_argument(
-            "--with", type=Path, required=True, metavar="FILE.csv", dest="file", help="their table"
+            "--with",
+            type=Path,
+            required=True,
+            metavar="FILE.csv",
+            dest="file",
+            help="their table",
         )
-        parser.add_argument("--json", action="store_true", help="print what was found as JSON")
+        parser.add_argument(
+            "--json", action="store_true", help="print what was found as JSON"
+        )
     lesson = add_command(commands, "lesson", "test what lessons claim", _lesson)
-    lesson.add_argument("files", nargs="+", type=Path, metavar="FILE", help="lessons (.toml)")
+    lesson.add_argument(
+        "files", nargs="+", type=Path, metavar="FILE", help="lessons (.toml)"
+    )
 
 
 def _mesh(chosen: argparse.Namespace) -> int:
@@ -74,7 +87,9 @@ def _mesh(chosen: argparse.Namespace) -> int:
     asked = reading(chosen.of)
     if not decides(settings, asked):
         can = "a quantity of what a run comes to, that this scene has"
-        raise SettingError("--of", chosen.of, can, "`python -m solver sweep` lists them")
+        raise SettingError(
+            "--of", chosen.of, can, "`python -m solver sweep` lists them"
+        )
     values: dict[str, float] = {}
     refinements = []
     for names in (settings.MESH, ["instants"]):
@@ -84,7 +99,9 @@ def _mesh(chosen: argparse.Namespace) -> int:
             if size not in values:
                 announce(run, discretise(run), size)
                 values[size] = value_on(run, asked)
-                print(f"{size:>32}  {values[size]:.6g} {asked.unit}".rstrip(), flush=True)
+                print(
+                    f"{size:>32}  {values[size]:.6g} {asked.unit}".rstrip(), flush=True
+                )
         coarse, middle, fine = (values[size_of(run)] for run in runs)
         refinements.append(Refinement((coarse, middle, fine), own))
     elements, instants = refinements
@@ -101,7 +118,8 @@ def _compare(chosen: argparse.Namespace) -> int:
     structure = settings.structure()
     brought = brought_in(table, settings, structure.axes)
     problem = discretise(settings)
-    name, interface = chosen.file.name, chosen.interface
+    name = chosen.file.name
+    interface = chosen.interface
     message = brought.message
     beside: LoopComparison | Comparison
     if isinstance(brought, MeasuredLoop):
@@ -113,7 +131,9 @@ def _compare(chosen: argparse.Namespace) -> int:
         beside = Comparison(brought, problem, interface)
         if beside.counted < FEWEST:
             can = f"at least {FEWEST} rows that both cover"
-            raise SettingError("--with", str(chosen.file), can, "give points along this interface")
+            raise SettingError(
+                "--with", str(chosen.file), can, "give points along this interface"
+            )
     print_tables({name: message})
     announce(settings, problem)
     solution = solve(problem, method_of(settings))
@@ -122,15 +142,26 @@ def _compare(chosen: argparse.Namespace) -> int:
     if status.lost_from is not None:
         time_lost = problem.instants[status.lost_from]
         warn(f"no distance is told: no solution is found from {time_lost:.4g} s on")
-        figures |= dict.fromkeys(figures.keys() & {"distance", "distance_given"}, math.nan)
+        figures |= dict.fromkeys(
+            figures.keys() & {"distance", "distance_given"}, math.nan
+        )
     elif isinstance(beside, LoopComparison):
         warn(*beside.drive_messages(figures["distance_given"]))
         warn(*beside.measured.unit_doubts(*beside.loop.along(solution.iterate)))
     if chosen.json:
-        print_json({**figures, "tables": {**tables, name: message}, "status": str(status.ending)})
+        print_json(
+            {
+                **figures,
+                "tables": {**tables, name: message},
+                "status": str(status.ending),
+            }
+        )
     else:
         distance = figures["distance"]
-        far = "no distance" if math.isnan(distance) else f"{100.0 * distance:.4g} %"
+        if math.isnan(distance):
+            far = "no distance"
+        else:
+            far = f"{100.0 * distance:.4g} %"
         rows = f"{figures['rows_compared']} of {figures['rows']} rows"
         print(f"{figures['quantity']}: {far} from {name}, at {rows}")
     return 0 if status.ending is Ending.CONVERGED else 1

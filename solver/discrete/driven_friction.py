@@ -1,10 +1,11 @@
 """Friction of points whose slip prescribed displacements alone make.
 
 At such a point only the sum of friction and reaction is determinate, and a method that
-searches for both shares it out by its own parameters. While the point slips, its friction
-is its bound against the slip. While it stands still, as at a clamp, it is per area what
-the nearest point carries that is free to slip, as far as its own bound allows: friction
-goes on evenly up to what holds a body, so that no half element of it is missing there.
+searches for both shares it out by its own parameters. While the point slips, its
+friction is its bound against the slip. While it stands still, as at a clamp, it is per
+area what the nearest point carries that is free to slip, as far as its own bound
+allows: friction goes on evenly up to what holds a body, so that no half element of it
+is missing there.
 """
 
 from __future__ import annotations
@@ -63,8 +64,12 @@ class DrivenFriction:
         By all contact forces, (n_forces, n_instants), and W of all rows, (n_rows,
         n_instants), both scaled.
         """
-        along, slip = self.along, self._slip
-        pressing = None if self.pressing is None else forces[self.pressing]
+        along = self.along
+        slip = self._slip
+        if self.pressing is None:
+            pressing = None
+        else:
+            pressing = forces[self.pressing]
         opening = self._opening(displacement)
         if along.softness is not None:
             return self._on_springs(pressing, opening)
@@ -83,7 +88,10 @@ class DrivenFriction:
         if self.gap is None or not self.along.bound.any():
             return None
         above, *below = (displacement[rows] for rows in self.normal_rows)
-        jump = above - below[0] if below else above
+        if below:
+            jump = above - below[0]
+        else:
+            jump = above
         return np.asarray(jump + self.gap[:, None])
 
     def _on_springs(self, pressing: Array | None, opening: Array | None) -> Array:
@@ -91,7 +99,9 @@ class DrivenFriction:
         along = self.along
         assert along.softness is not None
         softness = along.softness[:, None]
-        reach = softness * np.broadcast_to(along.without_slip(pressing, opening), self.jump.shape)
+        reach = softness * np.broadcast_to(
+            along.without_slip(pressing, opening), self.jump.shape
+        )
         if along.strength is None:
             n_points, n_instants = self.jump.shape
             slider = Play(n_points, n_instants, self.start)(self.jump, reach)
@@ -122,10 +132,17 @@ def driven_friction(
     if not points.size:
         return None
     above, *below = (values[np.searchsorted(dofs, own[points])] for own in sides)
-    own, start = law.tangential, law.tangential.start
+    own = law.tangential
+    start = law.tangential.start
     nearest, share = _nearest_free(law, points)
-    cap = None if own.cap is None else law.by_point(own.cap)[points]
-    softness = None if own.softness is None else law.in_parallel(own.softness)[points]
+    if own.cap is None:
+        cap = None
+    else:
+        cap = law.by_point(own.cap)[points]
+    if own.softness is None:
+        softness = None
+    else:
+        softness = law.in_parallel(own.softness)[points]
     driven = DrivenFriction(
         along=replace(
             own,
@@ -137,7 +154,9 @@ def driven_friction(
             start=None,
         ),
         jump=above - below[0] if below else above,
-        start=np.zeros(len(points)) if start is None else law.mean_by_point(start)[points],
+        start=np.zeros(len(points))
+        if start is None
+        else law.mean_by_point(start)[points],
         noise=ROUNDING * largest,
         beside=places[-1].start + nearest,
         share=share,
@@ -159,5 +178,6 @@ def _nearest_free(law: Contact, points: Indices) -> tuple[Indices, Array]:
     if not free.size:
         return points, np.zeros(len(points))
     away = np.abs(np.subtract.outer(law.positions[points], law.positions[free]))
-    nearest, areas = free[away.argmin(axis=1)], law.by_point(law.weights)
+    nearest = free[away.argmin(axis=1)]
+    areas = law.by_point(law.weights)
     return nearest, areas[points] / areas[nearest]

@@ -49,7 +49,9 @@ class Drive:
 
     def before(self, instant: int) -> float:
         """Value from which the step to an instant begins."""
-        return float(self.values[instant - 1]) if instant else 0.0
+        if instant:
+            return float(self.values[instant - 1])
+        return 0.0
 
     def changes(self, instant: int) -> bool:
         """Whether it changes in the step to an instant."""
@@ -89,8 +91,8 @@ def beyond(drives: Sequence[Drive], instant: int, share: float) -> str:
     """Words on the loads past which something happens.
 
     They are those after a share of the step to an instant. What falls is passed
-    downwards; of loads that act together from nothing on, no share may be carried. Empty
-    where nothing changes.
+    downwards; of loads that act together from nothing on, no share may be carried.
+    Empty where nothing changes.
     """
     moving = [drive for drive in drives if drive.changes(instant)]
     from_nothing = not any(drive.before(instant) for drive in moving)

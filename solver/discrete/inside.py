@@ -13,16 +13,18 @@ from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity
 
 HELD = 1e-9
-"""Singular value, beside that of a translation, from which on what is prescribed hinders."""
+"""Singular value, beside that of a translation, from which on what is prescribed
+hinders."""
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
     """A rectangular substructure: its mesh, and its stiffness seen from its boundary rows.
 
-    Equal parts share these, and the elasticity. Its `nodes` have numbers among those of all bodies,
-    shape (n_rows, n_columns) of the mesh; boundary `rows` go by joint or by the name of a side,
-    shape (n_nodes, n_components) each; nodal forces are scaled, shape (2 n_nodes, n_instants).
+    Equal parts share these, and the elasticity. Its `nodes` have numbers among those of
+    all bodies, shape (n_rows, n_columns) of the mesh; boundary `rows` go by joint or by
+    the name of a side, shape (n_nodes, n_components) each; nodal forces are scaled,
+    shape (2 n_nodes, n_instants).
     """
 
     rectangle: Rectangle
@@ -44,12 +46,13 @@ class Inside:
     elements, bodies
         Corners of every element, counter-clockwise, (n_elements, 4), and body of each.
     grids
-        Nodes of every substructure, row by row from below, shape (n_rows, n_columns) each.
+        Nodes of every substructure, row by row from below, shape (n_rows, n_columns)
+        each.
     dofs
         Degrees of freedom of the problem under those that each substructure keeps.
     places, components
-        Scaled position of every degree of freedom of the problem, (n_dofs, 2), and its direction:
-        0 along x and 1 along y, (n_dofs,).
+        Scaled position of every degree of freedom of the problem, (n_dofs, 2), and its
+        direction: 0 along x and 1 along y, (n_dofs,).
     """
 
     def __init__(
@@ -58,7 +61,9 @@ class Inside:
         length = scales.displacement
         kept = [dofs_of(part.nodes.ravel())[part.condensed.kept] for part in parts]
         skeleton = np.unique(np.concatenate(kept))
-        self._parts, self._length, self._young = parts, length, scales.force / length
+        self._parts = parts
+        self._length = length
+        self._young = scales.force / length
         self._size = len(skeleton), n_instants
         self.dofs = [np.searchsorted(skeleton, own) for own in kept]
         self.nodes: Array = positions * length
@@ -75,7 +80,10 @@ class Inside:
         chosen = skeleton[:, instants] / self._length
         whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
         for part, dofs in zip(self._parts, self.dofs, strict=True):
-            force = None if part.force is None else part.force[:, instants]
+            if part.force is None:
+                force = None
+            else:
+                force = part.force[:, instants]
             own = part.condensed.recover(chosen[dofs], force)
             whole[part.nodes.ravel()] = own.reshape(-1, 2, own.shape[1])
         return whole * self._length
@@ -86,9 +94,12 @@ class Inside:
         Weights of the problem's degrees of freedom, (n_dofs,), from those of the nodes,
         (n_nodes, 2); and what loads inside add, (n_instants,), m.
         """
-        total, constant = np.zeros(self._size[0]), np.zeros(self._size[1])
+        total = np.zeros(self._size[0])
+        constant = np.zeros(self._size[1])
         # Substructures share the nodes on their cuts.
-        counts = np.bincount(np.concatenate([part.nodes.ravel() for part in self._parts]))
+        counts = np.bincount(
+            np.concatenate([part.nodes.ravel() for part in self._parts])
+        )
         shares = weights / counts[:, None]
         for part, dofs in zip(self._parts, self.dofs, strict=True):
             own = shares[part.nodes.ravel()].reshape(-1, 1)
@@ -105,23 +116,31 @@ class Inside:
         `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
         """
         scaled = displacement / self._length
-        parts = [part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
+        parts = [
+            part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts
+        ]
         return self._young * np.concatenate(parts)
 
     def rigid_motions(self, fixed: Indices) -> Array | None:
         """Independent rigid motions of bodies, (n_dofs, n_motions), or None.
 
-        They move none of the degrees of freedom whose displacement is prescribed, `fixed`.
+        They move none of the degrees of freedom whose displacement is prescribed,
+        `fixed`.
         """
-        motions, bodies = [], np.empty(len(self.components), dtype=np.intp)
+        motions = []
+        bodies = np.empty(len(self.components), dtype=np.intp)
         for part, dofs in zip(self._parts, self.dofs, strict=True):
             bodies[dofs] = part.body
         for body in np.unique(bodies):
             own = np.flatnonzero(bodies == body)
             along = self.components[own] == 0
             x, y = (self.places[own] - self.places[own].mean(axis=0)).T
-            modes = np.stack([along, ~along, np.where(along, -y, x)], axis=1).astype(float)
-            _, sizes, ways = np.linalg.svd(modes[np.isin(own, fixed)], full_matrices=True)
+            modes = np.stack([along, ~along, np.where(along, -y, x)], axis=1).astype(
+                float
+            )
+            _, sizes, ways = np.linalg.svd(
+                modes[np.isin(own, fixed)], full_matrices=True
+            )
             hindered = np.count_nonzero(sizes > HELD)
             whole = np.zeros((len(bodies), 3 - hindered))
             whole[own] = modes @ ways[hindered:].T

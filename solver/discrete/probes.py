@@ -1,7 +1,8 @@
 """Numbers over time that a whole structure shows: mean displacements, reactions, axial forces.
 
-What is asked of the inside of condensed substructures is brought onto the degrees of freedom of the
-problem once, by the transpose of their recovery; then a probe costs as much as its few weights.
+What is asked of the inside of condensed substructures is brought onto the degrees of
+freedom of the problem once, by the transpose of their recovery; then a probe costs as
+much as its few weights.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}
 class Probe:
     """A weighted sum of displacements, and what loads alone add to it.
 
-    Of some degrees of freedom of the problem, with a weight each, shape (n,); the constant, in the
-    probe's unit, has shape (n_instants,), or is 0.
+    Of some degrees of freedom of the problem, with a weight each, shape (n,); the
+    constant, in the probe's unit, has shape (n_instants,), or is 0.
     """
 
     dofs: Indices
@@ -74,33 +75,38 @@ def end_rotation(problem: Problem) -> Probe:
     """Rotation of the ends of all bodies that reach the right, counter-clockwise, their mean.
 
     It is what a moment that they share works on, spread over each of them as a linear
-    traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height t.
+    traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height
+    t.
     """
     inside = _inside(problem)
     ends, bodies = _edges(inside, "right")
     _, bodies = np.unique(bodies, return_inverse=True)
-    y, count = inside.nodes[ends, 1], int(bodies.max()) + 1
-    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    y = inside.nodes[ends, 1]
+    count = int(bodies.max()) + 1
+    low = np.full(count, np.inf)
+    high = np.full(count, -np.inf)
     np.minimum.at(low, bodies, y.min(axis=0))
     np.maximum.at(high, bodies, y.max(axis=0))
     lever = y - (0.5 * (low + high))[bodies]
-    return _integral(inside, ends, 0, -12.0 / count / ((high - low) ** 3)[bodies] * lever)
+    return _integral(
+        inside, ends, 0, -12.0 / count / ((high - low) ** 3)[bodies] * lever
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class Reaction:
     """A weighted sum of the forces that hold degrees of freedom whose displacement is given.
 
-    They are what the elements there need beyond all that acts there: loads, and the contact forces
-    of the same nodes (solver/README.md, 6).
+    They are what the elements there need beyond all that acts there: loads, and the
+    contact forces of the same nodes (solver/README.md, 6).
 
     Attributes
     ----------
     elements
         Forces of the elements less the loads, N.
     contacts
-        Weights of the normal and the tangential forces that act there, by interface, (n_points,)
-        each, None where there are no normal ones.
+        Weights of the normal and the tangential forces that act there, by interface,
+        (n_points,) each, None where there are no normal ones.
     """
 
     elements: Probe
@@ -130,7 +136,8 @@ class Reaction:
 def reaction(problem: Problem, name: str, component: int | None = None) -> Reaction:
     """Sum of the forces that hold an interface of prescribed displacements, N.
 
-    In the plane those of one component are counted, 0 along x and 1 along y, or of both.
+    In the plane those of one component are counted, 0 along x and 1 along y, or of
+    both.
     """
     held = np.zeros(problem.n_dofs)
     held[problem.held_dofs[name]] = 1.0
@@ -144,7 +151,8 @@ def reaction_moment(problem: Problem, name: str) -> Reaction:
 
     Counter-clockwise, for a metre of thickness.
     """
-    (x, y), components = problem.positions.T, _inside(problem).components
+    (x, y) = problem.positions.T
+    components = _inside(problem).components
     held = np.zeros(problem.n_dofs)
     dofs = problem.held_dofs[name]
     held[dofs] = np.where(components == 0, -y, x)[dofs]
@@ -153,7 +161,8 @@ def reaction_moment(problem: Problem, name: str) -> Reaction:
 
 def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
     """The sum of reactions with weights of their degrees of freedom, (n_dofs,)."""
-    weights, loads = np.zeros(problem.n_dofs), np.zeros(problem.n_instants)
+    weights = np.zeros(problem.n_dofs)
+    loads = np.zeros(problem.n_instants)
     for part in problem.substructures:
         own = held[part.dofs]
         if own.any():
@@ -162,19 +171,26 @@ def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
                 loads += own @ part.body_force
     for given in problem.given_forces:
         loads += held[problem.row_dofs[given.rows]] @ given.values
-    scales, dofs = problem.scales, np.flatnonzero(weights)
+    scales = problem.scales
+    dofs = np.flatnonzero(weights)
     elastic = weights[dofs] * scales.force / scales.displacement
-    return Reaction(Probe(dofs, elastic, -loads * scales.force), _contacts_at(problem, held))
+    return Reaction(
+        Probe(dofs, elastic, -loads * scales.force), _contacts_at(problem, held)
+    )
 
 
-def _contacts_at(problem: Problem, held: Array) -> dict[str, tuple[Array | None, Array]]:
+def _contacts_at(
+    problem: Problem, held: Array
+) -> dict[str, tuple[Array | None, Array]]:
     """Weights of the contact forces in a weighted sum of all forces on degrees of freedom."""
     contacts: dict[str, tuple[Array | None, Array]] = {}
     for name, law in problem.rubbing.items():
         _, pairs = np.unique(law.points, return_index=True)
         weights = []
         for component in law.components:
-            above, *below = (held[problem.row_dofs[rows[pairs]]] for rows in component.sides)
+            above, *below = (
+                held[problem.row_dofs[rows[pairs]]] for rows in component.sides
+            )
             weights.append(above - below[0] if below else above)
         if any(weight.any() for weight in weights):
             contacts[name] = (weights[0] if law.opens else None, weights[-1])
@@ -184,11 +200,15 @@ def _contacts_at(problem: Problem, held: Array) -> dict[str, tuple[Array | None,
 class AxialForce:
     """Axial force in the elements of rods, from their displacement at some instants.
 
-    Elements have their middles at `positions`, m, and lie in `wires`, from 0, (n_elements,) each.
+    Elements have their middles at `positions`, m, and lie in `wires`, from 0,
+    (n_elements,) each.
     """
 
-    def __init__(self, problem: Problem, instants: slice | Indices = slice(None)) -> None:
-        parts, places = problem.substructures, problem.positions
+    def __init__(
+        self, problem: Problem, instants: slice | Indices = slice(None)
+    ) -> None:
+        parts = problem.substructures
+        places = problem.positions
         self._first = np.concatenate([part.dofs[:-1] for part in parts])
         self._second = np.concatenate([part.dofs[1:] for part in parts])
         scale = problem.scales.force / problem.scales.displacement
@@ -218,7 +238,10 @@ def _inside(problem: Problem) -> Inside:
 def _edges(inside: Inside, side: str) -> tuple[Indices, Indices]:
     """Both ends, (2, n), of all element edges along an outer side, and their bodies, (n,)."""
     places = inside.nodes[:, AXES[side]]
-    outermost = places.min() if side in ("left", "bottom") else places.max()
+    if side in ("left", "bottom"):
+        outermost = places.min()
+    else:
+        outermost = places.max()
     ends = np.stack([inside.elements, np.roll(inside.elements, -1, axis=1)])
     along = np.all(places[ends] == outermost, axis=0)
     return ends[:, along], inside.bodies[np.nonzero(along)[0]]
@@ -228,7 +251,9 @@ def _integral(inside: Inside, ends: Indices, component: int, density: Array) -> 
     """Integral of displacement over edges times a density that is linear between their ends."""
     length = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1)
     weights = np.zeros_like(inside.nodes)
-    np.add.at(weights[:, component], ends, length / 6.0 * (density + density.sum(axis=0)))
+    np.add.at(
+        weights[:, component], ends, length / 6.0 * (density + density.sum(axis=0))
+    )
     kept, constant = inside.adjoint(weights)
     dofs = np.flatnonzero(kept)
     return Probe(dofs, kept[dofs], constant)

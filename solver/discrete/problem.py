@@ -1,9 +1,10 @@
 """The discrete problem: matrices, traces, laws and macro bases; no options and no state.
 
-Everything here is scaled (see `Scales`). A boundary row is one displacement component of one
-interface point as one substructure sees it; an interface owns rows, and so does a substructure.
-Fields on the boundary have shape (n_rows, n_instants), and those of one instant are contiguous in
-memory (Fortran order), because the friction law walks through time.
+Everything here is scaled (see `Scales`). A boundary row is one displacement component
+of one interface point as one substructure sees it; an interface owns rows, and so does
+a substructure. Fields on the boundary have shape (n_rows, n_instants), and those of one
+instant are contiguous in memory (Fortran order), because the friction law walks through
+time.
 """
 
 from __future__ import annotations
@@ -64,30 +65,33 @@ class Problem:
     interfaces
         All interfaces by name; together they own every boundary row once.
     positions
-        Coordinates of the degrees of freedom of the whole structure, in m: shape (n_dofs,) along a
-        rod, (n_dofs, 2) in the plane.
+        Coordinates of the degrees of freedom of the whole structure, in m: shape
+        (n_dofs,) along a rod, (n_dofs, 2) in the plane.
     instants
         Shape (n_instants,), in s.
     inside
-        What the degrees of freedom do not show, where substructures are condensed; else None.
+        What the degrees of freedom do not show, where substructures are condensed; else
+        None.
     rest
-        Displacement that the method may start from, scaled, shape (n_dofs, n_instants): that of a
-        body which falls onto its support as if it were rigid. None is no displacement.
+        Displacement that the method may start from, scaled, shape (n_dofs, n_instants):
+        that of a body which falls onto its support as if it were rigid. None is no
+        displacement.
     carried
-        Displacement of the support that rods lie on, scaled, shape (n_dofs, n_instants), where it
-        moves: all displacements of the problem are seen from it.
+        Displacement of the support that rods lie on, scaled, shape (n_dofs,
+        n_instants), where it moves: all displacements of the problem are seen from it.
     has_short_joints
-        Whether upright joints of bodies have no pair at their ends, so that these bodies carry
-        less than rigid ones.
+        Whether upright joints of bodies have no pair at their ends, so that these
+        bodies carry less than rigid ones.
     drives
-        Loads and motions by the settings that give them, for words alone; none of a problem that
-        is no scene's.
+        Loads and motions by the settings that give them, for words alone; none of a
+        problem that is no scene's.
 
     Raises
     ------
     RefusedError
-        For rows or degrees of freedom that are not covered, fields of another shape, instants that
-        do not increase, or prescribed displacements that contradict each other.
+        For rows or degrees of freedom that are not covered, fields of another shape,
+        instants that do not increase, or prescribed displacements that contradict each
+        other.
     """
 
     substructures: tuple[Substructure, ...]
@@ -112,16 +116,26 @@ class Problem:
         )
         field = Numbers(((self.n_dofs, self.n_instants),))
         check(self, rest=field, carried=field)
-        parts, laws = self.substructures, self.interfaces.values()
-        _check_cover("substructures", "degree of freedom", self.n_dofs, [p.dofs for p in parts])
-        _check_cover("substructures", "row", self.n_rows, [p.rows for p in parts], once=True)
-        _check_cover("interfaces", "row", self.n_rows, [law.rows for law in laws], once=True)
+        parts = self.substructures
+        laws = self.interfaces.values()
+        _check_cover(
+            "substructures", "degree of freedom", self.n_dofs, [p.dofs for p in parts]
+        )
+        _check_cover(
+            "substructures", "row", self.n_rows, [p.rows for p in parts], once=True
+        )
+        _check_cover(
+            "interfaces", "row", self.n_rows, [law.rows for law in laws], once=True
+        )
         self._check_instants()
         self._check_prescribed()
 
     def _check_instants(self) -> None:
         """Refuse what has values for other instants."""
-        counts = {f"interfaces[{name!r}]": law.n_instants for name, law in self.interfaces.items()}
+        counts = {
+            f"interfaces[{name!r}]": law.n_instants
+            for name, law in self.interfaces.items()
+        }
         for number, part in enumerate(self.substructures):
             if part.body_force is not None:
                 counts[f"substructures[{number}].body_force"] = part.body_force.shape[1]
@@ -129,7 +143,9 @@ class Problem:
             if count not in (None, self.n_instants):
                 allowed = f"as many as Problem.instants has, {self.n_instants}"
                 shown = Words(f"of {count} instants")
-                raise RefusedError(f"Problem.{name}", shown, allowed, "give one value an instant")
+                raise RefusedError(
+                    f"Problem.{name}", shown, allowed, "give one value an instant"
+                )
 
     def _check_prescribed(self) -> None:
         """Refuse displacements that differ at one degree of freedom."""
@@ -140,7 +156,9 @@ class Problem:
         values = np.concatenate([one.values for one in given])
         _, first, place = np.unique(dofs, return_index=True, return_inverse=True)
         apart = np.abs(values - values[first][place])
-        if float(apart.max(initial=0.0)) > ALIKE * float(np.abs(values).max(initial=0.0)):
+        if float(apart.max(initial=0.0)) > ALIKE * float(
+            np.abs(values).max(initial=0.0)
+        ):
             number = int(apart.max(axis=1).argmax())
             raise RefusedError(
                 "Problem.interfaces",
@@ -209,7 +227,8 @@ class Problem:
     @cached_property
     def contact_groups(self) -> list[ContactGroup]:
         """Interfaces with friction, those of one law as one."""
-        every, alike = list(self.rubbing.values()), dict[Hashable, list[int]]()
+        every = list(self.rubbing.values())
+        alike = dict[Hashable, list[int]]()
         for number, (name, law) in enumerate(self.rubbing.items()):
             # A law of its own may have more than its fields to tell it from others.
             key = law.kind if name in self.incremental_forms else name
@@ -219,8 +238,13 @@ class Problem:
     @cached_property
     def contact_points(self) -> dict[str, slice]:
         """Where the points of each interface stand among those of all, by name."""
-        ends = np.cumsum([0, *(len(law.positions) for law in self.rubbing.values())]).tolist()
-        return {name: slice(*span) for name, span in zip(self.rubbing, pairwise(ends), strict=True)}
+        ends = np.cumsum(
+            [0, *(len(law.positions) for law in self.rubbing.values())]
+        ).tolist()
+        return {
+            name: slice(*span)
+            for name, span in zip(self.rubbing, pairwise(ends), strict=True)
+        }
 
     @cached_property
     def incremental_forms(self) -> dict[str, IncrementalForm]:
@@ -231,7 +255,8 @@ class Problem:
     @cached_property
     def own_laws(self) -> dict[str, Interface]:
         """Interfaces that do not say how they enter the incremental problem, by name."""
-        interfaces, forms = self.interfaces.items(), self.incremental_forms
+        interfaces = self.interfaces.items()
+        forms = self.incremental_forms
         return {name: law for name, law in interfaces if name not in forms}
 
     @cached_property
@@ -261,9 +286,9 @@ class Problem:
     def sought_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:
         """Rows whose forces nothing but a solution tells, and their kinds, none of which is empty.
 
-        They are all components of the bodies above at interfaces with friction, those along the
-        normal as one kind and the others as another; and all rows of laws of one's own. Where there
-        are neither, all rows are sought.
+        They are all components of the bodies above at interfaces with friction, those
+        along the normal as one kind and the others as another; and all rows of laws of
+        one's own. Where there are neither, all rows are sought.
         """
         kind_of = np.full(self.n_rows, -1)
         for law in self.own_laws.values():
@@ -282,8 +307,8 @@ class Problem:
     def no_reference(self) -> str:
         """Reason that no incremental solver can judge the problem, with a remedy; empty without.
 
-        They read the forms of all laws, one degree of freedom where rows are glued, and the mean of
-        the pairs of a point: whatever else there is they would leave out.
+        They read the forms of all laws, one degree of freedom where rows are glued, and
+        the mean of the pairs of a point: whatever else there is they would leave out.
         """
         for name, law in self.own_laws.items():
             return (
@@ -323,12 +348,15 @@ class Problem:
         owner = np.empty(self.n_rows, dtype=np.intp)
         for number, part in enumerate(self.substructures):
             owner[part.rows] = number
-        # What a substructure has at a degree of freedom, whatever its rows there, is one point.
+        # What a substructure has at a degree of freedom, whatever its rows there, is
+        # one point.
         points = np.unique(owner * self.n_dofs + self.row_dofs, return_inverse=True)
         sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *self.cuts], axis=1)
         first, second = points[1][sides]
         size = len(points[0])
-        links = sparse.coo_array((np.ones(len(first)), (first, second)), shape=(size, size))
+        links = sparse.coo_array(
+            (np.ones(len(first)), (first, second)), shape=(size, size)
+        )
         n_glued, glued = connected_components(links, directed=False)
         dofs = points[0] % self.n_dofs
         n_pairs = len(np.unique(glued * self.n_dofs + dofs))
@@ -363,7 +391,11 @@ class Problem:
     @cached_property
     def rubbing(self) -> dict[str, Contact]:
         """The interfaces with friction, by name."""
-        return {name: law for name, law in self.interfaces.items() if isinstance(law, Contact)}
+        return {
+            name: law
+            for name, law in self.interfaces.items()
+            if isinstance(law, Contact)
+        }
 
     @cached_property
     def surfaces(self) -> dict[str, Contact]:
@@ -374,7 +406,9 @@ class Problem:
     def on_surfaces(self) -> NDArray[np.bool_]:
         """Which points of all interfaces with friction are on surfaces, shape (n_points,)."""
         laws = self.rubbing.values()
-        return np.repeat([not law.is_spring for law in laws], [len(law.positions) for law in laws])
+        return np.repeat(
+            [not law.is_spring for law in laws], [len(law.positions) for law in laws]
+        )
 
     @cached_property
     def goes_on(self) -> bool:
@@ -390,13 +424,16 @@ class Problem:
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces whose macro forces are in equilibrium, and their load.
 
-        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README, 2).
+        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README,
+        2).
         """
         parts = [part for law in self.interfaces.values() for part in law.macro_parts()]
         bases = sparse.block_diag([sparse.coo_array(part.basis) for part in parts])
         rows = np.concatenate([part.rows for part in parts])[bases.coords[0]]
         loads = [
-            np.zeros((part.basis.shape[1], self.n_instants)) if part.load is None else part.load
+            np.zeros((part.basis.shape[1], self.n_instants))
+            if part.load is None
+            else part.load
             for part in parts
         ]
         shape = self.n_rows, bases.shape[1]
@@ -411,7 +448,9 @@ class Problem:
             shape=(self.n_dofs, self.n_rows),
         )
         counts = np.asarray(total.sum(axis=1)).ravel()
-        return sparse.csr_array(sparse.diags_array(1.0 / np.maximum(counts, 1.0)) @ total)
+        return sparse.csr_array(
+            sparse.diags_array(1.0 / np.maximum(counts, 1.0)) @ total
+        )
 
     @cached_property
     def body_force_on_rows(self) -> Array | None:
@@ -428,8 +467,8 @@ class Problem:
     def sum_of_contact(self) -> sparse.csr_array:
         """Sum over the rows of each point and component of interfaces with friction.
 
-        Shape (n_forces, n_rows). The forces on the body above are stacked interface by interface:
-        all normal forces, where it may open, and then all friction forces.
+        Shape (n_forces, n_rows). The forces on the body above are stacked interface by
+        interface: all normal forces, where it may open, and then all friction forces.
         """
         blocks = [
             sparse.csr_array(
@@ -445,20 +484,29 @@ class Problem:
     @cached_property
     def contact_places(self) -> dict[str, tuple[slice, ...]]:
         """Where the components of each interface stand in a stack of contact forces, by name."""
-        places, first = {}, 0
+        places = {}
+        first = 0
         for name, law in self.rubbing.items():
-            size, last = len(law.positions), first + len(law.positions) * len(law.components)
-            places[name] = tuple(slice(start, start + size) for start in range(first, last, size))
+            size = len(law.positions)
+            last = first + len(law.positions) * len(law.components)
+            places[name] = tuple(
+                slice(start, start + size) for start in range(first, last, size)
+            )
             first = last
         return places
 
     @cached_property
     def _driven(self) -> list[DrivenFriction]:
         """Points whose slip prescribed displacements alone make, interface by interface."""
-        given = [self.prescribed[1], np.zeros(1) if self.carried is None else self.carried]
+        given = [
+            self.prescribed[1],
+            np.zeros(1) if self.carried is None else self.carried,
+        ]
         largest = max(float(np.abs(values).max(initial=0.0)) for values in given)
         each = (
-            driven_friction(law, self.contact_places[name], self.row_dofs, self.prescribed, largest)
+            driven_friction(
+                law, self.contact_places[name], self.row_dofs, self.prescribed, largest
+            )
             for name, law in self.rubbing.items()
         )
         return [driven for driven in each if driven is not None]
@@ -467,8 +515,9 @@ class Problem:
         """Contact forces whose friction is as the law says where it cannot be found.
 
         That is where prescribed displacements alone make the slip, see
-        `solver.discrete.driven_friction`. All are scaled: forces stacked as `sum_of_contact` says,
-        shape (n_forces, n_instants), and W of all rows, (n_rows, n_instants).
+        `solver.discrete.driven_friction`. All are scaled: forces stacked as
+        `sum_of_contact` says, shape (n_forces, n_instants), and W of all rows, (n_rows,
+        n_instants).
         """
         if not self._driven:
             return forces
@@ -480,7 +529,9 @@ class Problem:
     @cached_property
     def is_chain(self) -> bool:
         """Whether every degree of freedom is tied to the one before and the one behind alone."""
-        operators = {id(part.elasticity): part.elasticity for part in self.substructures}
+        operators = {
+            id(part.elasticity): part.elasticity for part in self.substructures
+        }
         for operator in operators.values():
             entries = sparse.coo_array(operator.stiffness)
             if np.abs(entries.coords[0] - entries.coords[1]).max(initial=0) > 1:
@@ -493,13 +544,17 @@ class Problem:
 
         None where there are none, or where no digits are lost beside them, along rods.
         """
-        return None if self.inside is None else self.inside.rigid_motions(self.prescribed[0])
+        if self.inside is None:
+            return None
+        return self.inside.rigid_motions(self.prescribed[0])
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
         """Degrees of freedom with prescribed displacement, (n,), and values, (n, n_instants)."""
         given = self.given_displacements
-        rows = np.concatenate([np.zeros(0, dtype=np.intp), *(part.rows for part in given)])
+        rows = np.concatenate(
+            [np.zeros(0, dtype=np.intp), *(part.rows for part in given)]
+        )
         values = [np.zeros((0, self.n_instants)), *(part.values for part in given)]
         dofs, first = np.unique(self.row_dofs[rows], return_index=True)
         return dofs, np.concatenate(values)[first]
@@ -526,10 +581,16 @@ def _check_cover(
     numbers = np.concatenate([np.zeros(0, dtype=np.intp), *parts])
     largest = int(numbers.max(initial=-1))
     times = np.bincount(numbers, minlength=count)
-    wrong = (times != 1) if once else (times == 0)
+    if once:
+        wrong = times != 1
+    else:
+        wrong = times == 0
     if largest < count and not wrong.any():
         return
-    place = largest if largest >= count else int(np.argmax(wrong))
+    if largest >= count:
+        place = largest
+    else:
+        place = int(np.argmax(wrong))
     allowed = f"each {what} from 0 to {count - 1} {'once' if once else 'at least once'}"
     shown = Words(f"{what} {place}, {times[place]} times")
     raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")
@@ -542,8 +603,12 @@ def nothing_acts(problem: Problem) -> bool:
     """
     if problem.own_laws or any(law.is_moved for law in problem.rubbing.values()):
         return False
-    fields = [given.values for given in problem.given_forces + problem.given_displacements]
-    fields += [part.body_force for part in problem.substructures if part.body_force is not None]
+    fields = [
+        given.values for given in problem.given_forces + problem.given_displacements
+    ]
+    fields += [
+        part.body_force for part in problem.substructures if part.body_force is not None
+    ]
     return not any(field.any() for field in fields)
 
 

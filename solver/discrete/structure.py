@@ -32,7 +32,9 @@ def on_side(side: str, shares: ArrayLike) -> Array:
     along = np.asarray(shares, dtype=float)
     x = {"left": 0.0, "right": 1.0}.get(side, along)
     y = {"bottom": 0.0, "top": 1.0, "body": 0.5}.get(side, along)
-    return np.stack([np.broadcast_to(x, along.shape), np.broadcast_to(y, along.shape)], axis=1)
+    return np.stack(
+        [np.broadcast_to(x, along.shape), np.broadcast_to(y, along.shape)], axis=1
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +46,11 @@ class Act:
     where
         "right x": along a side; or "body": throughout.
     places
-        Where on the undeformed bodies, shape (n, 2), as shares of their length and height.
+        Where on the undeformed bodies, shape (n, 2), as shares of their length and
+        height.
     towards
-        Direction of positive values, a unit vector, or one of each instant, (2, n_instants).
+        Direction of positive values, a unit vector, or one of each instant, (2,
+        n_instants).
     values
         Over time, shape (n_instants,) or, of each place, (n, n_instants).
     """
@@ -71,8 +75,8 @@ class Hold:
     Attributes
     ----------
     kind
-        A support is rigid and rough; below an image the bodies go on, turned by half a turn; a
-        spring pulls along x, at the foot of its side.
+        A support is rigid and rough; below an image the bodies go on, turned by half a
+        turn; a spring pulls along x, at the foot of its side.
     side
         Of all bodies together.
     stretch
@@ -80,7 +84,8 @@ class Hold:
     moved
         Displacement of a clamp along x, shape (n_instants,), m, where it has one.
     gap
-        Opening of a support that goes on beyond the bodies, at nodes along it, shape (n_nodes,), m.
+        Opening of a support that goes on beyond the bodies, at nodes along it, shape
+        (n_nodes,), m.
     """
 
     kind: Literal["clamp", "rollers", "support", "image", "spring"]
@@ -103,7 +108,8 @@ class Description:
     acts
         All that acts; what is zero throughout is left out.
     tilt
-        Angle over time by which the x axis rises, shape (n_instants,), rad, where it does.
+        Angle over time by which the x axis rises, shape (n_instants,), rad, where it
+        does.
     broken
         Number of the broken body, from 0, and where it is broken, m; where one is.
     """
@@ -142,8 +148,8 @@ Axes = tuple[tuple[str, str], tuple[str, str]]
 class Loop:
     """A force over the displacement that it works on; what is inside the loop is dissipated.
 
-    Or over whatever drives it: then the loop shows how it lags behind. Both have a title and a
-    unit; the force is found in N, shape (n_instants,).
+    Or over whatever drives it: then the loop shows how it lags behind. Both have a
+    title and a unit; the force is found in N, shape (n_instants,).
     """
 
     across: tuple[str, str]

@@ -20,13 +20,14 @@ class Elasticity:
     Attributes
     ----------
     stiffness
-        Shape (n_dofs, n_dofs), symmetric, positive semi-definite; sparse, or dense where the inside
-        is condensed.
+        Shape (n_dofs, n_dofs), symmetric, positive semi-definite; sparse, or dense
+        where the inside is condensed.
     trace
-        Degree of freedom of each boundary row, shape (n_boundary,). Rows of two interfaces that
-        meet at a point share a degree of freedom.
+        Degree of freedom of each boundary row, shape (n_boundary,). Rows of two
+        interfaces that meet at a point share a degree of freedom.
     direction
-        The paper's search direction k of each boundary row, shape (n_boundary,), positive.
+        The paper's search direction k of each boundary row, shape (n_boundary,),
+        positive.
 
     Raises
     ------
@@ -45,7 +46,9 @@ class Elasticity:
         check_value("Elasticity.stiffness", entries, Numbers(((None,) * entries.ndim,)))
         if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
             shown = Words(f"of shape {list(matrix.shape)}")
-            raise RefusedError("Elasticity.stiffness", shown, "a square matrix", "correct it")
+            raise RefusedError(
+                "Elasticity.stiffness", shown, "a square matrix", "correct it"
+            )
         if not self._is_symmetric:
             raise RefusedError(
                 "Elasticity.stiffness",
@@ -63,10 +66,12 @@ class Elasticity:
     def _is_symmetric(self) -> bool:
         """Whether the work of one displacement on the forces of another is that the other way.
 
-        Two displacements that no structure has for its own tell it for all, in two products.
+        Two displacements that no structure has for its own tell it for all, in two
+        products.
         """
         numbers = np.arange(self.stiffness.shape[0])
-        one, other = np.cos(numbers), np.sin(numbers)
+        one = np.cos(numbers)
+        other = np.sin(numbers)
         there = self.stiffness @ other
         apart = float(one @ there - other @ (self.stiffness @ one))
         return abs(apart) <= ALIKE * float(np.abs(one) @ np.abs(there))
@@ -96,9 +101,9 @@ class Substructure:
     body_force
         Nodal forces inside, shape (n_dofs, n_instants), or None.
     free_force
-        Axial force of each element of a rod, scaled, that would strain it as much as it is strained
-        without any, shape (n_elements, n_instants); None where that is nothing. Its nodal forces
-        are among `body_force`.
+        Axial force of each element of a rod, scaled, that would strain it as much as it
+        is strained without any, shape (n_elements, n_instants); None where that is
+        nothing. Its nodal forces are among `body_force`.
 
     Raises
     ------
@@ -114,7 +119,8 @@ class Substructure:
 
     def __post_init__(self) -> None:
         check(self, elasticity=Part(Elasticity))
-        n_dofs, n_rows = self.elasticity.stiffness.shape[0], len(self.elasticity.trace)
+        n_dofs = self.elasticity.stiffness.shape[0]
+        n_rows = len(self.elasticity.trace)
         check(
             self,
             dofs=Numbers(((n_dofs,),), low=0, whole=True),

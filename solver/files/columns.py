@@ -1,9 +1,10 @@
 """Heads of tables: what a name means, and the unit behind it, as people write them.
 
-Units are SI with prefixes, inches, feet, pounds, kips and kiloponds of force, and psi; with their
-products, quotients and powers. A symbol is first taken as it is written (`mN`, `MN`), else without
-regard to capitals, or as a word (`SPELLINGS`: `KN`, `Sec`, `inches`). A single letter behind a name
-is a unit only as it is written: `force N`, but not `channel n`.
+Units are SI with prefixes, inches, feet, pounds, kips and kiloponds of force, and psi;
+with their products, quotients and powers. A symbol is first taken as it is written
+(`mN`, `MN`), else without regard to capitals, or as a word (`SPELLINGS`: `KN`, `Sec`,
+`inches`). A single letter behind a name is a unit only as it is written: `force N`, but
+not `channel n`.
 """
 
 from __future__ import annotations
@@ -85,7 +86,8 @@ Dimensions = tuple[int, ...]
 INCH = Fraction("0.0254")
 KILOPOND = Fraction("9.80665")
 POUND = Fraction("0.45359237") * KILOPOND
-"""Of force; as mass it is not taken, as there is none in what is read here. All by definition."""
+"""Of force; as mass it is not taken, as there is none in what is read here. All by
+definition."""
 _POWERS = {"n": -9, "µ": -6, "μ": -6, "u": -6, "m": -3, "c": -2, "": 0, "da": 1, "h": 2}
 _POWERS |= {"k": 3, "M": 6, "G": 9}
 _WITH_PREFIX: dict[str, tuple[int, Dimensions]] = {
@@ -231,7 +233,9 @@ SPELLINGS = {
 }
 """Symbols of units by how they are written otherwise, in small letters."""
 _NOT_TAKEN = {"kg", "hz", "v", "volt", "volts", "mv"}
-_SPELT = {symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")} | SPELLINGS.keys()
+_SPELT = {
+    symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")
+} | SPELLINGS.keys()
 _SPELT |= _NOT_TAKEN
 DOUBTFUL = 0.8
 """Powers of a thousand from which on numbers without a unit are doubted: 250 times."""
@@ -290,25 +294,37 @@ class TableColumn:
 
     def size(self, unit: str, refuse: Refuse) -> float:
         """Size of its unit in another; refuse one that measures something else."""
-        size = size_in(self.unit, unit) if self.unit else 1.0
+        if self.unit:
+            size = size_in(self.unit, unit)
+        else:
+            size = 1.0
         if size is None:
-            raise refuse(f"line {self.line} says {self.unit}: give it in {examples_of(unit)}")
+            raise refuse(
+                f"line {self.line} says {self.unit}: give it in {examples_of(unit)}"
+            )
         return size
 
     def with_units(self, line: int, cells: list[str], refuse: Refuse) -> TableColumn:
         """The column with what a line of units says of it."""
-        unit = cells[self.place].strip("()[]") if self.place < len(cells) else ""
+        if self.place < len(cells):
+            unit = cells[self.place].strip("()[]")
+        else:
+            unit = ""
         if not unit:
             return self
         if self.unit and parse_unit(unit) != parse_unit(self.unit):
-            raise refuse(f"line {line} says {unit}, and line {self.line} {self.unit}: give one")
+            raise refuse(
+                f"line {line} says {unit}, and line {self.line} {self.unit}: give one"
+            )
         return replace(self, line=line, unit=unit)
 
     def message(self, default: str, unit: str) -> str:
         """Describe what was understood of it."""
         name = self.name or default
         if self.unit or not unit:
-            return f"{name} in {self.unit}" if self.unit.strip("-1") else name
+            if self.unit.strip("-1"):
+                return f"{name} in {self.unit}"
+            return name
         return f"{name} in {unit}{' (no unit given)' if self.name else ''}"
 
 
@@ -324,7 +340,8 @@ def _meant_by() -> dict[str, frozenset[str]]:
 
 def column_of(place: int, line: int, head: str) -> TableColumn:
     """Split a head into name and unit."""
-    behind, match = _BEHIND.fullmatch(head), _BRACKETS.fullmatch(head)
+    behind = _BEHIND.fullmatch(head)
+    match = _BRACKETS.fullmatch(head)
     if match is None and behind and _is_unit_behind(behind[2]):
         return TableColumn(place, line, re.sub(r"\s+in$", "", behind[1]), behind[2])
     match = match or _IN_OR_SLASH.fullmatch(head)
@@ -349,22 +366,29 @@ def are_units(cells: list[str]) -> bool:
     """
     words = [cell.strip("()[]") for cell in cells if cell.strip("()[]-1")]
     units = [word for word in words if is_spelt_as_unit(word)]
-    is_named = any(TableColumn(0, name=word).quantities[1] for word in words if word not in units)
+    is_named = any(
+        TableColumn(0, name=word).quantities[1] for word in words if word not in units
+    )
     return bool(units) and 2 * len(units) >= len(words) and not is_named
 
 
 def parse_unit(text: str) -> tuple[float, Dimensions] | None:
     """Size in SI and dimensions of a unit such as `kN/m`; None of what is none."""
-    size, exponents = Fraction(1), [0, 0, 0, 0, 0]
+    size = Fraction(1)
+    exponents = [0, 0, 0, 0, 0]
     for sign, symbol, power in _factors(text):
-        known = symbol if symbol in _SYMBOLS else SPELLINGS.get(symbol.lower(), "")
+        if symbol in _SYMBOLS:
+            known = symbol
+        else:
+            known = SPELLINGS.get(symbol.lower(), "")
         if not known:
             return None
         exponent = sign * int(power or 1)
         factor, dimensions = _SYMBOLS[known]
         size *= factor**exponent
         exponents = [
-            total + exponent * part for total, part in zip(exponents, dimensions, strict=True)
+            total + exponent * part
+            for total, part in zip(exponents, dimensions, strict=True)
         ]
     return float(size), tuple(exponents)
 
@@ -376,7 +400,11 @@ def _factors(text: str) -> Iterable[tuple[int, str, str]]:
     plain = re.sub(r"(?<=[^\W\d])-(?=[^\W\d])", "·", plain)
     for operator, factor in re.findall(r"(^|\s*[/·*.]\s*|\s+)([^/·*.\s]+)", plain):
         match = re.fullmatch(r"(\D+?)(-?\d?)", factor)
-        symbol, power = match.groups() if match else (factor, "")
+        if match:
+            symbol, power = match.groups()
+        else:
+            symbol = factor
+            power = ""
         yield -1 if "/" in operator else 1, symbol, power
 
 
@@ -401,8 +429,9 @@ def size_in(text: str, units: str) -> float | None:
 def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
     """Words where numbers without a unit are some thousand times off; empty where they are not.
 
-    `size` is the largest number, taken in that unit, and `usual` one of what it is compared with,
-    in the same unit, both positive; `of` says of what. Plain numbers are not doubted.
+    `size` is the largest number, taken in that unit, and `usual` one of what it is
+    compared with, in the same unit, both positive; `of` says of what. Plain numbers are
+    not doubted.
     """
     if not unit or not (math.isfinite(size * usual) and size * usual > 0.0):
         return ""
@@ -410,7 +439,10 @@ def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
     if abs(thousands) < DOUBTFUL:
         return ""
     prefix = _PREFIXES.get(round(thousands), "")
-    likely = f"{prefix}{unit}" if prefix and unit in _WITH_PREFIX else ""
+    if prefix and unit in _WITH_PREFIX:
+        likely = f"{prefix}{unit}"
+    else:
+        likely = ""
     remedy = "name its unit in the head"
     if likely:
         remedy = f"if it is in {likely}, name that in the head, as in {name} [{likely}]"

@@ -30,8 +30,8 @@ def curve_of(
 ) -> tuple[list[list[float]], str]:
     """Points of a curve in a table, in units as of `Settings.curve_units`, and what was understood.
 
-    Columns that cannot be chosen, other units, what is no number, and an abscissa that does not
-    increase are refused.
+    Columns that cannot be chosen, other units, what is no number, and an abscissa that
+    does not increase are refused.
     """
     columns = columns_for(table, definition, name, units)
     reading = table.read(columns, definition.columns, units)
@@ -49,12 +49,16 @@ def columns_for(
 ) -> Sequence[TableColumn]:
     """Columns of a curve in a table, by its head, or as they stand where that says nothing."""
     columns = table.columns
-    if any(c.is_known for c in columns) or _SETTINGS.intersection(c.key for c in columns):
+    if any(c.is_known for c in columns) or _SETTINGS.intersection(
+        c.key for c in columns
+    ):
         return _chosen(table, definition, name, units)
     if len(columns) != len(units):
         *others, last = definition.columns
         names = f"{', '.join(others)} and {last}"
-        raise table.refuse(f"it has {len(columns)} columns: name {names} in its first line")
+        raise table.refuse(
+            f"it has {len(columns)} columns: name {names} in its first line"
+        )
     return columns
 
 
@@ -63,8 +67,8 @@ def path_doubts(
 ) -> list[str]:
     """Words where columns without a unit are some thousand times off the scene.
 
-    That is its length, and the path by default, where it is of the same quantity. Times are not
-    doubted, as runs last as long as their paths.
+    That is its length, and the path by default, where it is of the same quantity. Times
+    are not doubted, as runs last as long as their paths.
     """
     definition: Any = settings.definitions()[name]
     units = settings.curve_units(name)
@@ -90,15 +94,23 @@ def _chosen(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> list[TableColumn]:
     """Columns of a curve that a head names."""
-    free = [column for column in table.columns if column.key == name or column.key not in _SETTINGS]
+    free = [
+        column
+        for column in table.columns
+        if column.key == name or column.key not in _SETTINGS
+    ]
     chosen: list[TableColumn] = []
-    remedy, named, last = "add that column", "", len(units) - 1
+    remedy = "add that column"
+    named = ""
+    last = len(units) - 1
     if definition.is_path and definition.abscissa == "time":
         remedy += "; a loop, as force over displacement, is no path over time"
     for place, (title, unit) in enumerate(zip(definition.columns, units, strict=True)):
         kinds: Collection[str] = {title}
         if definition.is_path and place == last:
-            kinds, remedy, named = quantities_of(title, unit), f"name one of them {name}", name
+            kinds = quantities_of(title, unit)
+            remedy = f"name one of them {name}"
+            named = name
             if len(table.columns) == 2 and free and not free[0].quantities[0]:
                 return [*chosen, *free]
         chosen.append(table.choose(free, kinds, unit, named, remedy))
@@ -106,7 +118,9 @@ def _chosen(
     return chosen
 
 
-def read_tables(kind: type[Settings], values: dict[str, object], folder: Path) -> dict[str, Table]:
+def read_tables(
+    kind: type[Settings], values: dict[str, object], folder: Path
+) -> dict[str, Table]:
     """Tables in the CSV files that curves name, whose points replace the names in the values.
 
     Reading files is for fronts whose user owns the machine, so nothing else does it.
@@ -130,7 +144,9 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
     definitions: Mapping[str, Any] = settings.definitions()
     found = {}
     for name, table in tables.items():
-        points, message = curve_of(table, definitions[name], name, settings.curve_units(name))
+        points, message = curve_of(
+            table, definitions[name], name, settings.curve_units(name)
+        )
         found[name] = "; ".join([message, *path_doubts(table, settings, name, points)])
     return found
 

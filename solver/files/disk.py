@@ -16,20 +16,24 @@ from solver.settings.definitions import SettingError
 Refuse = Callable[[str], SettingError]
 """What makes a refusal out of what is to be done."""
 LARGEST = 4_000_000
-"""Bytes of a file of settings, a table or a lesson, at most: some 200 000 points of a load path."""
+"""Bytes of a file of settings, a table or a lesson, at most: some 200 000 points of a
+load path."""
 TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
 def read_bytes(path: Path, refuse: Refuse) -> bytes:
     """Bytes of a file; of one that is too large no more than it takes to know.
 
-    What cannot be read, is too large, or is no file is refused with the reason. A pipe, which may
-    have no other end, is not waited for.
+    What cannot be read, is too large, or is no file is refused with the reason. A pipe,
+    which may have no other end, is not waited for.
     """
     try:
         with open(path, "rb", opener=_open_at_once) as file:
             is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
-            data = file.read(LARGEST + 1) if is_file else b""
+            if is_file:
+                data = file.read(LARGEST + 1)
+            else:
+                data = b""
     except (OSError, ValueError) as problem:  # no path at all is a ValueError
         raise refuse(why(problem)) from None
     if not is_file:
@@ -48,18 +52,26 @@ def _open_at_once(path: str, flags: int) -> int:
 def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
     """Open a file to write, which takes its place once it is complete.
 
-    Until then it stands beside that place under another name, and goes if anything fails.
+    Until then it stands beside that place under another name, and goes if anything
+    fails.
 
     Raises
     ------
     OSError
-        If there is no such folder, it cannot be written to, or is full; if what stands there is no
-        file, or one that must not be changed.
+        If there is no such folder, it cannot be written to, or is full; if what stands
+        there is no file, or one that must not be changed.
     """
     place, part = _place_and_part(path)
-    encoding, newline = (None, None) if "b" in mode else ("utf-8", "")
+    if "b" in mode:
+        encoding = None
+        newline = None
+    else:
+        encoding = "utf-8"
+        newline = ""
     try:
-        with part.open(mode.replace("w", "x"), encoding=encoding, newline=newline) as file:
+        with part.open(
+            mode.replace("w", "x"), encoding=encoding, newline=newline
+        ) as file:
             yield file
         part.replace(place)
     finally:
@@ -68,7 +80,10 @@ def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
 
 def why(problem: OSError | ValueError) -> str:
     """A few words on why a file cannot be read or written."""
-    reason = problem.strerror if isinstance(problem, OSError) else None
+    if isinstance(problem, OSError):
+        reason = problem.strerror
+    else:
+        reason = None
     return reason or type(problem).__name__
 
 

@@ -1,9 +1,10 @@
 """Numbers as people and programs write them.
 
-A numeral is a sign, digits with a decimal point or comma, and an exponent. Its minus may be one
-that is printed (U+2212, an en dash); its exponent may be Fortran's: `1.5D-03`, `1.5-103`. Digits
-may stand in groups of three: between points, commas, apostrophes, or blanks (narrow and no-break
-ones, too). A cell without a number is a gap: empty, `NaN`, `n/a`, `-`, `****` and the like.
+A numeral is a sign, digits with a decimal point or comma, and an exponent. Its minus
+may be one that is printed (U+2212, an en dash); its exponent may be Fortran's:
+`1.5D-03`, `1.5-103`. Digits may stand in groups of three: between points, commas,
+apostrophes, or blanks (narrow and no-break ones, too). A cell without a number is a
+gap: empty, `NaN`, `n/a`, `-`, `****` and the like.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ GAPS = {
     "null",
     "none",
 }
-"""Cells without a number, in small letters, beside the asterisks of an overflow in Fortran."""
+"""Cells without a number, in small letters, beside the asterisks of an overflow in
+Fortran."""
 _APART = " \u00a0\u2009\u202f'’"
 """What may stand between groups of digits and is never a decimal sign."""
 _DROPPED = str.maketrans("", "", _APART)
@@ -54,16 +56,21 @@ def _pattern(decimal: str, thousands: str) -> re.Pattern[str]:
     """Numerals under a decimal sign, whose groups of three have the other sign between them."""
     point = re.escape(decimal)
     digits = rf"(?:\d+{point}?\d*|{point}\d+)"
-    # Fortran leaves the letter out before three digits; without a point that is a part number.
+    # Fortran leaves the letter out before three digits; without a point that is a part
+    # number.
     fortran = rf"(?:\d+{point}\d*|{point}\d+)[+-]\d{{3}}"
-    groups = rf"[1-9]\d{{0,2}}([{thousands}{_APART}])\d{{3}}(?:\1\d{{3}})*(?:{point}\d*)?"
+    groups = (
+        rf"[1-9]\d{{0,2}}([{thousands}{_APART}])\d{{3}}(?:\1\d{{3}})*(?:{point}\d*)?"
+    )
     exponent = r"(?:[edq][+-]?\d+)?"
     infinite = "inf(?:inity)?"
     numeral = rf"[+-]?(?:{digits}{exponent}|{fortran}|{groups}|{infinite})"
     return re.compile(numeral, re.IGNORECASE | re.ASCII)
 
 
-_PLAIN = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_PLAIN = re.compile(
+    r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?", re.IGNORECASE | re.ASCII
+)
 """Numerals as almost all are: one decimal sign, no groups."""
 _GROUP = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
 """A sign that may stand between thousands."""
@@ -101,6 +108,8 @@ def number(cell: str, decimal: str) -> float:
     plain = cell.translate(_MINUS)
     if not _PATTERNS[decimal].fullmatch(plain):
         return math.nan
-    plain = plain.translate(_DROPPED).replace(thousands, "").replace(decimal, ".").lower()
+    plain = (
+        plain.translate(_DROPPED).replace(thousands, "").replace(decimal, ".").lower()
+    )
     plain = re.sub("[dq]", "e", plain)
     return float(re.sub(r"(?<=[\d.])([+-]\d{3})$", r"e\1", plain))

@@ -28,10 +28,11 @@ IN_FILES = {"str": str, "int": int, "float": (int, float), "tuple[str, ...]": li
 """Types of values in a file, by those of the fields that they are for."""
 INDICATORS = "indicator", "behaviour", "estimated_error"
 ERRORS = "error_displacement", "error_force"
-"""What is known of every iteration, beside its time; errors where there is a reference."""
+"""What is known of every iteration, beside its time; errors where there is a
+reference."""
 FORMAT = 2
-"""Number of the format of settings files. Files of before the second have none: in them the slip of
-a fault is that of one of its sides."""
+"""Number of the format of settings files. Files of before the second have none: in them
+the slip of a fault is that of one of its sides."""
 
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
@@ -42,8 +43,9 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
 def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:
     """Settings of a saved file in TOML, and what to know of those that once meant something else.
 
-    The latter by the name of the setting. The file has a scene's name under `scene`, and settings
-    by name; its curves name no other files; messages begin with its source.
+    The latter by the name of the setting. The file has a scene's name under `scene`,
+    and settings by name; its curves name no other files; messages begin with its
+    source.
     """
     values = _parsed(text, source, text)
     values.pop("case", None)
@@ -55,13 +57,17 @@ def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:
 def format_in(values: dict[str, Any]) -> int:
     """Take the number of the format out of the content of a settings file; 1 where it has none."""
     number = values.pop("format", 1)
-    remedy = "the file is of a later version: update Slipfront, or save the settings again"
+    remedy = (
+        "the file is of a later version: update Slipfront, or save the settings again"
+    )
     is_known = isinstance(number, int) and 1 <= number <= FORMAT
     require(is_known, "format", number, f"a whole number from 1 to {FORMAT}", remedy)
     return int(number)
 
 
-def meant_before(settings: Settings, given: Collection[str], number: int) -> Mapping[str, str]:
+def meant_before(
+    settings: Settings, given: Collection[str], number: int
+) -> Mapping[str, str]:
     """What to know of given settings that meant something else in a format, by their names."""
     if number >= FORMAT:
         return {}
@@ -71,7 +77,9 @@ def meant_before(settings: Settings, given: Collection[str], number: int) -> Map
 
 def dump(settings: Settings) -> str:
     """Text of a TOML file of settings, which every front reads."""
-    lines = [f"{name} = {json.dumps(value)}" for name, value in settings.values().items()]
+    lines = [
+        f"{name} = {json.dumps(value)}" for name, value in settings.values().items()
+    ]
     head = [f"scene = {json.dumps(settings.scene)}", f"format = {FORMAT}"]
     return "\n".join([*head, *lines, ""])
 
@@ -81,9 +89,9 @@ def settings_from_command(
 ) -> tuple[Settings, Mapping[str, str]]:
     """Settings of a scene or a saved file, with `NAME=VALUE` texts over it, and what to know.
 
-    CSV files that it names are sought beside the saved file, and those of assignments in the
-    working folder; what was understood of them is by the name of their setting, and so is what
-    those of the file meant that once meant something else.
+    CSV files that it names are sought beside the saved file, and those of assignments
+    in the working folder; what was understood of them is by the name of their setting,
+    and so is what those of the file meant that once meant something else.
     """
     values: dict[str, Any] = {"scene": scene}
     number = FORMAT
@@ -97,14 +105,24 @@ def settings_from_command(
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
         if not equals:
-            raise SettingError("--set", assignment, "NAME=VALUE", "write an equals sign")
-        changes[name] = parse(text) if name in kind.definitions() else text
+            raise SettingError(
+                "--set", assignment, "NAME=VALUE", "write an equals sign"
+            )
+        if name in kind.definitions():
+            changes[name] = parse(text)
+        else:
+            changes[name] = text
         tables.pop(name, None)
     tables |= read_tables(kind, changes, Path())
     settings = kind.checked(values).replace(**changes)
     told = dict(messages(tables, settings))
-    for name, message in meant_before(settings, values.keys() - changes, number).items():
-        told[name] = f"{told[name]}; {message}" if name in told else message
+    for name, message in meant_before(
+        settings, values.keys() - changes, number
+    ).items():
+        if name in told:
+            told[name] = f"{told[name]}; {message}"
+        else:
+            told[name] = message
     return settings, told
 
 
@@ -118,7 +136,9 @@ def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
     if len(data) > LARGEST:
         raise SettingError(name, shown[:60], "TOML", TOO_LARGE)
     try:
-        return tomllib.loads(data if isinstance(data, str) else data.decode("utf-8-sig"))
+        return tomllib.loads(
+            data if isinstance(data, str) else data.decode("utf-8-sig")
+        )
     except (ValueError, RecursionError) as problem:
         reason = " ".join(str(problem).split())
         raise SettingError(name, shown, "TOML", f"mend it: {reason}") from None
@@ -133,7 +153,9 @@ def check_keys(
         if name not in keys:
             raise SettingError(name, value, known, "there is no such key: leave it out")
         if not isinstance(value, keys[name]) or isinstance(value, bool):
-            raise SettingError(name, value, WORDS.get(keys[name], "a number"), "mend the value")
+            raise SettingError(
+                name, value, WORDS.get(keys[name], "a number"), "mend the value"
+            )
     for name in keys:
         if name not in values and name not in optional:
             raise SettingError(name, None, known, "this key is needed: write it")
@@ -142,19 +164,25 @@ def check_keys(
 def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, Any]:
     """Values of the fields of a dataclass that a table has as its keys, with lists as tuples.
 
-    What has a default may be left out; its name is not in the table. `others` are the types of keys
-    that are no fields, or are kept otherwise. Keys are refused as by `check_keys`, and lists of
-    anything but texts.
+    What has a default may be left out; its name is not in the table. `others` are the
+    types of keys that are no fields, or are kept otherwise. Keys are refused as by
+    `check_keys`, and lists of anything but texts.
     """
     own = {field.name: field for field in fields(kind) if field.name != "name"}
-    keys = {name: IN_FILES[field.type] for name, field in own.items() if field.type in IN_FILES}
+    keys = {
+        name: IN_FILES[field.type]
+        for name, field in own.items()
+        if field.type in IN_FILES
+    }
     optional = [name for name, field in own.items() if field.default is not MISSING]
     check_keys(values, keys | others, optional)
     found = dict(values)
     for name in keys.keys() & found.keys():
         if own[name].type == "tuple[str, ...]" and name not in others:
             texts = found[name] = tuple(found[name])
-            are_texts = bool(texts) and all(isinstance(text, str) and text for text in texts)
+            are_texts = bool(texts) and all(
+                isinstance(text, str) and text for text in texts
+            )
             can = "a list of texts, at least one"
             require(are_texts, name, list(texts), can, "write them in quotes")
     return found
@@ -181,7 +209,9 @@ def placed(place: str) -> Iterator[None]:
         yield
     except SettingError as refusal:
         name = f"{place}: {refusal.name}"
-        raise SettingError(name, refusal.value, refusal.allowed, refusal.remedy) from None
+        raise SettingError(
+            name, refusal.value, refusal.allowed, refusal.remedy
+        ) from None
 
 
 def scene_settings(scene: object) -> type[Settings]:
@@ -193,7 +223,10 @@ def scene_settings(scene: object) -> type[Settings]:
 
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     """Key figures of a finished run."""
-    last = solution.records[-1] if solution.records else None
+    if solution.records:
+        last = solution.records[-1]
+    else:
+        last = None
     return {
         "scene": settings.scene,
         "status": str(solution.status.ending),
@@ -211,10 +244,12 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     """Arrays of a result file (SI; space first, time last), as solver/README.md, 12, has them.
 
-    In the plane `displacement` has shape (n_nodes, 2, n_instants), and `displacement_determinate`,
-    (n_instants,), is false where nothing says where a body lies.
+    In the plane `displacement` has shape (n_nodes, 2, n_instants), and
+    `displacement_determinate`, (n_instants,), is false where nothing says where a body
+    lies.
     """
-    iterate, problem = solution.iterate, solution.iterate.problem
+    iterate = solution.iterate
+    problem = solution.iterate.problem
     history = {
         name: np.array([getattr(entry, name) for entry in solution.records])
         for name in (*INDICATORS, *ERRORS, "seconds")
@@ -234,7 +269,9 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         found = {
             "x": problem.inside.nodes,
             "elements": problem.inside.elements,
-            "displacement": problem.inside.displacement(iterate.displacement, slice(None)),
+            "displacement": problem.inside.displacement(
+                iterate.displacement, slice(None)
+            ),
             "displacement_determinate": held_instants(problem, iterate.contact_force),
         }
     return {
@@ -251,7 +288,8 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
 def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     """Arrays `interface/NAME/...` of all interfaces but a lone support of known bound.
 
-    `determinate` is where the force is no arbitrary share of what a support or a ring carries.
+    `determinate` is where the force is no arbitrary share of what a support or a ring
+    carries.
     """
     arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
@@ -270,7 +308,9 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
             "status": fields.status,
         }
         arrays |= {
-            f"interface/{name}/{key}": field for key, field in entries.items() if field is not None
+            f"interface/{name}/{key}": field
+            for key, field in entries.items()
+            if field is not None
         }
     return arrays
 

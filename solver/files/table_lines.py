@@ -57,7 +57,10 @@ class Line(NamedTuple):
         """Cells up to the last one that is a number or a gap."""
         if not self.has_words:
             return len(self.cells)
-        return max((place for place, word in enumerate(self.are_words, 1) if not word), default=0)
+        return max(
+            (place for place, word in enumerate(self.are_words, 1) if not word),
+            default=0,
+        )
 
     @property
     def is_text(self) -> bool:
@@ -72,12 +75,16 @@ class Line(NamedTuple):
         return not numbers or (numbers == {"1"} and not has_digits and are_units(words))
 
 
-def line_of(number: int, text: str, cells: Sequence[str], *, is_comment: bool = False) -> Line:
+def line_of(
+    number: int, text: str, cells: Sequence[str], *, is_comment: bool = False
+) -> Line:
     """A line with its cells, which are told apart."""
     are_numbers = tuple(map(is_numeral, cells))
     if False in are_numbers:
         pairs = zip(cells, are_numbers, strict=True)
-        are_words = tuple(not is_number and not is_gap(cell) for cell, is_number in pairs)
+        are_words = tuple(
+            not is_number and not is_gap(cell) for cell, is_number in pairs
+        )
     else:
         are_words = (False,) * len(cells)
     return Line(number, text, tuple(cells), are_numbers, are_words, is_comment)
@@ -129,7 +136,9 @@ def text_of(data: bytes | str, refuse: Refuse) -> str:
     if isinstance(data, str):
         text = data
     else:
-        is_wide = data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) or data[1:2] == b"\0"
+        is_wide = (
+            data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) or data[1:2] == b"\0"
+        )
         try:
             text = data.decode("utf-16" if is_wide else "utf-8")
         except UnicodeDecodeError:
@@ -144,13 +153,17 @@ def text_of(data: bytes | str, refuse: Refuse) -> str:
 def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
     """What divides the columns of a file, and its lines that are neither empty nor rules."""
     texts = re.split(r"\r\n|\n|\r", text_of(data, refuse))
-    filled = [(number, text) for number, text in enumerate(texts, start=1) if text.strip()]
+    filled = [
+        (number, text) for number, text in enumerate(texts, start=1) if text.strip()
+    ]
     try:
         separator = _separator_of([text for _, text in filled])
         lines = [_line(number, text, separator) for number, text in filled]
     except csv.Error as problem:
         raise refuse(str(problem)) from None
-    return separator, [line for line in lines if line.cells and not _RULE.fullmatch(line.text)]
+    return separator, [
+        line for line in lines if line.cells and not _RULE.fullmatch(line.text)
+    ]
 
 
 def _separator_of(texts: Sequence[str]) -> str:
@@ -160,7 +173,11 @@ def _separator_of(texts: Sequence[str]) -> str:
     def score(separator: str) -> tuple[float, float]:
         lines = [_line(0, text, separator) for text in sample]
         filled = [(line, len(line.cells) - line.cells.count("")) for line in lines]
-        shares = [(count - sum(line.are_words)) / count for line, count in filled if _has_two(line)]
+        shares = [
+            (count - sum(line.are_words)) / count
+            for line, count in filled
+            if _has_two(line)
+        ]
         widths = Counter(line.width for line in lines if _has_two(line))
         return round(sum(shares), 9), max(widths.values(), default=0)
 
@@ -182,7 +199,9 @@ def _line(number: int, text: str, separator: str) -> Line:
         return line_of(number, words, _split(words, separator), is_comment=True)
     if line.has_words and _MARK.search(plain):
         before = _without_comment(plain, separator)
-        return line_of(number, plain, before) if before else line
+        if before:
+            return line_of(number, plain, before)
+        return line
     return line
 
 
@@ -191,7 +210,9 @@ def _is_comment(text: str, first: str, separator: str) -> bool:
     mark = _MARK.match(text)
     if mark is None or mark[0] == separator or is_gap(first):
         return False
-    return first != mark[0] or _is_blank(separator) or (separator == "\t" and first != "%")
+    return (
+        first != mark[0] or _is_blank(separator) or (separator == "\t" and first != "%")
+    )
 
 
 def _without_comment(text: str, separator: str) -> list[str]:
@@ -203,7 +224,9 @@ def _without_comment(text: str, separator: str) -> list[str]:
         is_unit = mark[0] == "%" and not _WORD.match(text, mark.end())
         if mark[0] != separator and stands_apart and not is_unit:
             cells = _split(text[: mark.start()], separator)
-            return cells if sum(map(is_numeral, cells)) > 1 else []
+            if sum(map(is_numeral, cells)) > 1:
+                return cells
+            return []
     return []
 
 
@@ -224,7 +247,9 @@ def _split(text: str, separator: str) -> list[str]:
     return cells
 
 
-def block_of(lines: Sequence[Line], separator: str, refuse: Refuse) -> tuple[Block, list[str]]:
+def block_of(
+    lines: Sequence[Line], separator: str, refuse: Refuse
+) -> tuple[Block, list[str]]:
     """The table that has most rows, and words on others; of equals both are refused."""
     blocks = list(_blocks(lines, separator))
     if not blocks:
@@ -233,7 +258,9 @@ def block_of(lines: Sequence[Line], separator: str, refuse: Refuse) -> tuple[Blo
     chosen = [block for block in blocks if block.size == largest]
     if len(chosen) > 1:
         first, second = (block.rows[0].number for block in chosen[:2])
-        raise refuse(f"tables of {largest} rows begin at lines {first} and {second}: leave one")
+        raise refuse(
+            f"tables of {largest} rows begin at lines {first} and {second}: leave one"
+        )
     others = [block.rows[0].number for block in blocks if block is not chosen[0]]
     passed = [f"another table passed over (line {line})" for line in others]
     _leave_summary(chosen[0])
@@ -248,12 +275,22 @@ def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
         if line.is_comment or line.is_text:
             between.append(line)
             continue
-        heads = [other for other in between[-FARTHEST:] if _is_head_of(other, line, separator)]
+        heads = [
+            other
+            for other in between[-FARTHEST:]
+            if _is_head_of(other, line, separator)
+        ]
         if block is not None and block.is_known:
-            # Words that name no quantity may tell what happens, as in `phase;unloading`.
-            heads = [other for other in heads if _is_known(other.cells) or other.is_comment]
+            # Words that name no quantity may tell what happens, as in
+            # `phase;unloading`.
+            heads = [
+                other for other in heads if _is_known(other.cells) or other.is_comment
+            ]
         begins = block is None or bool(heads)
-        is_row = _is_first(line, between) if begins else _is_next(line, block, separator)
+        if begins:
+            is_row = _is_first(line, between)
+        else:
+            is_row = _is_next(line, block, separator)
         if not is_row:
             between.append(line)
             continue
@@ -324,7 +361,9 @@ def _leave_summary(block: Block) -> None:
     """Pass over numbers right above the rows that are of another width, where there is no head."""
     if any(line.is_text for line in block.above[-1:]):
         return
-    first = next(place for place, row in enumerate(block.rows) if row.width == block.width)
+    first = next(
+        place for place, row in enumerate(block.rows) if row.width == block.width
+    )
     block.passed += block.rows[:first]
     del block.rows[:first]
 
@@ -340,7 +379,11 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
     units: tuple[int, list[str]] = (0, [])
     near = [line for line in block.above if line.is_text][-FARTHEST:]
     texts = [(line, _names_in(line, width, separator)) for line in near]
-    texts = [(line, words) for line, words in texts if len(words) > 1 and not _has_numbers(words)]
+    texts = [
+        (line, words)
+        for line, words in texts
+        if len(words) > 1 and not _has_numbers(words)
+    ]
     for line, words in reversed(texts):
         if are_units(words):
             is_prose = (line.is_comment or _is_blank(separator)) and len(words) != width
@@ -351,13 +394,17 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
             continue
         if any(column.is_known for column in names):
             break
-        named = [column_of(place, line.number, text) for place, text in enumerate(words)]
+        named = [
+            column_of(place, line.number, text) for place, text in enumerate(words)
+        ]
         is_known = any(column.quantities[0] for column in named)
         if _fits(named, block, separator) and (is_known or not names):
             names = named
     if not names and not units[1]:
         _check_nearest(texts, block, separator, refuse)
-    columns = names or [TableColumn(place) for place in range(max(width, len(units[1])))]
+    columns = names or [
+        TableColumn(place) for place in range(max(width, len(units[1])))
+    ]
     return [column.with_units(*units, refuse) for column in columns]
 
 
@@ -376,7 +423,10 @@ def _fits(named: Sequence[TableColumn], block: Block, separator: str) -> bool:
 
 
 def _check_nearest(
-    texts: Sequence[tuple[Line, list[str]]], block: Block, separator: str, refuse: Refuse
+    texts: Sequence[tuple[Line, list[str]]],
+    block: Block,
+    separator: str,
+    refuse: Refuse,
 ) -> None:
     """Refuse a head right above the rows that has too few names, or too many."""
     for line, words in texts[-1:]:
@@ -391,8 +441,8 @@ def _check_nearest(
 def _names_in(line: Line, width: int, separator: str) -> list[str]:
     """Names in a line: as cells are divided, or as comments and lines between blanks may have it.
 
-    There a name may have blanks within, or one in front of its bracket, and commas may stand
-    between; a comment may follow.
+    There a name may have blanks within, or one in front of its bracket, and commas may
+    stand between; a comment may follow.
     """
     own = list(line.cells)
     ways = [own]

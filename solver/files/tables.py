@@ -1,9 +1,10 @@
 """Tables as spreadsheets, measuring machines and programs write them: bytes become named columns.
 
-A file is read once, into a `Table`; whatever reads a path, a loop or results takes that.
+A file is read once, into a `Table`; whatever reads a path, a loop or results takes
+that.
 
-**Text** is UTF-8, UTF-16, or else cp1252. A workbook (.xlsx) is read with openpyxl: its first
-sheet, with the values that formulas had when it was saved.
+**Text** is UTF-8, UTF-16, or else cp1252. A workbook (.xlsx) is read with openpyxl: its
+first sheet, with the values that formulas had when it was saved.
 
 **How it is read**, where it may be read in two ways:
 
@@ -11,46 +12,50 @@ sheet, with the values that formulas had when it was saved.
 What stands there           What it is
 =========================== ===================================================================
 tab, `;`, `,`, blanks       The first of these under which most cells of most lines are numbers
-                            stands between columns. Two blanks or more do, and one does not,
-                            only where all lines then have equally many columns.
+                            stands between columns. Two blanks or more do, and one does
+                            not, only where all lines then have equally many columns.
 `0,5` or `1.234,5`          A decimal comma, if no other cell has a decimal point (`0.5`); both in
                             one table are refused, with the line of the rarer.
 `1,234` beside `0.5`        1234: a comma before three digits stands between thousands where
-                            others have decimal points; a point does beside decimal commas.
+                            others have decimal points; a point does beside decimal
+                            commas.
 `1,234` beside `1,5`        1.234, as decimals have commas.
 `1,234` alone               Between semicolons a decimal comma, as that is why there are
-                            semicolons; otherwise refused, with its line. Between columns without
-                            quotes a comma is what divides them.
+                            semicolons; otherwise refused, with its line. Between
+                            columns without quotes a comma is what divides them.
 `1.234` alone               1.234.
 `1 234`, `1'234`            1234: a blank (also a narrow or no-break one) or an apostrophe within
                             groups of three, where blanks do not divide columns.
 `1.5D-03`, `1.5-103`, `−5`  Exponents of Fortran, and a printed minus.
 `NaN`, `n/a`, `-`, empty    A gap. Rows that lack a number in a column that is read are left out
-                            and counted. Between blanks a row with too few cells is all gaps, as
-                            nothing says which lacks.
+                            and counted. Between blanks a row with too few cells is all
+                            gaps, as nothing says which lacks.
 `inf`, `1e999`, words       No number: refused with the line, in a column that is read.
 =========================== ===================================================================
 
-**Comments** begin with `#`, `%`, `//`, `!`, or `;` where that divides no columns; behind numbers
-they are cut off. Empty lines and rules (`-----`) are passed over.
+**Comments** begin with `#`, `%`, `//`, `!`, or `;` where that divides no columns;
+behind numbers they are cut off. Empty lines and rules (`-----`) are passed over.
 
-**Rows** are lines of two numbers or more. Where lines of words part them, the table that has most
-rows is taken, and others (results before the data) are passed over; of equals both are refused.
-Lines of words that repeat the head, or are titles of pages, part nothing. Words behind the last
-column are remarks, and a column of words is passed over as any other.
+**Rows** are lines of two numbers or more. Where lines of words part them, the table
+that has most rows is taken, and others (results before the data) are passed over; of
+equals both are refused. Lines of words that repeat the head, or are titles of pages,
+part nothing. Words behind the last column are remarks, and a column of words is passed
+over as any other.
 
-**The head** is the lowest line of words above the rows that has a name for each column and names
-a quantity; a line of units may stand below or above it, and text between. A row may have a label.
+**The head** is the lowest line of words above the rows that has a name for each column
+and names a quantity; a line of units may stand below or above it, and text between. A
+row may have a label.
 
-**A unit** stands behind the name in brackets, a slash, "in", a comma, blank or underscore:
-`Kraft [kN]`, `time/s`, `Kraft in kN`, `force, kN`, `force kN`, `force_kN`. A bare name has the
-unit of what it is read for. A unit that is unknown, or measures something else, is refused.
+**A unit** stands behind the name in brackets, a slash, "in", a comma, blank or
+underscore: `Kraft [kN]`, `time/s`, `Kraft in kN`, `force, kN`, `force kN`, `force_kN`.
+A bare name has the unit of what it is read for. A unit that is unknown, or measures
+something else, is refused.
 
-**A column is chosen** by its name: that of the setting, else a word of `columns.WORDS` for
-its quantity, else a name that ends with one (`axial force`, `Prüfzeit`), else, of names that say
-nothing, by its unit; a position stands in for a displacement. Others are passed over. Only where
-no head says anything, the first two are taken as they stand. What was understood is said: every
-table that is read has a message.
+**A column is chosen** by its name: that of the setting, else a word of `columns.WORDS`
+for its quantity, else a name that ends with one (`axial force`, `Prüfzeit`), else, of
+names that say nothing, by its unit; a position stands in for a displacement. Others are
+passed over. Only where no head says anything, the first two are taken as they stand.
+What was understood is said: every table that is read has a message.
 """
 
 from __future__ import annotations
@@ -65,7 +70,14 @@ from solver.arrays import Array, Flags, Indices, read_only
 from solver.files.columns import TableColumn, examples_of, size_in
 from solver.files.disk import LARGEST, TOO_LARGE, Refuse
 from solver.files.numerals import SIGNS, decimal_signs, is_gap, number
-from solver.files.table_lines import Block, Line, block_of, fitted, headed, lines_of_text
+from solver.files.table_lines import (
+    Block,
+    Line,
+    block_of,
+    fitted,
+    headed,
+    lines_of_text,
+)
 from solver.files.workbooks import is_archive, lines_of_workbook
 from solver.settings.definitions import SettingError
 
@@ -105,7 +117,8 @@ class Table:
     cells
         Texts of every row.
     numbers
-        In the units of the columns, shape (n_columns, n_rows); NaN where a cell has none.
+        In the units of the columns, shape (n_columns, n_rows); NaN where a cell has
+        none.
     lines
         Of the file, from 1, shape (n_rows,).
     remarks
@@ -138,24 +151,40 @@ class Table:
         return replace(named, cells=cells, numbers=np.vstack([self.numbers, count]))
 
     def find(
-        self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""
+        self,
+        columns: Sequence[TableColumn],
+        kinds: Collection[str],
+        unit: str = "",
+        key: str = "",
     ) -> TableColumn | None:
         """Column of a quantity among some, as described above; refuse several as likely."""
         rules: list[Callable[[TableColumn], object]] = [
             lambda column: key and column.key == key,
-            lambda column: column.quantities[1] and column.quantities[0].intersection(kinds),
+            lambda column: (
+                column.quantities[1] and column.quantities[0].intersection(kinds)
+            ),
             lambda column: column.quantities[0].intersection(kinds),
             lambda column: (
-                unit and column.unit and not column.quantities[0] and size_in(column.unit, unit)
+                unit
+                and column.unit
+                and not column.quantities[0]
+                and size_in(column.unit, unit)
             ),
         ]
         for rule in rules:
             likely = [column for column in columns if rule(column)]
-            # A column of words, as of the time of day, is not meant where another may be.
-            likely = [column for column in likely if self._has_numbers(column)] or likely
+            # A column of words, as of the time of day, is not meant where another may
+            # be.
+            likely = [
+                column for column in likely if self._has_numbers(column)
+            ] or likely
             if len(likely) > 1:
-                names = " and ".join(repr(column.name or column.unit) for column in likely)
-                raise self.refuse(f"{names} may both be meant: rename all columns but one")
+                names = " and ".join(
+                    repr(column.name or column.unit) for column in likely
+                )
+                raise self.refuse(
+                    f"{names} may both be meant: rename all columns but one"
+                )
             if likely:
                 return likely[0]
         return None
@@ -174,7 +203,9 @@ class Table:
         """Column of a quantity among some, as described above; refuse a head that names none."""
         column = self.find(columns, kinds, unit, key)
         if column is None:
-            column = self.find(columns, {STANDS_IN[kind] for kind in kinds if kind in STANDS_IN})
+            column = self.find(
+                columns, {STANDS_IN[kind] for kind in kinds if kind in STANDS_IN}
+            )
         if column is None:
             wanted = f"{' or '.join(sorted(kinds))} in {examples_of(unit)}"
             has = ", ".join(repr(column.name) for column in self.columns)
@@ -189,11 +220,12 @@ class Table:
     ) -> Reading:
         """Numbers of some columns in some units, of the rows that have all of them.
 
-        Names are those of columns that lack one. A unit of another quantity is refused, and a cell
-        that is neither a finite number nor a gap, with its line.
+        Names are those of columns that lack one. A unit of another quantity is refused,
+        and a cell that is neither a finite number nor a gap, with its line.
         """
         sizes = [
-            column.size(unit, self.refuse) for column, unit in zip(columns, units, strict=True)
+            column.size(unit, self.refuse)
+            for column, unit in zip(columns, units, strict=True)
         ]
         places = [column.place for column in columns]
         has_all = self._rows_with(columns)
@@ -210,8 +242,13 @@ class Table:
             notes.append(f"passed over: {', '.join(others)}")
         if not has_all.all():
             count = int((~has_all).sum())
-            rows = "1 row" if count == 1 else f"{count} rows"
-            notes.append(f"left out {rows} without a number ({_named(self.lines[~has_all])})")
+            if count == 1:
+                rows = "1 row"
+            else:
+                rows = f"{count} rows"
+            notes.append(
+                f"left out {rows} without a number ({_named(self.lines[~has_all])})"
+            )
         message = "; ".join([*notes, *self.remarks])
         return Reading(numbers * np.array(sizes)[:, None], self.lines[has_all], message)
 
@@ -228,9 +265,16 @@ class Table:
                 if not column.name:
                     shown = ",".join(self.cells[row])
                     count = len(columns)
-                    raise self.refuse(f"line {line} is {shown!r}, not {count} finite numbers")
-                remedy = "give a number" if np.isnan(value) else "leave such rows out"
-                raise self.refuse(f"line {line} has {text!r} as {column.name}: {remedy}")
+                    raise self.refuse(
+                        f"line {line} is {shown!r}, not {count} finite numbers"
+                    )
+                if np.isnan(value):
+                    remedy = "give a number"
+                else:
+                    remedy = "leave such rows out"
+                raise self.refuse(
+                    f"line {line} has {text!r} as {column.name}: {remedy}"
+                )
         if not has_all.any():
             raise self.refuse("none of its rows has a number in each of these columns")
         return has_all
@@ -246,7 +290,8 @@ def _named(lines: Sequence[int] | Indices) -> str:
 def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table:
     """Table of a file, or of text, as described above, which refusals call by a name.
 
-    What is too large, no text or without numbers is refused, and lines that do not fit the head.
+    What is too large, no text or without numbers is refused, and lines that do not fit
+    the head.
     """
     refuse = partial(SettingError, name, source, allowed)
     if len(data) > LARGEST:
@@ -280,23 +325,33 @@ def _interruptions(block: Block) -> list[str]:
     """Words on what stands between rows."""
     remarks = []
     if block.repeats:
-        times = "once" if block.repeats == 1 else f"{block.repeats} times"
+        if block.repeats == 1:
+            times = "once"
+        else:
+            times = f"{block.repeats} times"
         remarks.append(f"its head comes again {times}")
     if block.passed:
         remarks.append(f"passed over {_named([line.number for line in block.passed])}")
     return remarks
 
 
-def _notation(rows: Sequence[Line], separator: str, refuse: Refuse) -> tuple[str, list[str]]:
+def _notation(
+    rows: Sequence[Line], separator: str, refuse: Refuse
+) -> tuple[str, list[str]]:
     """The decimal sign of a table, and words on signs between thousands, as described above."""
-    if not any("," in cell or cell.count(".") > 1 for row in rows for cell in row.cells):
+    if not any(
+        "," in cell or cell.count(".") > 1 for row in rows for cell in row.cells
+    ):
         return ".", []
     # Cells that are numbers under one decimal sign alone, and under both, by line.
     sure: dict[str, list[tuple[int, str]]] = {sign: [] for sign in SIGNS}
     unsure: dict[str, list[tuple[int, str]]] = {sign: [] for sign in SIGNS}
     for row in rows:
         for cell in row.cells:
-            signs = decimal_signs(cell) if "," in cell or "." in cell else ""
+            if "," in cell or "." in cell:
+                signs = decimal_signs(cell)
+            else:
+                signs = ""
             if len(signs) == 1:
                 sure[signs].append((row.number, cell))
             elif signs:
@@ -313,7 +368,9 @@ def _notation(rows: Sequence[Line], separator: str, refuse: Refuse) -> tuple[str
         return ",", []
     decimal = "," if sure[","] else "."
     other = "." if decimal == "," else ","
-    has_thousands = bool(unsure[other]) or any(other in cell for _, cell in sure[decimal])
+    has_thousands = bool(unsure[other]) or any(
+        other in cell for _, cell in sure[decimal]
+    )
     names = {",": "commas", ".": "points"}
     return decimal, [f"thousands with {names[other]}"] * has_thousands
 

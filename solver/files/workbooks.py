@@ -33,9 +33,13 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
     try:
         # It warns of what it does not read: forms, charts, styles.
         with warnings.catch_warnings(action="ignore"):
-            book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
+            book = openpyxl.load_workbook(
+                io.BytesIO(data), read_only=True, data_only=True
+            )
             sheet = book.worksheets[0]
-            rows = [list(map(_text_of, row)) for row in sheet.iter_rows(values_only=True)]
+            rows = [
+                list(map(_text_of, row)) for row in sheet.iter_rows(values_only=True)
+            ]
             names = book.sheetnames
             book.close()
     except Exception as problem:  # whatever a file that is broken makes of its readers
@@ -44,7 +48,10 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
         line_of(number, " ".join(row), _without_end(row))
         for number, row in enumerate(rows, start=1)
     ]
-    several = f" of {len(names)}" if len(names) > 1 else ""
+    if len(names) > 1:
+        several = f" of {len(names)}"
+    else:
+        several = ""
     return [line for line in lines if line.cells], f"sheet {sheet.title!r}{several}"
 
 
@@ -62,7 +69,9 @@ def _check_archive(data: bytes, refuse: Refuse) -> None:
 
 def _text_of(value: object) -> str:
     """A cell as text: numbers in all digits, with a decimal point."""
-    return "" if value is None else str(value).strip()
+    if value is None:
+        return ""
+    return str(value).strip()
 
 
 def _without_end(cells: list[str]) -> list[str]:

@@ -14,51 +14,62 @@ from solver.latin.stages.blocks import Blocks
 from solver.latin.stages.linear import LinearStage
 
 MEMORY = 15
-"""Differences that are remembered at most; from 5 to 50 iterations hardly differ (measured)."""
+"""Differences that are remembered at most; from 5 to 50 iterations hardly differ
+(measured)."""
 GROWTH_ON_SUPPORT = 2.0
-"""Growth of the residual from which the memory is given up, in contact with a rigid support: with 1
-the rocking of a block that tilts until it lifts off takes thousands of iterations, not 50."""
+"""Growth of the residual from which the memory is given up, in contact with a rigid
+support: with 1 the rocking of a block that tilts until it lifts off takes thousands of
+iterations, not 50."""
 GROWTH_BETWEEN_BODIES = 1.1
-"""The same between bodies. Thin layers: 1e-6 takes 120 iterations, 140 with 2, 300 with 1."""
+"""The same between bodies. Thin layers: 1e-6 takes 120 iterations, 140 with 2, 300 with
+1."""
 MOST_VALUES = 50_000_000
-"""Numbers that the remembered images may hold; a larger field is remembered for fewer iterations:
-on 384 x 192 elements 1e-4 takes 38 with 15 differences, 41 with 5 (measured)."""
+"""Numbers that the remembered images may hold; a larger field is remembered for fewer
+iterations: on 384 x 192 elements 1e-4 takes 38 with 15 differences, 41 with 5
+(measured)."""
 SAMPLE = 300_000
-"""Values of a residual that the weights of the mixture are found from; all, if it has no more. On
-384 x 192 elements 1e-4 takes as many iterations with that as with all (measured)."""
+"""Values of a residual that the weights of the mixture are found from; all, if it has
+no more. On 384 x 192 elements 1e-4 takes as many iterations with that as with all
+(measured)."""
 REGULAR = 1e-10
-"""Added to the diagonal of the small normal equations, whose own diagonal is scaled to 1."""
+"""Added to the diagonal of the small normal equations, whose own diagonal is scaled to
+1."""
 
 
 @dataclass(frozen=True)
 class Anderson:
     """Mixes the last iterates, so that both stages agree best.
 
-    One iteration maps the state y to g(y) with residual f = g(y) - y. The mixture
-    g_n - sum_j gamma_j (g_j - g_{j-1}), where gamma makes f_n - sum_j gamma_j (f_j - f_{j-1})
-    least, has weights that add up to one, so it is admissible whenever its parts are. When the
-    residual grows too far beyond the smallest, the memory is given up: the plain iteration goes on
-    from there, which does not diverge. Separated bases are not mixed.
+    One iteration maps the state y to g(y) with residual f = g(y) - y. The mixture g_n -
+    sum_j gamma_j (g_j - g_{j-1}), where gamma makes f_n - sum_j gamma_j (f_j - f_{j-1})
+    least, has weights that add up to one, so it is admissible whenever its parts are.
+    When the residual grows too far beyond the smallest, the memory is given up: the
+    plain iteration goes on from there, which does not diverge. Separated bases are not
+    mixed.
     """
 
 
 class AndersonState:
     """What a run remembers of its states, which are in full, and the mixture of them.
 
-    The images g are kept whole; of large residuals no more than a sample is. Residuals are measured
-    by k over boundary and time. They count for nothing along a motion of the rows, (n_rows,), which
-    the local stage chooses anew at every instant, whatever the state is.
+    The images g are kept whole; of large residuals no more than a sample is. Residuals
+    are measured by k over boundary and time. They count for nothing along a motion of
+    the rows, (n_rows,), which the local stage chooses anew at every instant, whatever
+    the state is.
     """
 
     def __init__(
         self, problem: Problem, stage: LinearStage, motion: Array | None, blocks: Blocks
     ) -> None:
-        # Where the bound of friction is known 1 is best; twice as much takes up to a third more
-        # iterations to 1e-6.
+        # Where the bound of friction is known 1 is best; twice as much takes up to a
+        # third more iterations to 1e-6.
         self._growth = 1.0
         if problem.opens:
             is_held = any(law.is_on_support for law in problem.rubbing.values())
-            self._growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
+            if is_held:
+                self._growth = GROWTH_ON_SUPPORT
+            else:
+                self._growth = GROWTH_BETWEEN_BODIES
         groups = self._groups = stage.groups
         self._blocks = blocks
         size = sum(group.target.size for group in groups)
@@ -72,9 +83,12 @@ class AndersonState:
             instants = np.arange(float(problem.n_instants))
             self._instants = self._sampled([instants for _ in groups]).astype(int)
             squares = np.bincount(self._instants, self._way**2)
-            self._dual = self._way / np.where(squares > 0.0, squares, 1.0)[self._instants]
+            self._dual = (
+                self._way / np.where(squares > 0.0, squares, 1.0)[self._instants]
+            )
         self._memory = max(1, min(MEMORY, MOST_VALUES // size - 1))
-        # Memory that nothing was written to costs nothing yet; an instant is in one piece.
+        # Memory that nothing was written to costs nothing yet; an instant is in one
+        # piece.
         shapes = [(self._memory + 1, *group.target.T.shape) for group in groups]
         self._images = [np.zeros(shape) for shape in shapes]
         self._residuals = np.zeros((self._memory, len(self._root)))
@@ -84,7 +98,8 @@ class AndersonState:
         self._forget()
 
     def _forget(self) -> None:
-        self._count, self._smallest = 0, np.inf
+        self._count = 0
+        self._smallest = np.inf
 
     def start(self) -> None:
         """Read y, before the iteration that makes g(y) of it."""
@@ -165,8 +180,12 @@ class AndersonState:
         """Fields of the groups at the places of the sample, in a row."""
         return np.concatenate(
             [
-                np.broadcast_to(field, group.target.shape).reshape(-1, order="F")[::step]
-                for field, group, step in zip(fields, self._groups, self._steps, strict=True)
+                np.broadcast_to(field, group.target.shape).reshape(-1, order="F")[
+                    ::step
+                ]
+                for field, group, step in zip(
+                    fields, self._groups, self._steps, strict=True
+                )
             ]
         )
 

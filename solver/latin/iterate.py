@@ -23,16 +23,18 @@ class UpdateProgress:
     Attributes
     ----------
     phase
-        Whether k is that of the start and may change ("first"), another on trial ("updated"), or
-        stays as it is ("returned").
+        Whether k is that of the start and may change ("first"), another on trial
+        ("updated"), or stays as it is ("returned").
     count
-        First: iterations on end with hardly a change of status. Updated: iterations since the last
-        trial.
+        First: iterations on end with hardly a change of status. Updated: iterations
+        since the last trial.
     status
-        Contact status of the last iteration, shape (n_points, n_instants), where k follows it.
+        Contact status of the last iteration, shape (n_points, n_instants), where k
+        follows it.
     fields, violation
-        W and F of the linear stage at the last trial, shape (n_rows, n_instants) each, from where
-        the next iteration goes on if its k is another; and the k-free indicator of these.
+        W and F of the linear stage at the last trial, shape (n_rows, n_instants) each,
+        from where the next iteration goes on if its k is another; and the k-free
+        indicator of these.
     """
 
     phase: Literal["first", "updated", "returned"]
@@ -50,10 +52,11 @@ class Checkpoint:
     Attributes
     ----------
     outgoing, bases
-        W + F/k of the linear stage, shape (n_rows, n_instants), scaled, and the bases that hold it,
-        if any do.
+        W + F/k of the linear stage, shape (n_rows, n_instants), scaled, and the bases
+        that hold it, if any do.
     course
-        How far the update of k has come; None where the fields are those of another run.
+        How far the update of k has come; None where the fields are those of another
+        run.
     """
 
     number: int
@@ -72,29 +75,32 @@ class Iterate:
     Attributes
     ----------
     number, seconds
-        Iterations done, and time that the method took so far, set-up included, looking excluded.
+        Iterations done, and time that the method took so far, set-up included, looking
+        excluded.
     k
         Search direction of the rows, shape (n_rows,), scaled.
     outgoing, incoming
-        W + F/k and W - F/k of the linear stage, shape (n_rows, n_instants), scaled, read-only.
+        W + F/k and W - F/k of the linear stage, shape (n_rows, n_instants), scaled,
+        read-only.
     local_displacement
         W^ of the local stage, same shape, bit by bit as the laws gave it.
     local_incoming
         W - F/k that the local stage read, which is its own W^ - F^/k.
     bases
-        The separated bases that hold the linear stage, one per substructure, if any do; of a
-        certified solution those of the search that led to it, which hold less than it is.
+        The separated bases that hold the linear stage, one per substructure, if any do;
+        of a certified solution those of the search that led to it, which hold less than
+        it is.
     course
         How far the update of k has come, with the k of the next iteration.
     residual
-        Of an iterate that is a certified solution (`solver.latin.end.certified`), its KKT residual
-        relative to the contact force; None of all others.
+        Of an iterate that is a certified solution (`solver.latin.end.certified`), its
+        KKT residual relative to the contact force; None of all others.
     force
-        F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid motion the digits
-        of F/k may be lost.
+        F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid
+        motion the digits of F/k may be lost.
     is_answer
-        Whether such a one stands beside the iterates of a search that came to its own end, and so
-        is no iteration.
+        Whether such a one stands beside the iterates of a search that came to its own
+        end, and so is no iteration.
     """
 
     number: int
@@ -124,7 +130,10 @@ class Iterate:
             displacement, force = new.fields
             outgoing = read_only(displacement + force / new.k[:, None])
             return Checkpoint(self.number, self.seconds, outgoing, course=new)
-        bases = self.bases if self.residual is None else ()
+        if self.residual is None:
+            bases = self.bases
+        else:
+            bases = ()
         return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)
 
     @property
@@ -154,7 +163,9 @@ class Iterate:
     @cached_property
     def behaviour(self) -> float:
         """The k-free indicator (solver/README.md, 4)."""
-        return behaviour_of(self.problem, self.boundary_displacement, self.boundary_force)
+        return behaviour_of(
+            self.problem, self.boundary_displacement, self.boundary_force
+        )
 
     @cached_property
     def displacement(self) -> Array:
@@ -166,8 +177,8 @@ class Iterate:
     def contact_force(self) -> Array:
         """Nodal forces of all interfaces with friction on the bodies above, linear stage, N.
 
-        Shape (n_forces, n_instants), stacked as `Problem.sum_of_contact` says; friction is as the
-        law says where only its sum with a reaction can be found.
+        Shape (n_forces, n_instants), stacked as `Problem.sum_of_contact` says; friction
+        is as the law says where only its sum with a reaction can be found.
         """
         force = np.asarray(self.problem.sum_of_contact @ self.boundary_force)
         force = self.problem.with_driven_friction(force, self.boundary_displacement)
@@ -193,7 +204,7 @@ class Iterate:
     def status(self) -> NDArray[np.int8]:
         """Contact status of the local stage, shape (n_points, n_instants).
 
-        -1 is slip backward, 0 stick, +1 slip forward, `OPEN` without contact. Points of all
-        interfaces with friction, one interface after the other.
+        -1 is slip backward, 0 stick, +1 slip forward, `OPEN` without contact. Points of
+        all interfaces with friction, one interface after the other.
         """
         return contact_status(self)

@@ -35,8 +35,8 @@ def iterations(
     problem, latin
         What to solve, and the method.
     start
-        Where to go on from; without one the method says where to start, and a body that contact
-        alone holds where it comes to rest.
+        Where to go on from; without one the method says where to start, and a body that
+        contact alone holds where it comes to rest.
 
     Yields
     ------
@@ -48,7 +48,8 @@ def iterations(
         shape = problem.n_rows, problem.n_instants
         check_value("start", start, Part(Checkpoint))
         check_value("start.outgoing", start.outgoing, Numbers((shape,)))
-    began, seconds = time.perf_counter(), start.seconds if start else 0.0
+    began = time.perf_counter()
+    seconds = start.seconds if start else 0.0
     with one_blas_thread:
         iteration = Iteration(problem, latin, start)
     for number in count(start.number + 1 if start else 1):
@@ -68,12 +69,15 @@ def iterations(
 class Iteration:
     """Both stages of the method on a problem, in turn, and what passes between them.
 
-    `incoming` and `outgoing` are W - F/k and W + F/k of the linear stage, (n_rows, n_instants),
-    read-only, and new after every linear stage.
+    `incoming` and `outgoing` are W - F/k and W + F/k of the linear stage, (n_rows,
+    n_instants), read-only, and new after every linear stage.
     """
 
-    def __init__(self, problem: Problem, latin: Latin, start: Checkpoint | None = None) -> None:
-        self._problem, self._latin = problem, latin
+    def __init__(
+        self, problem: Problem, latin: Latin, start: Checkpoint | None = None
+    ) -> None:
+        self._problem = problem
+        self._latin = latin
         course = start.course if start else None
         self._course = course or latin.direction.begin(problem, start)
         self.k = self._course.k
@@ -92,7 +96,9 @@ class Iteration:
         self.local = LocalStage(problem, self.k, blocks)
         self._mixture: AndersonState | None = None
         if latin.acceleration is not None and self.linear.is_full:
-            self._mixture = AndersonState(problem, self.linear, self.local.motion, blocks)
+            self._mixture = AndersonState(
+                problem, self.linear, self.local.motion, blocks
+            )
         if start is None and problem.rest is not None:
             start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
         elif start is None and latin.start is not None:

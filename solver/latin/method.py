@@ -20,8 +20,8 @@ from solver.latin.start import Nested
 class Latin:
     """The multiscale LATIN method, made of parts.
 
-    A part is a value with its own few numbers, checked where it is made; `solve` and `iterations`
-    put it to work on a problem.
+    A part is a value with its own few numbers, checked where it is made; `solve` and
+    `iterations` put it to work on a problem.
 
     Attributes
     ----------
@@ -30,17 +30,18 @@ class Latin:
     linear
         How fields are held: `Full`, or `PGD`.
     multiscale
-        Whether macro forces are in balance after every iteration, by the coarse problem.
+        Whether macro forces are in balance after every iteration, by the coarse
+        problem.
     relaxation
         Share of the new iterate, the rest being the one before.
     start
-        `Nested`, or None: zero, and of a body that only contact holds the place where it comes to
-        rest.
+        `Nested`, or None: zero, and of a body that only contact holds the place where
+        it comes to rest.
     finish
         `StatusStep`, which ends a run with a certified solution, or None.
     threads
-        That share an iteration on a large structure, in each of which BLAS has one; the results
-        are the same to the bit.
+        That share an iteration on a large structure, in each of which BLAS has one; the
+        results are the same to the bit.
 
     Raises
     ------

@@ -23,11 +23,13 @@ class Record:
     Attributes
     ----------
     seconds
-        Time that the run took so far, s: set-up, iterations, and all that its stop rules compute.
+        Time that the run took so far, s: set-up, iterations, and all that its stop
+        rules compute.
     indicator, behaviour
         LATIN indicator eta (paper, eq. 2), and the k-free indicator.
     estimated_error
-        Of the contact force, relative, without a reference; NaN where it is not estimated.
+        Of the contact force, relative, without a reference; NaN where it is not
+        estimated.
     error_displacement, error_force
         Relative L2 distance to the reference over space and time.
     modes
@@ -62,14 +64,19 @@ class Solution:
 
 
 def record(
-    iterate: Iterate, verdict: Decision, distance: Distance | None, *, watch: bool = True
+    iterate: Iterate,
+    verdict: Decision,
+    distance: Distance | None,
+    *,
+    watch: bool = True,
 ) -> Record:
     """The scalars of an iterate; what the rules did not need is off the run's clock.
 
-    `watch` says whether anybody wants indicators and estimate of every iteration, not only of that
-    at which a run ends.
+    `watch` says whether anybody wants indicators and estimate of every iteration, not
+    only of that at which a run ends.
     """
-    estimated, watch = verdict.estimated_error, watch or verdict.status is not None
+    estimated = verdict.estimated_error
+    watch = watch or verdict.status is not None
     known = vars(iterate)  # that is, computed for the stop rules
     if watch and math.isnan(estimated) and verdict.certificate is not None:
         estimated = verdict.certificate.distance.of_friction_force(iterate)
@@ -95,9 +102,9 @@ def judged(
 ) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
-    It goes on though a verdict says that the run ends. The run took `spent` seconds before, to make
-    the problem. Where `interrupted` returns True a status step is given up, so that the iterate
-    before it is there at once.
+    It goes on though a verdict says that the run ends. The run took `spent` seconds
+    before, to make the problem. Where `interrupted` returns True a status step is given
+    up, so that the iterate before it is there at once.
     """
     rules = StopState(latin, spent, interrupted)
     for iterate in iterations(problem, latin, start):

@@ -24,11 +24,11 @@ from solver.reference.solution import Reference
 class Nested:
     """A start from the solution of the same structure on a coarser mesh.
 
-    The incremental solver finds it. LATIN's own iterate on that mesh serves less: on 400 elements
-    and instants of the bar 1 % of the friction force takes 16 iterations instead of 70, on 1600
-    elements 11 instead of never, and on strands of 10 and 20 wires 51 and 148 instead of 71 and
-    more than 400, at a third to two thirds of the time (measured). From a mesh four times as coarse
-    strands take twice as many.
+    The incremental solver finds it. LATIN's own iterate on that mesh serves less: on
+    400 elements and instants of the bar 1 % of the friction force takes 16 iterations
+    instead of 70, on 1600 elements 11 instead of never, and on strands of 10 and 20
+    wires 51 and 148 instead of 71 and more than 400, at a third to two thirds of the
+    time (measured). From a mesh four times as coarse strands take twice as many.
 
     Attributes
     ----------
@@ -41,7 +41,9 @@ class Nested:
     def __post_init__(self) -> None:
         check(self, coarser=FUNCTION)
 
-    def of(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
+    def of(
+        self, problem: Problem, k: Array, seconds: float = math.inf
+    ) -> Checkpoint | None:
         """Where a problem starts with a search direction: from the finest mesh that has a solution.
 
         None if there is no such mesh, or it takes more than so many seconds.
@@ -62,23 +64,30 @@ class Nested:
 def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     """Carry the solution of a coarser mesh to the same structure on a finer one: W + F/k.
 
-    Displacement and friction force per length are linear between the coarse nodes of a body; the
-    forces on cuts and ends are those that the displacement needs inside each substructure. `k` and
-    the result are those of the fine rows, (n_rows,) and (n_rows, n_instants).
+    Displacement and friction force per length are linear between the coarse nodes of a
+    body; the forces on cuts and ends are those that the displacement needs inside each
+    substructure. `k` and the result are those of the fine rows, (n_rows,) and (n_rows,
+    n_instants).
     """
     coarse = solution.problem
     displacement = solution.displacement / coarse.scales.displacement
     force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
     inside = _interpolated(_apart(fine), _apart(coarse), displacement)
     moved = inside[fine.row_dofs]
-    carried, rests = np.zeros_like(moved), np.ones(fine.n_rows, dtype=bool)
+    carried = np.zeros_like(moved)
+    rests = np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
-        density = law.by_point(force[law.tangent.above]) / law.by_point(law.weights)[:, None]
-        spread = _interpolated(_points_apart(fine, target), _points_apart(coarse, law), density)
+        density = (
+            law.by_point(force[law.tangent.above]) / law.by_point(law.weights)[:, None]
+        )
+        spread = _interpolated(
+            _points_apart(fine, target), _points_apart(coarse, law), density
+        )
         shared = spread[target.points] * target.weights[:, None]
         for rows, sign in zip(target.tangent.sides, (1.0, -1.0), strict=False):
-            carried[rows], rests[rows] = sign * shared, False
+            carried[rows] = sign * shared
+            rests[rows] = False
     balance, needed = balance_of_rows(fine, inside)
     carried[rests] = (balance.T @ (needed - balance @ carried))[rests]
     return np.asfortranarray(moved + carried / k[:, None])
@@ -91,13 +100,18 @@ def _bodies(problem: Problem) -> Indices:
 
 def _apart(problem: Problem) -> Array:
     """Positions, with bodies laid end to end so that none touches the next."""
-    return np.asarray(problem.positions + 2.0 * problem.scales.displacement * _bodies(problem))
+    return np.asarray(
+        problem.positions + 2.0 * problem.scales.displacement * _bodies(problem)
+    )
 
 
 def _points_apart(problem: Problem, law: Contact) -> Array:
     """Positions of an interface's points, those of other bodies apart."""
-    numbers, bodies = np.zeros(len(law.positions), dtype=np.intp), _bodies(problem)
-    numbers[law.points] = sum(bodies[problem.row_dofs[rows]] for rows in law.tangent.sides)
+    numbers = np.zeros(len(law.positions), dtype=np.intp)
+    bodies = _bodies(problem)
+    numbers[law.points] = sum(
+        bodies[problem.row_dofs[rows]] for rows in law.tangent.sides
+    )
     return law.positions + 2.0 * problem.scales.displacement * numbers
 
 

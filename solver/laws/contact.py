@@ -1,8 +1,8 @@
 """Contact: two sides that stick and slip, and where contact may be lost, open.
 
-It is a normal law and a friction law put together. Where the pressure is known there is no normal
-law. Below is a rigid support or another body. Forces act from what is below on the body above, and
-the jump is that of the body above over what is below.
+It is a normal law and a friction law put together. Where the pressure is known there is
+no normal law. Below is a rigid support or another body. Forces act from what is below
+on the body above, and the jump is that of the body above over what is below.
 """
 
 from __future__ import annotations
@@ -70,15 +70,17 @@ class Behaviour:
     def violation(self, mean_slip: float, mean_force: Array | float) -> Array:
         """Violation of every pair and instant, an energy, scaled.
 
-        With q|v| + F v, where F is cut to |F| <= q: it is nowhere negative and zero exactly where
-        Coulomb's law holds; the excess of |F| over q times the mean slip; and of contact N g where
-        both are positive, tension times the mean slip, and overlap times the mean force.
+        With q|v| + F v, where F is cut to |F| <= q: it is nowhere negative and zero
+        exactly where Coulomb's law holds; the excess of |F| over q times the mean slip;
+        and of contact N g where both are positive, tension times the mean slip, and
+        overlap times the mean force.
         """
         held = np.clip(self.friction, -self.bound, self.bound)
         violation = self.dissipated + held * self.slip
         violation += np.abs(self.friction - held) * mean_slip
         if self.pressing is not None and self.opening is not None:
-            pressed, opened = np.maximum(self.pressing, 0.0), np.maximum(self.opening, 0.0)
+            pressed = np.maximum(self.pressing, 0.0)
+            opened = np.maximum(self.opening, 0.0)
             violation += pressed * opened + (pressed - self.pressing) * mean_slip
             violation += mean_force * (opened - self.opening)
         return np.maximum(violation, 0.0)
@@ -88,8 +90,8 @@ class Behaviour:
 class Contact(Interface):
     """Pairs that stick and slip, and may open.
 
-    A pair is a point of the body above and what lies below it; the pairs of one point (two, where a
-    cut crosses the interface, or ends at it) share its force.
+    A pair is a point of the body above and what lies below it; the pairs of one point
+    (two, where a cut crosses the interface, or ends at it) share its force.
 
     Attributes
     ----------
@@ -106,14 +108,17 @@ class Contact(Interface):
     around
         What the search direction has to know of the bodies.
     macro
-        Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
-        from the other is in equilibrium in the coarse problem. None on a rigid support.
+        Macro basis of each component between two bodies, shape (n_pairs, n_macro): what
+        one takes from the other is in equilibrium in the coarse problem. None on a
+        rigid support.
     slip_ratio
-        Slip between both sides over the displacement along the interface that the rows have: 2
-        where the image of the body lies below, which no row sees and which moves the other way.
+        Slip between both sides over the displacement along the interface that the rows
+        have: 2 where the image of the body lies below, which no row sees and which
+        moves the other way.
     copies
-        Number of interfaces that this one stands for in sums over the structure that is shown, as
-        one wire of a layer does for all: forces and energies of its points count as many times.
+        Number of interfaces that this one stands for in sums over the structure that is
+        shown, as one wire of a layer does for all: forces and energies of its points
+        count as many times.
     is_spring
         Whether it is a spring that pulls at a point: no surface on which bodies touch.
     """
@@ -139,7 +144,8 @@ class Contact(Interface):
             around=Part(Rod, Bodies),
             positions=Numbers(((None,),)),
         )
-        size, most = len(self.tangential.component.above), len(self.positions) - 1
+        size = len(self.tangential.component.above)
+        most = len(self.positions) - 1
         check(
             self,
             points=Numbers(((size,),), low=0, high=most, whole=True),
@@ -155,12 +161,18 @@ class Contact(Interface):
         if self.normal is not None and len(self.normal.gap) != size:
             remedy = "give both components the same pairs"
             shown = Words(f"of {len(self.normal.gap)} pairs")
-            raise RefusedError("Contact.normal", shown, f"a law of {size} pairs", remedy)
+            raise RefusedError(
+                "Contact.normal", shown, f"a law of {size} pairs", remedy
+            )
 
     def incremental_form(self) -> IncrementalForm | None:
         """The law itself, where its parts are those that solvers read, and none derived of them."""
-        along, across = self.tangential, self.normal
-        is_known = type(along) is Friction and type(along.strength) in (Strength, NoneType)
+        along = self.tangential
+        across = self.normal
+        is_known = type(along) is Friction and type(along.strength) in (
+            Strength,
+            NoneType,
+        )
         if not is_known or type(across) not in (Unilateral, NoneType):
             return None
         return IncrementalForm(contact=self)
@@ -175,12 +187,16 @@ class Contact(Interface):
     def components(self) -> tuple[Component, ...]:
         """All components, the tangential one last."""
         along = self.tangential.component
-        return (along,) if self.normal is None else (self.normal.component, along)
+        if self.normal is None:
+            return (along,)
+        return (self.normal.component, along)
 
     @property
     def rows(self) -> Indices:  # type: ignore[override]  # others are given them
         """Rows of all components, of both sides."""
-        return np.concatenate([rows for component in self.components for rows in component.sides])
+        return np.concatenate(
+            [rows for component in self.components for rows in component.sides]
+        )
 
     @property
     def tangent(self) -> Component:
@@ -215,8 +231,12 @@ class Contact(Interface):
     @property
     def kind(self) -> Hashable:
         """What interfaces have alike that may be treated as one."""
-        along, across = self.tangential, self.normal and self.normal.softness
-        has = [field is not None for field in (along.cap, along.softness, along.start, across)]
+        along = self.tangential
+        across = self.normal and self.normal.softness
+        has = [
+            field is not None
+            for field in (along.cap, along.softness, along.start, across)
+        ]
         return along.strength, self.is_on_support, self.opens, *has
 
     @classmethod
@@ -241,12 +261,16 @@ class Contact(Interface):
         """1 where a pair is of a point, shape (n_points, n_pairs)."""
         size = len(self.points)
         places = self.points, np.arange(size)
-        return sparse.csr_array((np.ones(size), places), shape=(len(self.positions), size))
+        return sparse.csr_array(
+            (np.ones(size), places), shape=(len(self.positions), size)
+        )
 
     def mean_by_point(self, values: Array) -> Array:
         """Mean of the values of each point's pairs, shape (n_points, ...)."""
         counts = np.bincount(self.points, minlength=len(self.positions))
-        return np.asarray(self.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1)))
+        return np.asarray(
+            self.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1))
+        )
 
     def in_parallel(self, softness: Array | None) -> Array:
         """Compliance of every point whose pairs have one each, (n_points,); zero without."""
@@ -258,7 +282,10 @@ class Contact(Interface):
     def shares(self) -> Array:
         """Share of each pair in the force of its point: as its law says, or of its area."""
         softness = self.tangential.softness
-        along = self.tangential.highest.max(axis=1) if softness is None else 1.0 / softness
+        if softness is None:
+            along = self.tangential.highest.max(axis=1)
+        else:
+            along = 1.0 / softness
         for weights in (along, self.weights):
             whole = self.by_point(weights)[self.points]
             if np.all(whole > 0.0):
@@ -276,14 +303,20 @@ class Contact(Interface):
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare the forces of both sides; where they move is what the law is about.
 
-        Where a part of it is none that is known here, its local stage alone says what it is about.
+        Where a part of it is none that is known here, its local stage alone says what
+        it is about.
         """
         if self.incremental_form() is None:
             return super().gaps(displacement, force, noise, k)
         if self.is_on_support:
             return Gaps()
-        sums = (sum(force[rows] for rows in component.sides) for component in self.components)
-        return Gaps(force=sum(squared(beyond(np.asarray(missing), noise)) for missing in sums))
+        sums = (
+            sum(force[rows] for rows in component.sides)
+            for component in self.components
+        )
+        return Gaps(
+            force=sum(squared(beyond(np.asarray(missing), noise)) for missing in sums)
+        )
 
     def behaviour(self, displacement: Array, force: Array, noise: float) -> Behaviour:
         """Prepare the check of W and F against the law; parameters as of `gaps`."""
@@ -292,8 +325,12 @@ class Contact(Interface):
             pressing = beyond(force[self.normal.component.above], noise)
             opening = beyond(self.normal.opening(displacement, force), 2.0 * noise)
         start = self.tangential.start
-        before = 0.0 if start is None else start[:, None]
-        moved = np.diff(self.tangential.slider(displacement, force), axis=1, prepend=before)
+        before: Array | float = 0.0
+        if start is not None:
+            before = start[:, None]
+        moved = np.diff(
+            self.tangential.slider(displacement, force), axis=1, prepend=before
+        )
         slip = beyond(moved, 2.0 * noise)
         return Behaviour(
             slip=slip,
@@ -315,6 +352,8 @@ class Contact(Interface):
     @property
     def is_moved(self) -> bool:
         """Whether the bodies overlap, or sliders stand elsewhere, before anything is given."""
-        overlaps = self.normal is not None and bool(self.normal.gap.min(initial=0.0) < 0.0)
+        overlaps = self.normal is not None and bool(
+            self.normal.gap.min(initial=0.0) < 0.0
+        )
         start = self.tangential.start
         return overlaps or (start is not None and bool(start.any()))

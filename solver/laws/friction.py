@@ -1,15 +1,16 @@
 """The friction law: a spring in series with a slider (solver/README.md, 8 and 14).
 
-Asperities, or the part of a joint that no mesh shows, give way before they slip: along the
-interface a spring k_t is in series with a slider, whose friction force is at most
+Asperities, or the part of a joint that no mesh shows, give way before they slip: along
+the interface a spring k_t is in series with a slider, whose friction force is at most
 
     b = g(s) min(r + mu N, cap),
 
-with the known part r, the pressing force N, and a factor g of the slip s that the slider has
-accumulated, g(0) = 1. The slider stands at p = w + f / k_t, where w is the tangential jump and f
-the friction force on the body above. Along the search direction it is the play operator (problem
-2.1 of the paper), whose reach is longer by the bound over k_t. Coulomb's friction is mu alone,
-Jenkins' element has k_t, friction that hardens or softens has g; a bond has cohesion in r.
+with the known part r, the pressing force N, and a factor g of the slip s that the
+slider has accumulated, g(0) = 1. The slider stands at p = w + f / k_t, where w is the
+tangential jump and f the friction force on the body above. Along the search direction
+it is the play operator (problem 2.1 of the paper), whose reach is longer by the bound
+over k_t. Coulomb's friction is mu alone, Jenkins' element has k_t, friction that
+hardens or softens has g; a bond has cohesion in r.
 
 Where contact opens the cohesion of a pair is gone for good: a brittle bond.
 """
@@ -34,8 +35,8 @@ OPENED = 1e-9
 class FrictionLaw:
     """What a structure chooses of friction, beside mu and pressure; by default Coulomb's law.
 
-    "Area" is the tributary length along a rod, in m, and the area of a metre of thickness in the
-    plane, in m^2.
+    "Area" is the tributary length along a rod, in m, and the area of a metre of
+    thickness in the plane, in m^2.
 
     Attributes
     ----------
@@ -84,15 +85,21 @@ class FrictionLaw:
     ) -> Friction:
         """Law at the pairs of an interface, by their rows and tributary areas, (n_pairs,).
 
-        `scales` are the units of length, m, and of force, N. `known` is the friction force that
-        known pressure makes, scaled, (n_pairs, n_instants) or (n_pairs, 1); `friction` is mu of
-        each pair, (n_pairs,), where pressure is not known.
+        `scales` are the units of length, m, and of force, N. `known` is the friction
+        force that known pressure makes, scaled, (n_pairs, n_instants) or (n_pairs, 1);
+        `friction` is mu of each pair, (n_pairs,), where pressure is not known.
         """
         length, force = scales
-        bound = np.zeros((len(weights), 1)) if known is None else known.reshape(len(known), -1)
+        if known is None:
+            bound = np.zeros((len(weights), 1))
+        else:
+            bound = known.reshape(len(known), -1)
         if self.cohesion > 0.0:
             bound = bound + (self.cohesion / force * weights)[:, None]
-        cap = None if np.isinf(self.cap) else self.cap / force * weights
+        if np.isinf(self.cap):
+            cap = None
+        else:
+            cap = self.cap / force * weights
         if cap is not None:
             bound = np.minimum(bound, cap[:, None])
         strength = self.strength
@@ -111,8 +118,8 @@ class FrictionLaw:
     def of_one_side(self) -> FrictionLaw:
         """Law of a body on its image, which moves as much the other way.
 
-        The body moves along by half of the slip, so that over its own displacement the spring is
-        twice as stiff, and the strength has changed after half as much.
+        The body moves along by half of the slip, so that over its own displacement the
+        spring is twice as stiff, and the strength has changed after half as much.
         """
         strength = self.strength
         if strength is not None:
@@ -127,13 +134,19 @@ class FrictionLaw:
     @property
     def strongest(self) -> float:
         """Largest factor that slip may make of that."""
-        return 1.0 if self.strength is None else max(self.strength.factors)
+        if self.strength is None:
+            return 1.0
+        return max(self.strength.factors)
 
 
-def softness_of(stiffness: float, weights: Array, scales: tuple[float, float]) -> Array | None:
+def softness_of(
+    stiffness: float, weights: Array, scales: tuple[float, float]
+) -> Array | None:
     """Compliance of pairs by their areas, (n_pairs,), scaled; None where nothing gives way."""
     length, force = scales
-    return None if np.isinf(stiffness) else force / (length * stiffness * weights)
+    if np.isinf(stiffness):
+        return None
+    return force / (length * stiffness * weights)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,10 +158,11 @@ class Friction:
     component
         Rows of the pairs.
     bound
-        r, the friction force of each pair that needs no pressing one, non-negative, scaled: shape
-        (n_pairs, n_instants), or (n_pairs, 1) where it stays the same.
+        r, the friction force of each pair that needs no pressing one, non-negative,
+        scaled: shape (n_pairs, n_instants), or (n_pairs, 1) where it stays the same.
     friction
-        Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the pressure is known.
+        Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the
+        pressure is known.
     cap
         Largest friction force before slip, (n_pairs,), scaled; None if there is none.
     softness
@@ -156,7 +170,8 @@ class Friction:
     strength
         Factor over accumulated slip, scaled; None where slip changes nothing.
     start
-        Where every slider stands before the first instant, (n_pairs,), scaled; None is zero.
+        Where every slider stands before the first instant, (n_pairs,), scaled; None is
+        zero.
     """
 
     component: Component
@@ -183,7 +198,8 @@ class Friction:
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Position of the slider of every pair, shape (n_pairs, n_instants), scaled.
 
-        From W and F of all rows, (n_rows, n_instants); None for F leaves the spring out.
+        From W and F of all rows, (n_rows, n_instants); None for F leaves the spring
+        out.
         """
         jump = self.component.jump(displacement)
         if self.softness is None or force is None:
@@ -207,11 +223,13 @@ class Friction:
             )
         return replace(self, start=start)
 
-    def without_slip(self, pressing: Array | None, opening: Array | None = None) -> Array:
+    def without_slip(
+        self, pressing: Array | None, opening: Array | None = None
+    ) -> Array:
         """Largest friction force before slip, (n_pairs, n_instants), or as the bound is.
 
-        By the force that presses, None where the pressure is known, and the distance of the
-        sides where it may break a bond; both (n_pairs, n_instants).
+        By the force that presses, None where the pressure is known, and the distance of
+        the sides where it may break a bond; both (n_pairs, n_instants).
         """
         bound = self.bound
         if pressing is not None:
@@ -222,7 +240,9 @@ class Friction:
             bound = np.minimum(bound, self.cap[:, None])
         return bound
 
-    def allowed(self, pressing: Array | None, slip: Array, opening: Array | None = None) -> Array:
+    def allowed(
+        self, pressing: Array | None, slip: Array, opening: Array | None = None
+    ) -> Array:
         """Largest friction force, shape (n_pairs, n_instants), after increments of slip."""
         bound = np.broadcast_to(self.without_slip(pressing, opening), slip.shape)
         if self.strength is None:
@@ -232,12 +252,17 @@ class Friction:
     @property
     def highest(self) -> Array:
         """Largest value that slip may give the known part of the bound, of its shape."""
-        return self.bound if self.strength is None else self.bound * max(self.strength.factors)
+        if self.strength is None:
+            return self.bound
+        return self.bound * max(self.strength.factors)
 
     @property
     def steepest_fall(self) -> Array:
         """Largest force by which a known bound falls per slip, shape (n_pairs,)."""
-        fall = 0.0 if self.strength is None else -float(self.strength.slopes.min())
+        if self.strength is None:
+            fall = 0.0
+        else:
+            fall = -float(self.strength.slopes.min())
         return np.asarray(self.bound.max(axis=1) * fall)
 
     @property
@@ -247,7 +272,9 @@ class Friction:
 
     def during(self, instants: slice) -> Friction:
         """Law of some instants alone."""
-        return self if self.bound.shape[1] == 1 else replace(self, bound=self.bound[:, instants])
+        if self.bound.shape[1] == 1:
+            return self
+        return replace(self, bound=self.bound[:, instants])
 
 
 def is_intact(opening: Array, pressing: Array) -> Array:

@@ -29,12 +29,16 @@ class Component(NamedTuple):
     def jump(self, field: Array) -> Array:
         """A row field above minus that below, shape (n_pairs, ...)."""
         above: Array = field[self.above]
-        return above if self.below is None else above - field[self.below]
+        if self.below is None:
+            return above
+        return above - field[self.below]
 
     @property
     def sides(self) -> tuple[Indices, ...]:
         """Rows of both sides, or of the one there is."""
-        return (self.above,) if self.below is None else (self.above, self.below)
+        if self.below is None:
+            return (self.above,)
+        return (self.above, self.below)
 
 
 class Springs:
@@ -54,9 +58,13 @@ class Springs:
     def jump(self, incoming: Array) -> Array:
         """Z of the jump, shape (n_pairs, n_instants)."""
         above: Array = incoming[self._above]
-        return above if self._below is None else above - incoming[self._below]
+        if self._below is None:
+            return above
+        return above - incoming[self._below]
 
-    def close(self, incoming: Array, jump: Array, held: Array, displacement: Array) -> None:
+    def close(
+        self, incoming: Array, jump: Array, held: Array, displacement: Array
+    ) -> None:
         """Write W^ of both sides, with which the jump is `held` instead of `jump`."""
         if self._share_below is None:
             displacement[self._above] = held
@@ -70,8 +78,8 @@ class Springs:
 class MacroPart(NamedTuple):
     """Rows (n,) of both sides whose macro forces are in equilibrium (paper, eq. 1).
 
-    With their basis, (n, n_macro), and the macro force from outside, (n_macro, n_instants); None is
-    zero.
+    With their basis, (n, n_macro), and the macro force from outside, (n_macro,
+    n_instants); None is zero.
     """
 
     rows: Indices
@@ -80,9 +88,10 @@ class MacroPart(NamedTuple):
 
 
 Rule = Callable[[Array, Array, slice], None]
-"""A law that is ready for one k, in the local stage (paper, problem 2.1): from z = W - F/k of all
-rows, (n_rows, n), it writes W^ of the interface's rows alone into the second, of the same shape.
-The last says which n instants these are; all of them where the law remembers."""
+"""A law that is ready for one k, in the local stage (paper, problem 2.1): from z = W -
+F/k of all rows, (n_rows, n), it writes W^ of the interface's rows alone into the
+second, of the same shape. The last says which n instants these are; all of them where
+the law remembers."""
 
 
 class Gaps(NamedTuple):
@@ -131,9 +140,10 @@ class IncrementalForm:
 class Interface(ABC):
     """An interface of substructures with each other or with the outside.
 
-    A law of one's own needs `rows` and a `rule`. LATIN solves it; a reference and a certificate it
-    has where its class says its `incremental_form`. A class inherits nothing of `OF_ONE_LAW` from
-    another law unless it says that form, as its local stage may be a different one.
+    A law of one's own needs `rows` and a `rule`. LATIN solves it; a reference and a
+    certificate it has where its class says its `incremental_form`. A class inherits
+    nothing of `OF_ONE_LAW` from another law unless it says that form, as its local
+    stage may be a different one.
 
     Attributes
     ----------
@@ -176,9 +186,9 @@ class Interface(ABC):
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """How much W and F of all rows, (n_rows, n_instants), miss continuity and balance by.
 
-        What is less than `noise` is rounding. By the local stage itself, unless a law knows better:
-        from W - F/k it finds W and F again if they obey the law, whatever k of the rows,
-        (n_rows,), it is.
+        What is less than `noise` is rounding. By the local stage itself, unless a law
+        knows better: from W - F/k it finds W and F again if they obey the law, whatever
+        k of the rows, (n_rows,), it is.
         """
         return gaps_of_rule(self, displacement, force, noise, k)
 
@@ -206,20 +216,25 @@ OF_ONE_LAW = "incremental_form", "together", "gaps", "during", "macro_parts"
 """Methods that belong to one local stage, and to no other that a subclass may have."""
 
 
-def gaps_of_rule(law: Interface, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
+def gaps_of_rule(
+    law: Interface, displacement: Array, force: Array, noise: float, k: Array
+) -> Gaps:
     """Gaps of W and F to the law by its local stage along k; parameters as `Interface.gaps`."""
     incoming = displacement - force / k[:, None]
     local = displacement.copy(order="F")
     law.rule(k, displacement.shape[1])(incoming, local, slice(None))
     stiffness = k[law.rows, None]
     # Rounding of W and of F both move the place from which the local stage starts.
-    apart = beyond(local[law.rows] - displacement[law.rows], noise * (1.0 + 1.0 / stiffness))
+    apart = beyond(
+        local[law.rows] - displacement[law.rows], noise * (1.0 + 1.0 / stiffness)
+    )
     return Gaps(displacement=squared(apart), force=squared(stiffness * apart))
 
 
 def joined(parts: Sequence[Any]) -> Any:
     """Laws of one kind as one: arrays of pairs one after the other, all else as in the first."""
-    first, kind = parts[0], cast(Any, type(parts[0]))
+    first = parts[0]
+    kind = cast(Any, type(parts[0]))
     if isinstance(first, np.ndarray):
         return in_rows(parts)
     if isinstance(first, Component):

@@ -55,7 +55,8 @@ class Dirichlet(_Given):
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """W^ is the displacement that is prescribed."""
-        rows, given = as_slice(self.rows), self.values
+        rows = as_slice(self.rows)
+        given = self.values
 
         def prescribe(_incoming: Array, displacement: Array, instants: slice) -> None:
             displacement[rows] = given[:, instants]
@@ -64,7 +65,9 @@ class Dirichlet(_Given):
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare the displacement with that prescribed."""
-        return Gaps(displacement=squared(beyond(displacement[self.rows] - self.values, noise)))
+        return Gaps(
+            displacement=squared(beyond(displacement[self.rows] - self.values, noise))
+        )
 
 
 @dataclass(frozen=True)
@@ -134,8 +137,10 @@ class Perfect(Interface):
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Both sides move by the mean of their z, weighted by k (solver/README.md, 2)."""
-        first, second = as_slice(self.first), as_slice(self.second)
-        k, other = k[self.first], k[self.second]
+        first = as_slice(self.first)
+        second = as_slice(self.second)
+        other = k[self.second]
+        k = k[self.first]
         share = (k / (k + other))[:, None]
 
         def glue(incoming: Array, displacement: Array, _instants: slice) -> None:
@@ -150,7 +155,9 @@ class Perfect(Interface):
         """Compare both sides."""
         apart = _at(displacement, self.first) - _at(displacement, self.second)
         unbalanced = _at(force, self.first) + _at(force, self.second)
-        return Gaps(squared(beyond(apart, 2.0 * noise)), squared(beyond(unbalanced, noise)))
+        return Gaps(
+            squared(beyond(apart, 2.0 * noise)), squared(beyond(unbalanced, noise))
+        )
 
     def macro_parts(self) -> Iterator[MacroPart]:
         """Macro forces of both sides, which cancel."""

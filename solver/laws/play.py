@@ -1,7 +1,8 @@
 """The play operator: Coulomb friction pointwise, in closed form (solver/README.md, 2).
 
-A clip of a clip is a clip, so the recursion in time is an associative scan: blocks of instants are
-composed side by side. Where the reach changes with the slip that has gone by, time is walked.
+A clip of a clip is a clip, so the recursion in time is an associative scan: blocks of
+instants are composed side by side. Where the reach changes with the slip that has gone
+by, time is walked.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ def play(target: Array, reach: Array) -> Array:
     Parameters
     ----------
     target
-        Position that the point would take without friction, shape (n_points, n_times), m.
+        Position that the point would take without friction, shape (n_points, n_times),
+        m.
     reach
         Distance at which it starts to slip, same shape or (n_points,), m; non-negative.
 
@@ -29,7 +31,10 @@ def play(target: Array, reach: Array) -> Array:
     -------
     Position with friction, shape (n_points, n_times), m (solver/README.md, 2).
     """
-    reach = reach if reach.ndim == target.ndim else reach[:, None]
+    if reach.ndim == target.ndim:
+        reach = reach
+    else:
+        reach = reach[:, None]
     result: Array = Play(*target.shape)(target, reach).copy()
     return result
 
@@ -37,9 +42,9 @@ def play(target: Array, reach: Array) -> Array:
 class Play:
     """The play operator for one size: compose inside all blocks, carry across, apply.
 
-    It begins at `start`, shape (n_points,), or at zero. `composed[j, 0]` and `composed[j, 1]` are
-    the clip of the first j + 1 instants of every block: what the block makes of a point that enters
-    it far below, or far above.
+    It begins at `start`, shape (n_points,), or at zero. `composed[j, 0]` and
+    `composed[j, 1]` are the clip of the first j + 1 instants of every block: what the
+    block makes of a point that enters it far below, or far above.
     """
 
     def __init__(self, n_points: int, n_times: int, start: Array | None = None) -> None:
@@ -47,7 +52,9 @@ class Play:
         blocks = -(-n_times // size)
         self._limits = np.zeros((2, blocks, size, n_points))
         low, high = self._limits
-        self._low, self._high = (limit.reshape(-1, n_points)[:n_times] for limit in self._limits)
+        self._low, self._high = (
+            limit.reshape(-1, n_points)[:n_times] for limit in self._limits
+        )
         self._composed = np.zeros((size, 2, blocks, n_points))
         self._steps = [
             (self._composed[j - 1], low[:, j], high[:, j], self._composed[j])
@@ -56,7 +63,9 @@ class Play:
         entry = np.zeros((blocks + 1, n_points))
         entry[0] = 0.0 if start is None else start
         last_low, last_high = self._composed[-1]
-        self._carries = list(zip(entry[:-1], last_low, last_high, entry[1:], strict=True))
+        self._carries = list(
+            zip(entry[:-1], last_low, last_high, entry[1:], strict=True)
+        )
         self._entry = entry[:-1, None]
         self._position = np.zeros((blocks, size, n_points))
         self._result = self._position.reshape(-1, n_points)[:n_times]
@@ -99,9 +108,17 @@ class Strength:
     factors: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        slips, factors = np.array(self.slips), np.array(self.factors)
-        is_table = len(slips) == len(factors) >= 2 and np.all(np.isfinite([slips, factors]))
-        if not (is_table and slips[0] == 0.0 and factors[0] == 1.0 and np.all(np.diff(slips) > 0)):
+        slips = np.array(self.slips)
+        factors = np.array(self.factors)
+        is_table = len(slips) == len(factors) >= 2 and np.all(
+            np.isfinite([slips, factors])
+        )
+        if not (
+            is_table
+            and slips[0] == 0.0
+            and factors[0] == 1.0
+            and np.all(np.diff(slips) > 0)
+        ):
             raise RefusedError(
                 "strength",
                 list(zip(self.slips, self.factors, strict=False)),
@@ -109,7 +126,9 @@ class Strength:
                 "divide all factors by the first, and begin at slip 0",
             )
         if np.any(factors < 0.0):
-            raise RefusedError("strength", factors.min(), "factors from 0 on", "raise it")
+            raise RefusedError(
+                "strength", factors.min(), "factors from 0 on", "raise it"
+            )
 
     def __call__(self, slip: Array) -> Array:
         """Factor after accumulated slip, of any shape."""
@@ -155,8 +174,9 @@ PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
 def follow(target: Array, reach: Array, strength: Strength) -> Array:
     """Positions of sliders that follow a target with a reach that changes with their slip.
 
-    `target` is where they would be without friction, (n_points, n_instants); `reach` how far each
-    may stay behind before it has slipped, so or (n_points, 1); `strength` a factor on it.
+    `target` is where they would be without friction, (n_points, n_instants); `reach`
+    how far each may stay behind before it has slipped, so or (n_points, 1); `strength`
+    a factor on it.
     """
     positions = np.empty_like(target)
     position, gone = np.zeros((2, len(target)))
@@ -173,17 +193,23 @@ def follow(target: Array, reach: Array, strength: Strength) -> Array:
 def _slip(distance: Array, reach: Array, gone: Array, strength: Strength) -> Array:
     """Smallest slip a >= 0 of one instant with a + reach g(gone + a) = distance, shape (n,).
 
-    The left side is linear in a between the points of g. Where it falls with a, as friction softens
-    faster than the search direction unloads, and the distance is within reach, the point sticks.
+    The left side is linear in a between the points of g. Where it falls with a, as
+    friction softens faster than the search direction unloads, and the distance is
+    within reach, the point sticks.
     """
-    slip, missing = np.zeros_like(distance), distance - reach * strength(gone)
+    slip = np.zeros_like(distance)
+    missing = distance - reach * strength(gone)
     left = missing > 0.0
     for end in strength.slips[1:]:
         ahead = np.maximum(end - gone, slip)
         after = distance - ahead - reach * strength(gone + ahead)
         ends = left & (after <= 0.0)
-        share = np.divide(missing, missing - after, out=np.zeros_like(after), where=ends)
-        slip = np.where(ends, slip + share * (ahead - slip), np.where(left, ahead, slip))
+        share = np.divide(
+            missing, missing - after, out=np.zeros_like(after), where=ends
+        )
+        slip = np.where(
+            ends, slip + share * (ahead - slip), np.where(left, ahead, slip)
+        )
         left &= ~ends
         missing = after
     return np.where(left, distance - reach * strength.factors[-1], slip)

@@ -1,6 +1,7 @@
 """What is around an interface with friction, and the search direction k that suits it.
 
-Small k converges fast globally and slowly locally, large k the reverse (solver/README.md, 5).
+Small k converges fast globally and slowly locally, large k the reverse
+(solver/README.md, 5).
 """
 
 from __future__ import annotations
@@ -16,45 +17,48 @@ if TYPE_CHECKING:
     from solver.laws.contact import Contact
 
 FRICTION_FACTOR = 2.0
-"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h. Of
-sines and decaying cycles 1 % of friction force takes at most 23 iterations with 2, 28 with 1, 43
-with 4 (measured)."""
+"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s
+and ES/h. Of sines and decaying cycles 1 % of friction force takes at most 23 iterations
+with 2, 28 with 1, 43 with 4 (measured)."""
 CONTACT_STIFFNESS = 7.0
-"""k per area of a contact in the plane, times its length over E. 1 % of the contact force takes 8
-to 14 iterations, with twice as much up to 20 (measured)."""
+"""k per area of a contact in the plane, times its length over E. 1 % of the contact
+force takes 8 to 14 iterations, with twice as much up to 20 (measured)."""
 AT_A_POINT = 0.1
-"""k of a point where a spring pulls, over E, for a metre of thickness. On blocks on slopes 1 % of
-the contact force takes 8 to 18 iterations, and 29 to more than 120 with the k of a contact, which
-keeps the body from sliding (measured)."""
-RESOLVED, FINER = 96.0, 1.0 / 3.0
-"""Elements along a support from which its k grows with their number, and to which power: what is
-local is stiffer than the body as a whole. Of 768 x 384 elements on a parabola 1e-4 takes 52
-iterations, 104 with a constant k (measured)."""
+"""k of a point where a spring pulls, over E, for a metre of thickness. On blocks on
+slopes 1 % of the contact force takes 8 to 18 iterations, and 29 to more than 120 with
+the k of a contact, which keeps the body from sliding (measured)."""
+RESOLVED = 96.0
+FINER = 1.0 / 3.0
+"""Elements along a support from which its k grows with their number, and to which
+power: what is local is stiffer than the body as a whole. Of 768 x 384 elements on a
+parabola 1e-4 takes 52 iterations, 104 with a constant k (measured)."""
 SLIDING_BETWEEN_BODIES = 1.0 / 7.0
-"""The tangential k between two bodies over the normal one: layers slide along their length. At most
-45 iterations on those of `SLENDER`, 76 with half as much, 67 with twice."""
+"""The tangential k between two bodies over the normal one: layers slide along their
+length. At most 45 iterations on those of `SLENDER`, 76 with half as much, 67 with
+twice."""
 SLENDER = 40.0
-"""How many times as long as thick two bodies in contact may be before k must be smaller. Of layers
-10 to 1000 times as long as thick 1 % of the contact force takes at most 45 iterations, more than
-150 without (measured)."""
+"""How many times as long as thick two bodies in contact may be before k must be
+smaller. Of layers 10 to 1000 times as long as thick 1 % of the contact force takes at
+most 45 iterations, more than 150 without (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rod:
     """A rod along the interface.
 
-    What is global is the length s that is expected to slide, what is local the distance h of its
-    points. So k of a point is `FRICTION_FACTOR` times the geometric mean of ES/s and ES/h, for
-    which neither end is slower than the other, and a row's share of it is by tributary length, so
-    that cuts change nothing. Of the n contacts of a strand only those of the broken wire slide far:
-    s is a mean over all of them, and k grows by sqrt(n). For 1 % of the friction force of 20 wires
-    that takes 65 iterations instead of 109 (measured). Where the section varies, ES is that around
-    the point.
+    What is global is the length s that is expected to slide, what is local the distance
+    h of its points. So k of a point is `FRICTION_FACTOR` times the geometric mean of
+    ES/s and ES/h, for which neither end is slower than the other, and a row's share of
+    it is by tributary length, so that cuts change nothing. Of the n contacts of a
+    strand only those of the broken wire slide far: s is a mean over all of them, and k
+    grows by sqrt(n). For 1 % of the friction force of 20 wires that takes 65 iterations
+    instead of 109 (measured). Where the section varies, ES is that around the point.
 
     Attributes
     ----------
     modulus
-        Stiffness of what rubs around each pair, shape (n_pairs,), scaled; None where it is 1.
+        Stiffness of what rubs around each pair, shape (n_pairs,), scaled; None where it
+        is 1.
     elsewhere
         Factor on the paper's k of all rows that do not rub.
     on_cuts
@@ -65,7 +69,8 @@ class Rod:
 
     elsewhere: ClassVar[float] = 1.0
     on_cuts: ClassVar[float] = 10.0
-    """1 % of friction force takes 16 to 17 iterations, and 16 to 31 with 1 (measured)."""
+    """1 % of friction force takes 16 to 17 iterations, and 16 to 31 with 1
+    (measured)."""
 
     def choose(self, law: Contact, k: Array, parts: float) -> None:
         """Write the k of an interface into that of all rows, (n_rows,), scaled.
@@ -85,8 +90,8 @@ class Rod:
 class Bodies:
     """Bodies in the plane, above and below: k is that of a body as a whole, or of a point of it.
 
-    A smaller k on cuts along slender substructures is no better, where the macro basis grows with
-    their length (measured).
+    A smaller k on cuts along slender substructures is no better, where the macro basis
+    grows with their length (measured).
 
     Attributes
     ----------
@@ -105,7 +110,8 @@ class Bodies:
     def choose(self, law: Contact, k: Array, parts: float) -> None:
         """Write the k of an interface, as `Rod.choose`.
 
-        A thin body on a rigid support is squeezed, with the stiffness E / d of its depth d.
+        A thin body on a rigid support is squeezed, with the stiffness E / d of its
+        depth d.
         """
         if law.is_spring:
             k[law.rows] = AT_A_POINT * self.moduli[0]
@@ -126,10 +132,10 @@ class Bodies:
     def stick(self, law: Contact, k: Array) -> None:
         """Write the k of two bodies that nowhere slip on each other.
 
-        They bend and stretch as one, but for what is as short as they are deep: which resists with
-        E / d per area of the softer, across and along. Of layers 200 to 1000 times as long as thick
-        1 % of the contact force takes 9 to 13 iterations, 43 to 55 with the k of `choose`
-        (measured).
+        They bend and stretch as one, but for what is as short as they are deep: which
+        resists with E / d per area of the softer, across and along. Of layers 200 to
+        1000 times as long as thick 1 % of the contact force takes 9 to 13 iterations,
+        43 to 55 with the k of `choose` (measured).
         """
         if law.is_on_support:
             return
@@ -140,9 +146,10 @@ class Bodies:
     def _slender(self, law: Contact) -> float:
         """Factor on k between two bodies that are thin beside their length.
 
-        Layers slide like rods, of stiffness E d / l^2 per area as a whole, with the depth d along
-        the contact's length l; and E d / (l h) from point to point, h apart, or d where that is
-        larger. This is their geometric mean over E / l. Macro forces see to long waves of bending.
+        Layers slide like rods, of stiffness E d / l^2 per area as a whole, with the
+        depth d along the contact's length l; and E d / (l h) from point to point, h
+        apart, or d where that is larger. This is their geometric mean over E / l. Macro
+        forces see to long waves of bending.
         """
         length = float(law.weights.sum())
         spacing = length / max(len(law.positions) - 1, 1)

@@ -1,7 +1,8 @@
 """Unilateral contact: the sides press where they would overlap, and open where they would pull.
 
-A compliance 1 / k_n may be in series: of the opening g and the pressing force N, g + N / k_n >= 0,
-N >= 0, and one of them is zero; so along the search direction both springs share what is missing.
+A compliance 1 / k_n may be in series: of the opening g and the pressing force N, g + N
+/ k_n >= 0, N >= 0, and one of them is zero; so along the search direction both springs
+share what is missing.
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ class Unilateral:
     component
         Rows of the pairs.
     gap
-        Opening between the undeformed bodies, shape (n_pairs,), scaled; negative where they
-        overlap.
+        Opening between the undeformed bodies, shape (n_pairs,), scaled; negative where
+        they overlap.
     softness
-        Compression per pressing force of each pair, shape (n_pairs,), scaled; None if there is
-        none.
+        Compression per pressing force of each pair, shape (n_pairs,), scaled; None if
+        there is none.
     """
 
     component: Component
@@ -39,7 +40,11 @@ class Unilateral:
 
     def __post_init__(self) -> None:
         size = len(self.component.above)
-        check(self, gap=Numbers(((size,),)), softness=Numbers(((size,),), low=0.0, above=True))
+        check(
+            self,
+            gap=Numbers(((size,),)),
+            softness=Numbers(((size,),), low=0.0, above=True),
+        )
 
     def opening(self, displacement: Array, force: Array) -> Array:
         """Distance of the sides and compression of the spring, (n_pairs, n_instants), scaled.
@@ -58,16 +63,26 @@ class ContactRule:
     def __init__(
         self, normal: Unilateral | None, along: Friction, k: Array, n_instants: int
     ) -> None:
-        self._normal, self._along, self._springs = normal, along, Springs(along.component, k)
+        self._normal = normal
+        self._along = along
+        self._springs = Springs(along.component, k)
         if normal is not None:
-            self._across, self._closed = Springs(normal.component, k), -normal.gap[:, None]
+            self._across = Springs(normal.component, k)
+            self._closed = -normal.gap[:, None]
             self._pressed = _share(self._across.soft, normal.softness)
             self._bonds = bool(along.bound.any())
         soft = self._springs.soft
-        # The slider lags by the force over both springs, the jump by their own share of that.
-        self._lag = soft if along.softness is None else soft + along.softness[:, None]
+        # The slider lags by the force over both springs, the jump by their own share of
+        # that.
+        if along.softness is None:
+            self._lag = soft
+        else:
+            self._lag = soft + along.softness[:, None]
         self._share = _share(soft, along.softness)
-        self._reach = None if along.cap is not None else np.asarray(along.bound * self._lag)
+        if along.cap is not None:
+            self._reach = None
+        else:
+            self._reach = np.asarray(along.bound * self._lag)
         self._grows = along.friction[:, None] * self._lag
         self._play = Play(len(along.bound), n_instants, along.start)
 
@@ -77,16 +92,28 @@ class ContactRule:
         if self._normal is not None:
             pressing, opening = self._press(incoming, displacement)
         jump = self._springs.jump(incoming)
-        reach, strength = self._reached(pressing, opening), self._along.strength
-        slider = follow(jump, reach, strength) if strength else self._play(jump, reach)
-        held = slider if self._share is None else jump + self._share * (slider - jump)
+        reach = self._reached(pressing, opening)
+        strength = self._along.strength
+        if strength:
+            slider = follow(jump, reach, strength)
+        else:
+            slider = self._play(jump, reach)
+        if self._share is None:
+            held = slider
+        else:
+            held = jump + self._share * (slider - jump)
         self._springs.close(incoming, jump, held, displacement)
 
-    def _press(self, incoming: Array, displacement: Array) -> tuple[Array, Array | None]:
+    def _press(
+        self, incoming: Array, displacement: Array
+    ) -> tuple[Array, Array | None]:
         """Press where the sides would overlap: by which force, and how far bonds are open."""
         jump = self._across.jump(incoming)
         held = np.maximum(jump, self._closed)
-        opening = held - self._closed if self._bonds else None
+        if self._bonds:
+            opening = held - self._closed
+        else:
+            opening = None
         if self._pressed is not None:
             held = jump + self._pressed * (held - jump)
         self._across.close(incoming, jump, held, displacement)
@@ -95,10 +122,14 @@ class ContactRule:
     def _reached(self, pressing: Array | None, opening: Array | None) -> Array:
         """How far the slider may stay behind z, (n_pairs, n_instants) or (n_pairs, 1)."""
         if self._reach is not None and opening is None:
-            return self._reach if pressing is None else self._reach + self._grows * pressing
+            if pressing is None:
+                return self._reach
+            return self._reach + self._grows * pressing
         return np.asarray(self._along.without_slip(pressing, opening) * self._lag)
 
 
 def _share(soft: Array, softness: Array | None) -> Array | None:
     """Share of the search direction's spring in what both give way by; None where it is alone."""
-    return None if softness is None else np.asarray(soft / (soft + softness[:, None]))
+    if softness is None:
+        return None
+    return np.asarray(soft / (soft + softness[:, None]))

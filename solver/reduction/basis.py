@@ -10,10 +10,12 @@ import numpy as np
 from solver.arrays import Array
 
 STEPS = 4
-"""Steps of the fixed point at most: 1, 2 and 10 steps, and the leading singular pair itself, reach
-1 % of force error within one iteration of each other (bar and strand, 98 to 106; measured)."""
+"""Steps of the fixed point at most: 1, 2 and 10 steps, and the leading singular pair
+itself, reach 1 % of force error within one iteration of each other (bar and strand, 98
+to 106; measured)."""
 STAGNATION = 0.01
-"""Change of a pair's size, as a share, at which the fixed point stops; 0 and 0.1 as well."""
+"""Change of a pair's size, as a share, at which the fixed point stops; 0 and 0.1 as
+well."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,10 +27,11 @@ class SeparatedBasis:
     Attributes
     ----------
     modes, time_functions
-        Shapes (n_boundary, n_modes) and (n_modes, n_columns). The columns are instants; of a basis
-        that several substructures share, those of all of them.
+        Shapes (n_boundary, n_modes) and (n_modes, n_columns). The columns are instants;
+        of a basis that several substructures share, those of all of them.
     k, weights
-        Weights in space and of the columns, shapes (n_boundary,) and (n_columns,), positive.
+        Weights in space and of the columns, shapes (n_boundary,) and (n_columns,),
+        positive.
     """
 
     modes: Array
@@ -42,7 +45,9 @@ class SeparatedBasis:
     ) -> SeparatedBasis:
         """Basis of a field, shape (n_boundary, n_columns), downsized."""
         root = np.sqrt(k)[:, None]
-        basis = cls(np.eye(len(k)), root * field, k, weights).downsized(tolerance, largest)
+        basis = cls(np.eye(len(k)), root * field, k, weights).downsized(
+            tolerance, largest
+        )
         return replace(basis, modes=basis.modes / root)
 
     @property
@@ -61,7 +66,8 @@ class SeparatedBasis:
     def squared(self, field: Array, scratch: Array) -> float:
         """Squared norm of a field of shape (n_boundary, n_columns).
 
-        `scratch` has its shape and is overwritten: fresh memory would cost more than the norm.
+        `scratch` has its shape and is overwritten: fresh memory would cost more than
+        the norm.
         """
         return float(self.k @ np.multiply(field, field, out=scratch) @ self.weights)
 
@@ -93,14 +99,16 @@ class SeparatedBasis:
     def downsized(self, tolerance: float, largest: int) -> SeparatedBasis:
         """Basis with the modes of the field's singular values, sorted, without the smallest.
 
-        These are dropped up to `tolerance`, a share of the field's norm, and in any case beyond the
-        `largest` number of modes. As modes are orthonormal, the singular values of the field are
-        those of the small matrix of time functions.
+        These are dropped up to `tolerance`, a share of the field's norm, and in any
+        case beyond the `largest` number of modes. As modes are orthonormal, the
+        singular values of the field are those of the small matrix of time functions.
         """
         if self.n_modes == 0:
             return self
         root = np.sqrt(self.weights)
-        turn, values, right = np.linalg.svd(self.time_functions * root, full_matrices=False)
+        turn, values, right = np.linalg.svd(
+            self.time_functions * root, full_matrices=False
+        )
         tails = np.sqrt(np.cumsum(values[::-1] ** 2)[::-1])
         rank = min(int(np.count_nonzero(tails > tolerance * tails[0])), largest)
         modes = np.asfortranarray(self.modes @ turn[:, :rank])
@@ -119,24 +127,26 @@ class SeparatedBasis:
 def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
     """Space mode of the pair that is nearest to a residual delta / k, of any length.
 
-    With G + k Z = g for every boundary field g, problem 2.3 asks for the pair g phi nearest to
-    the residual; the paper's fixed point alternates between both factors, and is a power
-    iteration towards the leading singular pair. Of a residual that is zero the mode is zero; k and
-    `weights` are those of space and of the columns.
+    With G + k Z = g for every boundary field g, problem 2.3 asks for the pair g phi
+    nearest to the residual; the paper's fixed point alternates between both factors,
+    and is a power iteration towards the leading singular pair. Of a residual that is
+    zero the mode is zero; k and `weights` are those of space and of the columns.
     """
     # Only the shape matters, and the squares of very small numbers are zero.
     largest = float(np.abs(residual).max())
     if largest == 0.0:
         return residual[:, 0]
     residual = residual / largest
-    # The instant at which the residual is largest: nearer to the pair than any fixed start.
+    # The instant at which the residual is largest: nearer to the pair than any fixed
+    # start.
     mode = residual[:, int(np.argmax((k @ (residual * residual)) * weights))]
     size = 0.0
     for _ in range(STEPS):
         time_function = (k * mode) @ residual / float(k @ (mode * mode))
         mode = residual @ (weights * time_function)
         mode /= float(weights @ (time_function * time_function))
-        before, size = size, float(k @ (mode * mode))
+        before = size
+        size = float(k @ (mode * mode))
         size *= float(weights @ (time_function * time_function))
         if abs(size - before) <= STAGNATION * size:
             break
@@ -147,9 +157,10 @@ def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
 class SharedBasis:
     """A separated basis of y = W + F/k, and the substructures that share it; read-only, scaled.
 
-    Columns of the basis run through the numbers of these, ascending, then through the instants; its
-    modes have shape (n_boundary, n_modes), rows as `Substructure.rows`, largest first. `incoming`
-    is W - F/k of every mode, which belongs to one admissible pair with it (paper, eq. 3).
+    Columns of the basis run through the numbers of these, ascending, then through the
+    instants; its modes have shape (n_boundary, n_modes), rows as `Substructure.rows`,
+    largest first. `incoming` is W - F/k of every mode, which belongs to one admissible
+    pair with it (paper, eq. 3).
     """
 
     members: tuple[int, ...]
@@ -163,7 +174,9 @@ class SharedBasis:
 
     def time_functions(self, member: int) -> Array:
         """Time functions of a substructure, shape (n_modes, n_instants)."""
-        return self.basis.time_functions[:, self.members.index(member) :: len(self.members)]
+        return self.basis.time_functions[
+            :, self.members.index(member) :: len(self.members)
+        ]
 
     @cached_property
     def displacement_modes(self) -> Array:

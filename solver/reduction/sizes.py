@@ -1,7 +1,7 @@
 """How many numbers a friction field takes for an error: in products, modes, or as clips.
 
-A product of a space vector and a function of time takes as many numbers as both together. Errors
-are relative to the field, in L2 over length and time.
+A product of a space vector and a function of time takes as many numbers as both
+together. Errors are relative to the field, in L2 over length and time.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from solver.reduction.clips import Clips
 from solver.reduction.svd import Decomposition
 
 SAME_SHAPE = 1e-9
-"""Share of the largest bound by which one that changes in size alone may differ from that."""
+"""Share of the largest bound by which one that changes in size alone may differ from
+that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +47,18 @@ def of_clips(clips: Clips) -> Sizes:
     Clips take two vectors and a place a branch, the load, and the bound.
     """
     points, instants = clips.given.shape
-    alone = clips.branches * (2 * points + 1) + instants + _numbers_of_bound(clips.bound)
-    return Sizes(alone + (points + instants) * np.arange(len(clips.errors)), clips.errors)
+    alone = (
+        clips.branches * (2 * points + 1) + instants + _numbers_of_bound(clips.bound)
+    )
+    return Sizes(
+        alone + (points + instants) * np.arange(len(clips.errors)), clips.errors
+    )
 
 
 def _numbers_of_bound(bound: Array) -> int:
     """How many numbers a bound takes: fewer if it changes in size alone."""
-    sizes, most = bound.max(axis=0), float(bound.max(initial=0.0))
+    sizes = bound.max(axis=0)
+    most = float(bound.max(initial=0.0))
     shape = bound[:, [int(sizes.argmax())]] / (most or 1.0)
     if np.abs(bound - shape * sizes).max() > SAME_SHAPE * most:
         return bound.size
@@ -62,25 +68,38 @@ def _numbers_of_bound(bound: Array) -> int:
 def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Sizes:
     """Keep as many modes of each of a run's separated bases, the largest.
 
-    Of F of all rows, (n_rows, n_instants), scaled; between two bodies friction is that of the one
-    above. Of space modes the entries count that rub; those of a basis that several share, once.
+    Of F of all rows, (n_rows, n_instants), scaled; between two bodies friction is that
+    of the one above. Of space modes the entries count that rub; those of a basis that
+    several share, once.
     """
-    lengths, seen = np.zeros(problem.n_rows), set[SharedBasis]()
+    lengths = np.zeros(problem.n_rows)
+    seen = set[SharedBasis]()
     for law in problem.rubbing.values():
         lengths[law.components[-1].above] = law.weights
     most = max(basis.n_modes for basis in bases)
-    left, numbers = np.zeros(most + 1), np.zeros(most + 1, dtype=int)
-    for number, (part, basis) in enumerate(zip(problem.substructures, bases, strict=True)):
+    left = np.zeros(most + 1)
+    numbers = np.zeros(most + 1, dtype=int)
+    for number, (part, basis) in enumerate(
+        zip(problem.substructures, bases, strict=True)
+    ):
         places = np.flatnonzero(lengths[part.rows])
-        rows, points = part.rows[places], 0 if basis in seen else len(places)
+        rows = part.rows[places]
+        if basis in seen:
+            points = 0
+        else:
+            points = len(places)
         seen.add(basis)
-        weights, per_length = lengths[rows], problem.scales.force / lengths[rows, None]
+        weights = lengths[rows]
+        per_length = problem.scales.force / lengths[rows, None]
         rest = force[rows] * per_length
-        space, time = basis.force_modes[places] * per_length, basis.time_functions(number)
+        space = basis.force_modes[places] * per_length
+        time = basis.time_functions(number)
         for rank in range(most + 1):
             if 0 < rank <= basis.n_modes:
                 rest -= space[:, [rank - 1]] * time[rank - 1]
             left[rank] += weights @ rest**2 @ problem.time_weights
             if len(places):
                 numbers[rank] += min(rank, basis.n_modes) * (points + rest.shape[1])
-    return Sizes(numbers, np.sqrt(left / left[0]) if left[0] > 0.0 else np.zeros_like(left))
+    return Sizes(
+        numbers, np.sqrt(left / left[0]) if left[0] > 0.0 else np.zeros_like(left)
+    )

@@ -1,7 +1,7 @@
 """Singular values and modes of interface fields, per substructure (paper, section 3.2).
 
-A field is decomposed in the L2 inner product of the place and the time that it lives on: lengths of
-the friction rows and trapezoidal weights of the instants.
+A field is decomposed in the L2 inner product of the place and the time that it lives
+on: lengths of the friction rows and trapezoidal weights of the instants.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 
 ALIKE = 1e-9
-"""Relative difference up to which two entries count as equally large when a sign is fixed."""
+"""Relative difference up to which two entries count as equally large when a sign is
+fixed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,15 +26,16 @@ class Decomposition:
     Attributes
     ----------
     values
-        Singular values, shape (n_modes,), descending; n_modes is the smaller of n_points and
-        n_instants, and a field of lower rank has zeros at the end.
+        Singular values, shape (n_modes,), descending; n_modes is the smaller of
+        n_points and n_instants, and a field of lower rank has zeros at the end.
     space_modes
-        Shape (n_points, n_modes), orthonormal in `space_weights`; the largest entry of each is
-        positive.
+        Shape (n_points, n_modes), orthonormal in `space_weights`; the largest entry of
+        each is positive.
     time_modes
         Shape (n_modes, n_instants), orthonormal in `time_weights`.
     positions, space_weights, time_weights
-        Shapes (n_points,), m or mere numbers, (n_points,), (n_instants,); weights are positive.
+        Shapes (n_points,), m or mere numbers, (n_points,), (n_instants,); weights are
+        positive.
     """
 
     values: Array
@@ -47,8 +49,8 @@ class Decomposition:
     def errors(self) -> Array:
         """Error of the best approximation of every rank from 0 on, shape (n_modes + 1,).
 
-        Relative to the norm of the field; zero for a field that vanishes. The root of the sum of
-        the squared values left out (Eckart and Young).
+        Relative to the norm of the field; zero for a field that vanishes. The root of
+        the sum of the squared values left out (Eckart and Young).
         """
         errors = np.zeros(len(self.values) + 1)
         if self.values[0] > 0.0:
@@ -71,12 +73,19 @@ class Decomposition:
 
 
 def decompose(
-    field: Array, space_weights: Array, time_weights: Array, positions: Array | None = None
+    field: Array,
+    space_weights: Array,
+    time_weights: Array,
+    positions: Array | None = None,
 ) -> Decomposition:
     """Decomposition of a field, (n_points, n_instants), in weighted inner products."""
-    space_root, time_root = np.sqrt(space_weights)[:, None], np.sqrt(time_weights)
-    left, values, right = np.linalg.svd(space_root * field * time_root, full_matrices=False)
-    space_modes, time_modes = left / space_root, right / time_root
+    space_root = np.sqrt(space_weights)[:, None]
+    time_root = np.sqrt(time_weights)
+    left, values, right = np.linalg.svd(
+        space_root * field * time_root, full_matrices=False
+    )
+    space_modes = left / space_root
+    time_modes = right / time_root
     signs = _signs(space_modes)
     return Decomposition(
         values=values,
@@ -93,10 +102,11 @@ def decompositions(
 ) -> list[Decomposition]:
     """Decomposition of F or W on the rows that rub, of some substructures or all (paper, 3.2).
 
-    Of fields of all rows, (n_rows, n_instants), scaled. Singular values of the friction force, per
-    length, are in N sqrt(s/m), of the displacement in m sqrt(m s).
+    Of fields of all rows, (n_rows, n_instants), scaled. Singular values of the friction
+    force, per length, are in N sqrt(s/m), of the displacement in m sqrt(m s).
     """
-    scales, lengths = problem.scales, np.zeros(problem.n_rows)
+    scales = problem.scales
+    lengths = np.zeros(problem.n_rows)
     for law in problem.rubbing.values():
         for rows in law.tangent.sides:
             lengths[rows] = law.weights
@@ -104,10 +114,16 @@ def decompositions(
     whole = field * (scales.force if is_force else scales.displacement)
     if is_force:
         whole[slides] /= lengths[slides, None]
-    positions, times = problem.positions[problem.row_dofs], problem.time_weights * scales.time
+    positions = problem.positions[problem.row_dofs]
+    times = problem.time_weights * scales.time
     rubbing = [part.rows[slides[part.rows]] for part in problem.substructures]
-    chosen = rubbing if places is None else [rubbing[place] for place in places]
-    return [decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in chosen]
+    if places is None:
+        chosen = rubbing
+    else:
+        chosen = [rubbing[place] for place in places]
+    return [
+        decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in chosen
+    ]
 
 
 def front_decay(count: int) -> Array:

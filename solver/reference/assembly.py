@@ -23,12 +23,17 @@ def assembled_stiffness(problem: Problem) -> sparse.csr_array:
     for part in problem.substructures:
         if id(part.elasticity) not in entries:
             entries[id(part.elasticity)] = sparse.coo_array(part.elasticity.stiffness)
-    parts = [(part.dofs, entries[id(part.elasticity)]) for part in problem.substructures]
+    parts = [
+        (part.dofs, entries[id(part.elasticity)]) for part in problem.substructures
+    ]
     rows, columns = (
-        np.concatenate([dofs[matrix.coords[axis]] for dofs, matrix in parts]) for axis in (0, 1)
+        np.concatenate([dofs[matrix.coords[axis]] for dofs, matrix in parts])
+        for axis in (0, 1)
     )
     values = np.concatenate([matrix.data for _, matrix in parts])
-    return sparse.csr_array((values, (rows, columns)), shape=(problem.n_dofs, problem.n_dofs))
+    return sparse.csr_array(
+        (values, (rows, columns)), shape=(problem.n_dofs, problem.n_dofs)
+    )
 
 
 def external_force(problem: Problem) -> Array:
@@ -37,7 +42,8 @@ def external_force(problem: Problem) -> Array:
     Raises
     ------
     NoReferenceError
-        If these are not all, or the problem holds anything else that no incremental solver reads.
+        If these are not all, or the problem holds anything else that no incremental
+        solver reads.
     """
     if problem.no_reference:
         raise NoReferenceError(problem.no_reference)
@@ -62,7 +68,10 @@ def points_dofs(problem: Problem) -> Indices:
 
 def jumps(problem: Problem) -> sparse.csr_array:
     """J, the jumps of all pairs, shape (n_forces, n_dofs)."""
-    rows, columns, values, first = [], [], [], 0
+    rows = []
+    columns = []
+    values = []
+    first = 0
     for law in problem.rubbing.values():
         points, pairs = np.unique(law.points, return_index=True)
         for component in law.components:
@@ -72,16 +81,19 @@ def jumps(problem: Problem) -> sparse.csr_array:
                 values.append(np.full(len(points), value))
             first += len(law.positions)
     entries = np.concatenate(rows), np.concatenate(columns)
-    return sparse.csr_array((np.concatenate(values), entries), shape=(first, problem.n_dofs))
+    return sparse.csr_array(
+        (np.concatenate(values), entries), shape=(first, problem.n_dofs)
+    )
 
 
 def separated(load: Array) -> tuple[Array, Array]:
     """Write loads, (n, n_instants), as patterns (n, rank) times courses, exact up to rounding.
 
-    A structure has few patterns of load, and instants many: so there is less to solve for. Where
-    it has many patterns, every instant counts as one.
+    A structure has few patterns of load, and instants many: so there is less to solve
+    for. Where it has many patterns, every instant counts as one.
     """
-    patterns, rest = np.zeros((0, len(load))), load.copy()
+    patterns = np.zeros((0, len(load)))
+    rest = load.copy()
     smallest = float(np.finfo(float).eps * np.abs(load).max(initial=0.0))
     while len(patterns) < load.shape[1] // 2:
         largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())

@@ -1,21 +1,23 @@
 """A structure seen from its contacts: stiffness and load between the jumps of all pairs.
 
-With J the jumps of the displacement (above minus below), the structure answers to contact forces
-f by K u = F + J' f. Its displacement is u = T j + Z a (`solver.reference.glued`): with jumps j, and
-a of the structure glued at its contacts. So S jump = f + q (solver/README.md, 6), which needs no
-more than that the structure, glued at its contacts, is held. Jumps and forces are stacked as
-`Problem.sum_of_contact` says.
+With J the jumps of the displacement (above minus below), the structure answers to
+contact forces f by K u = F + J' f. Its displacement is u = T j + Z a
+(`solver.reference.glued`): with jumps j, and a of the structure glued at its contacts.
+So S jump = f + q (solver/README.md, 6), which needs no more than that the structure,
+glued at its contacts, is held. Jumps and forces are stacked as `Problem.sum_of_contact`
+says.
 
 Three things are kept apart, as they may differ by any number of digits:
 
 - The rigid motions a of bodies that contact alone holds: jump = y + Q a, with Q the jumps that they
-  make, orthonormal. They cost no force, S Q = 0, so forces follow from the deformation y alone. It
-  is chosen with Q' y = 0, which says that the forces are in equilibrium with the load, as
-  Q' q is known exactly. With that S may be replaced by S + s Q Q', which is definite.
+  make, orthonormal. They cost no force, S Q = 0, so forces follow from the deformation
+  y alone. It is chosen with Q' y = 0, which says that the forces are in equilibrium
+  with the load, as Q' q is known exactly. With that S may be replaced by S + s Q Q',
+  which is definite.
 - What is in series with a jump, like a spring: it is no part of S.
 - Jumps that depend on each other. Those that something in series tells apart follow from a `base`
-  of the others; where contacts close a rigid ring, S takes them for independent, with a stiffness
-  that ties them.
+  of the others; where contacts close a rigid ring, S takes them for independent, with a
+  stiffness that ties them.
 """
 
 from __future__ import annotations
@@ -43,17 +45,19 @@ from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.rules import rules_of
 
 LOOSE = 1e-14
-"""Pivot, as a share of its diagonal entry, below which a structure counts as not held."""
+"""Pivot, as a share of its diagonal entry, below which a structure counts as not
+held."""
 
 SOFTEST = 1e-8
 """Spring at a pair, at least, as a share of the stiffest degree of freedom."""
 
 LEFT_INSIDE = 4.0 * ROUNDING
-"""Share of the forces that displacements make inside elements that rounding leaves of them."""
+"""Share of the forces that displacements make inside elements that rounding leaves of
+them."""
 
 BLURRED = 1e-5
-"""Share of the forces up to which what is out of balance may be rounding: forces in elements of
-slender bodies are 1e7 times those of contact."""
+"""Share of the forces up to which what is out of balance may be rounding: forces in
+elements of slender bodies are 1e7 times those of contact."""
 
 TIE = 1e3
 """Stiffness that ties jumps which depend on each other, in springs at a pair."""
@@ -65,15 +69,16 @@ BLOCK = 500
 class Condensation:
     """The structure between its contacts, without jumps that prescribed displacements make alone.
 
-    `stop` is asked now and then while it is made; `Interrupted` is raised where it returns True.
+    `stop` is asked now and then while it is made; `Interrupted` is raised where it
+    returns True.
 
     Attributes
     ----------
     moving
         Which jumps are unknown, shape (n_moving,), places in the stack.
     base, ties
-        Which of these the others follow from, shape (n_base,), places among the unknown ones; and
-        how, shape (n_moving, n_base).
+        Which of these the others follow from, shape (n_base,), places among the unknown
+        ones; and how, shape (n_moving, n_base).
     stiffness
         S + s Q Q' between the base, shape (n_base, n_base), symmetric, scaled.
     load
@@ -81,40 +86,48 @@ class Condensation:
     springs
         Stiffness of a pair by what is next to it, of each, shape (n_base,), scaled.
     motions, gauge
-        Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q of the base
-        that they make, shape (n_base, n_motions).
+        Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q
+        of the base that they make, shape (n_base, n_motions).
     stresses, tie
         Where jumps of the base depend on each other: forces that move nothing, of shape
-        (n_base, n_stresses), and the stiffness in S that keeps the jumps from coming apart along
-        them, scaled.
+        (n_base, n_stresses), and the stiffness in S that keeps the jumps from coming
+        apart along them, scaled.
     all_rules, rules
         What all jumps obey, and those that are unknown.
     given
-        Jumps that prescribed displacements make, shape (n_forces, n_instants); final where a jump
-        is not unknown.
+        Jumps that prescribed displacements make, shape (n_forces, n_instants); final
+        where a jump is not unknown.
     """
 
-    def __init__(self, problem: Problem, stop: Callable[[], bool] | None = None) -> None:
+    def __init__(
+        self, problem: Problem, stop: Callable[[], bool] | None = None
+    ) -> None:
         fixed, prescribed = problem.prescribed
         free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
         self._whole = assembled_stiffness(problem)
         self._force = external_force(problem)
         self._jumps = jumps(problem)
         self.all_rules = rules_of(problem)
-        self._fixed, self._prescribed, self._free = fixed, prescribed, free
+        self._fixed = fixed
+        self._prescribed = prescribed
+        self._free = free
         self.given: Array = self._jumps[:, fixed] @ prescribed
         free_jumps = self._jumps[:, free]
         self.moving: Indices = np.flatnonzero(np.diff(free_jumps.indptr))
         self.rules = self.all_rules.kept(self.moving)
-        free_jumps, rigid = free_jumps[self.moving], self.rules.compliance == 0.0
+        free_jumps = free_jumps[self.moving]
+        rigid = self.rules.compliance == 0.0
         self.base, self.ties = base_of(free_jumps, rigid)
-        free_jumps, rigid = free_jumps[self.base], rigid[self.base]
+        free_jumps = free_jumps[self.base]
+        rigid = rigid[self.base]
         self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
         self.stresses: Array = self_stresses(free_jumps, rigid)
         self._rings = np.flatnonzero(self.stresses.any(axis=1))
         self._condense(free_jumps, stop)
 
-    def _condense(self, free_jumps: sparse.csr_array, stop: Callable[[], bool] | None) -> None:
+    def _condense(
+        self, free_jumps: sparse.csr_array, stop: Callable[[], bool] | None
+    ) -> None:
         """Factor the glued structure once, and take it out for all jumps and instants together."""
         free = self._free
         stiffness = self._whole[free]
@@ -127,7 +140,9 @@ class Condensation:
         self._jumped, self._glued = from_jumps(free_jumps)
         strained = sparse.csr_array(stiffness @ self._jumped)
         self._pulled = sparse.csr_array(self._glued.T @ strained)
-        self._factor = factored(sparse.csc_array(self._glued.T @ stiffness @ self._glued))
+        self._factor = factored(
+            sparse.csc_array(self._glued.T @ stiffness @ self._glued)
+        )
         patterns, course = separated(load)
         self._alone = self._solved(self._glued.T @ patterns) @ course
         load = self._jumped.T @ load - self._pulled.T @ self._alone
@@ -135,7 +150,9 @@ class Condensation:
         for columns in _blocks(len(whole)):
             if stop is not None and stop():
                 raise Interrupted
-            whole[:, columns] -= self._pulled.T @ self._solved(self._pulled[:, columns].toarray())
+            whole[:, columns] -= self._pulled.T @ self._solved(
+                self._pulled[:, columns].toarray()
+            )
         _symmetrise(whole)
         self._tie(whole)
         self.stiffness: Array = whole
@@ -145,25 +162,30 @@ class Condensation:
 
     def _solved(self, sides: Array) -> Array:
         """Displacement of the glued structure under forces on it, shape (n_glued, ...)."""
-        return np.asarray(self._factor.solve(sides)) if len(sides) else sides
+        if len(sides):
+            return np.asarray(self._factor.solve(sides))
+        return sides
 
     def _balanced(self, forces: Array) -> Array:
         """Forces, or jumps, of the base without what moves nothing."""
-        rings, stresses = self._rings, self.stresses[self._rings]
+        rings = self._rings
+        stresses = self.stresses[self._rings]
         balanced = forces.copy()
         balanced[rings] -= stresses @ (stresses.T @ forces[rings])
         return balanced
 
     def _tie(self, stiffness: Array) -> None:
         """Tie jumps of the base that depend on others to them, in S."""
-        rings, stresses = self._rings, self.stresses[self._rings]
+        rings = self._rings
+        stresses = self.stresses[self._rings]
         stiffness[rings] -= stresses @ (stresses.T @ stiffness[rings])
         stiffness[:, rings] -= (stiffness[:, rings] @ stresses) @ stresses.T
         stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
 
     def _set_motions_apart(self) -> None:
         """Remove from S what rounding makes rigid motions cost, from q what it adds to loads."""
-        gauge, stiffness = self.gauge, self.stiffness
+        gauge = self.gauge
+        stiffness = self.stiffness
         costs = stiffness @ gauge
         costs -= 0.5 * gauge @ (gauge.T @ costs)
         size = float(np.diagonal(stiffness).mean())
@@ -175,7 +197,8 @@ class Condensation:
     @cached_property
     def elastic(self) -> Array:
         """S alone, (n_base, n_base): rigid motions cost nothing."""
-        stiffness, gauge = self.stiffness, self.gauge
+        stiffness = self.stiffness
+        gauge = self.gauge
         if not gauge.size:
             return stiffness
         # Each of these motions is held by a stiffness of its own.
@@ -215,15 +238,18 @@ class Condensation:
     def rounding(self, deformation: Array, motion: Array, size: float) -> float:
         """Bound what rounding alone may leave out of balance at any instant, scaled.
 
-        The forces inside a slender body are far larger than what acts on it. How far a body has
-        moved says where a spring ends, too, and what closes: there rounding of the rigid motion
-        deforms the body, by no more than a small share of the largest force, `size`.
+        The forces inside a slender body are far larger than what acts on it. How far a
+        body has moved says where a spring ends, too, and what closes: there rounding of
+        the rigid motion deforms the body, by no more than a small share of the largest
+        force, `size`.
         """
         inside = abs(self._whole) @ np.abs(deformation)
         moved = self.unit[:, None] * np.abs(self.jump(motion))
         sprung = moved[self.all_rules.compliance > 0.0]
         left = LEFT_INSIDE * max(inside.max(initial=0.0), sprung.max(initial=0.0))
-        return float(max(left, min(LEFT_INSIDE * moved.max(initial=0.0), BLURRED * size)))
+        return float(
+            max(left, min(LEFT_INSIDE * moved.max(initial=0.0), BLURRED * size))
+        )
 
     @cached_property
     def unit(self) -> Array:
@@ -237,10 +263,13 @@ class Condensation:
     def largest_force(self) -> float:
         """Largest force on any degree of freedom, of loads and of prescribed displacements.
 
-        Where there are none, the largest that closes bodies which overlap from the start.
+        Where there are none, the largest that closes bodies which overlap from the
+        start.
         """
         pushed = self._whole[:, self._fixed] @ self._prescribed
-        largest = max(np.abs(self._force).max(initial=0.0), np.abs(pushed).max(initial=0.0))
+        largest = max(
+            np.abs(self._force).max(initial=0.0), np.abs(pushed).max(initial=0.0)
+        )
         overlap = np.maximum(-self.all_rules.gap, 0.0)
         return float(largest or (self.unit * overlap).max(initial=0.0))
 
@@ -253,7 +282,8 @@ def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
     steps = np.abs(np.diagonal(size))
     if len(steps) < size.shape[1] or steps.min() <= LOOSE * steps.max():
         raise NoReferenceError(_NOT_HELD)
-    # From the motions once more, so that what one does not move stays exactly where it is.
+    # From the motions once more, so that what one does not move stays exactly where it
+    # is.
     motions = solve_triangular(size, problem.motions.T, trans="T").T
     return motions, np.asarray(base @ motions)
 
@@ -286,7 +316,8 @@ def _symmetrise(matrix: Array) -> None:
         others = slice(rows.start, None)
         mean = matrix[rows, others] + matrix[others, rows].T
         mean *= 0.5
-        matrix[rows, others], matrix[others, rows] = mean, mean.T
+        matrix[rows, others] = mean
+        matrix[others, rows] = mean.T
 
 
 _NOT_HELD = (

@@ -1,7 +1,7 @@
 """The incremental reference where contacts open or two sides rub: instant by instant, exact.
 
-In time it is backward Euler on the jumps (Jean and Moreau), from rest at zero, as the laws of
-LATIN: friction opposes the increment of the tangential jump.
+In time it is backward Euler on the jumps (Jean and Moreau), from rest at zero, as the
+laws of LATIN: friction opposes the increment of the tangential jump.
 """
 
 from __future__ import annotations
@@ -23,26 +23,30 @@ from solver.reference.rules import Increment, Rules, States
 from solver.reference.solution import Reference
 
 MOST_JUMPS = 13_000
-"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB."""
+"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4
+GB."""
 
 
 class IncrementalContact:
     """The incremental solver of any interfaces with friction, ready to march through time.
 
-    Friction may have several solutions for a large mu, or none where contact alone holds a body.
-    Where several exist one of them is found, and `ambiguous` if that shows; where none is found,
-    `converged` is False, and the contacts stay where they were, by forces that break the laws.
+    Friction may have several solutions for a large mu, or none where contact alone
+    holds a body. Where several exist one of them is found, and `ambiguous` if that
+    shows; where none is found, `converged` is False, and the contacts stay where they
+    were, by forces that break the laws.
 
-    Where the normal jump is prescribed, contact shares its force with the support in any way: it
-    is taken as zero, and so is the friction there. Where the tangential jump is, friction is as
-    `Problem.with_driven_friction` says.
+    Where the normal jump is prescribed, contact shares its force with the support in
+    any way: it is taken as zero, and so is the friction there. Where the tangential
+    jump is, friction is as `Problem.with_driven_friction` says.
 
-    `stop` is asked now and then while it is made; `Interrupted` is raised where it returns True.
-    NoReferenceError is raised if there are more than `MOST_JUMPS` jumps, or the structure can move
-    with all contacts closed and stuck.
+    `stop` is asked now and then while it is made; `Interrupted` is raised where it
+    returns True. NoReferenceError is raised if there are more than `MOST_JUMPS` jumps,
+    or the structure can move with all contacts closed and stuck.
     """
 
-    def __init__(self, problem: Problem, stop: Callable[[], bool] | None = None) -> None:
+    def __init__(
+        self, problem: Problem, stop: Callable[[], bool] | None = None
+    ) -> None:
         n_jumps = jumps_in(problem)
         if n_jumps > MOST_JUMPS:
             raise NoReferenceError(
@@ -66,18 +70,28 @@ class IncrementalContact:
         Parameters
         ----------
         guess
-            States from which an instant starts, stacked as `Problem.sum_of_contact` says, shape
-            (n_forces, n_instants), unless those of the instant before turn out to be better.
+            States from which an instant starts, stacked as `Problem.sum_of_contact`
+            says, shape (n_forces, n_instants), unless those of the instant before turn
+            out to be better.
         most
-            Linear systems to solve; the instants that are not reached then do not move, and are
-            not `converged`.
+            Linear systems to solve; the instants that are not reached then do not move,
+            and are not `converged`.
         stop
-            Called before each linear system; `Interrupted` is raised as soon as it returns True.
+            Called before each linear system; `Interrupted` is raised as soon as it
+            returns True.
         """
-        problem, condensed = self._problem, self._condensed
-        own = None if guess is None else guess[condensed.moving]
+        problem = self._problem
+        condensed = self._condensed
+        if guess is None:
+            own = None
+        else:
+            own = guess[condensed.moving]
         instants = Instants(
-            condensed, problem.rest, own, lambda instant: self._may_hold(instant, stop), stop
+            condensed,
+            problem.rest,
+            own,
+            lambda instant: self._may_hold(instant, stop),
+            stop,
         )
         sizes = (len(condensed.moving),) * 2 + condensed.gauge.shape
         done = Increment(*(np.zeros((size, problem.n_instants)) for size in sizes))
@@ -98,14 +112,17 @@ class IncrementalContact:
     def _may_hold(self, instant: int, stop: Callable[[], bool] | None) -> bool:
         """Whether any contact forces balance the loads of an instant."""
         if not self._is_analysed:
-            self._collapse, self._is_analysed = collapse_of(self._problem, stop), True
+            self._collapse = collapse_of(self._problem, stop)
+            self._is_analysed = True
         return self._collapse is None or instant < self._collapse.instant
 
     def _judged(
         self, instants: Instants, done: Increment, turned: Flags, reached: Flags
     ) -> Reference:
         """All fields, and how far they are from equilibrium and laws."""
-        problem, condensed, rules = self._problem, self._condensed, self._rules
+        problem = self._problem
+        condensed = self._condensed
+        rules = self._rules
         motion = np.cumsum(done.motion, axis=1)
         deformation = condensed.deformation(np.cumsum(done.strained, axis=1))
         rigid = condensed.motions @ motion
@@ -119,14 +136,20 @@ class IncrementalContact:
         slip += condensed.jump(condensed.motions @ done.motion)
         opening = moved + condensed.jump(rigid) + rules.gap[:, None]
         wrong = broken_laws(rules, condensed.unit, forces, opening, slip)
-        # The force of a normal jump that is prescribed is not determinate, so it has no law.
+        # The force of a normal jump that is prescribed is not determinate, so it has no
+        # law.
         wrong[np.setdiff1d(np.flatnonzero(rules.normal), condensed.moving)] = 0.0
-        wrong = np.concatenate([wrong, np.abs(condensed.unbalanced(deformation, forces))])
+        wrong = np.concatenate(
+            [wrong, np.abs(condensed.unbalanced(deformation, forces))]
+        )
         unbalanced = wrong.max(axis=0, initial=0.0)
         slip[condensed.moving] = done.jump
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         blurred = condensed.rounding(deformation, rigid, size)
-        residual = unbalanced / size if size > 0.0 else unbalanced
+        if size > 0.0:
+            residual = unbalanced / size
+        else:
+            residual = unbalanced
         converged = reached & (unbalanced <= max(CONVERGED * size, blurred))
         scales = problem.scales
         return Reference(

@@ -15,18 +15,20 @@ from solver.reference.glued import self_stresses
 from solver.reference.rules import Rules, rules_of
 
 VANISHING = 1e-8
-"""Share of the load and of all that friction could carry below which contact forces vanish."""
+"""Share of the load and of all that friction could carry below which contact forces
+vanish."""
 LEAST_SHARE = 0.01
-"""Share of pressure and friction together that each of them counts as, at least: friction that is
-next to nothing beside pressure has no digits that a run could find."""
+"""Share of pressure and friction together that each of them counts as, at least:
+friction that is next to nothing beside pressure has no digits that a run could find."""
 ELASTIC = 1e-4
-"""Share of the forces inside elements that counts like a contact force: they leave so much more
-rounding. In slender bodies they are 1e5 times what acts on them."""
+"""Share of the forces inside elements that counts like a contact force: they leave so
+much more rounding. In slender bodies they are 1e5 times what acts on them."""
 HIDDEN = 100.0
-"""Largest size of forces over those that act: a body that nothing holds may be far away, and leaves
-rounding that would hide them all."""
+"""Largest size of forces over those that act: a body that nothing holds may be far
+away, and leaves rounding that would hide them all."""
 NOTHING = 1e-12
-"""Share of the forces inside elements up to which contact forces and reactions are but rounding."""
+"""Share of the forces inside elements up to which contact forces and reactions are but
+rounding."""
 
 
 class Fields(Protocol):
@@ -44,34 +46,44 @@ class Fields(Protocol):
 class Distance:
     """Relative L2 distance over space and time to a reference on the same mesh and instants.
 
-    Displacements are compared at interfaces. Where the reference field vanishes, the distance is
-    relative to `load`, (n, n_instants), N, instead, and absolute if that vanishes too; contact
-    forces vanish also if they are but rounding beside what friction could carry and beside the
-    load. Both are compared where they are determinate.
+    Displacements are compared at interfaces. Where the reference field vanishes, the
+    distance is relative to `load`, (n, n_instants), N, instead, and absolute if that
+    vanishes too; contact forces vanish also if they are but rounding beside what
+    friction could carry and beside the load. Both are compared where they are
+    determinate.
 
     Attributes
     ----------
     force_size
-        What distances of contact forces are divided by, the norm of the forces, N sqrt(s).
+        What distances of contact forces are divided by, the norm of the forces, N
+        sqrt(s).
     """
 
     def __init__(self, reference: Fields, problem: Problem, load: Array) -> None:
-        rules, self._weights = rules_of(problem), problem.time_weights
+        rules = rules_of(problem)
+        self._weights = problem.time_weights
         self._determinate = determinate_forces(problem)
         self._held = held_instants(problem, reference.contact_force)
         self._dofs: Indices = np.unique(problem.row_dofs)
         self._displacement = reference.displacement[self._dofs] * self._held
         self._force = reference.contact_force * self._determinate
         self._displacement_size = self._norm(self._displacement) or 1.0
-        force_size, load_size = self._norm(self._force), self._norm(load)
+        force_size = self._norm(self._force)
+        load_size = self._norm(load)
         bound = rules.bound * problem.scales.force
         allowed = self._norm(bound * np.ones(len(self._weights)))
-        # Without a known bound it is the load alone that contact forces can vanish beside.
+        # Without a known bound it is the load alone that contact forces can vanish
+        # beside.
         vanishes = force_size <= VANISHING * (min(load_size, allowed) or load_size)
         self.force_size = (load_size if vanishes else force_size) or 1.0
         self._kinds = [kind for kind in (rules.normal, ~rules.normal) if kind.any()]
-        least = self.force_size if vanishes else LEAST_SHARE * self.force_size
-        self._sizes = [max(self._norm(self._force[kind]), least) for kind in self._kinds]
+        if vanishes:
+            least = self.force_size
+        else:
+            least = LEAST_SHARE * self.force_size
+        self._sizes = [
+            max(self._norm(self._force[kind]), least) for kind in self._kinds
+        ]
 
     def of_displacement(self, fields: Fields) -> float:
         """Relative error of the displacement."""
@@ -81,7 +93,8 @@ class Distance:
     def of_friction_force(self, fields: Fields) -> float:
         """Relative error of the contact forces: of friction, or of pressure if larger.
 
-        Each relative to its own norm; to `LEAST_SHARE` of both together where that is more.
+        Each relative to its own norm; to `LEAST_SHARE` of both together where that is
+        more.
         """
         difference = fields.contact_force * self._determinate - self._force
         errors = (self._norm(difference[kind]) for kind in self._kinds)
@@ -98,12 +111,14 @@ class Distance:
 def distance_to(reference: Fields, problem: Problem) -> Distance:
     """Prepare the distance to a reference of a problem.
 
-    Where no forces are given, those that move what is prescribed are the load; and where these are
-    but rounding, because nothing resists, those that such displacements, and closing bodies that
-    overlap, would cost elements.
+    Where no forces are given, those that move what is prescribed are the load; and
+    where these are but rounding, because nothing resists, those that such
+    displacements, and closing bodies that overlap, would cost elements.
     """
     forces = [given.values for given in problem.given_forces]
-    forces += [part.body_force for part in problem.substructures if part.body_force is not None]
+    forces += [
+        part.body_force for part in problem.substructures if part.body_force is not None
+    ]
     if not any(force.any() for force in forces):
         dofs, prescribed = problem.prescribed
         stiffness = assembled_stiffness(problem)
@@ -121,9 +136,10 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
 def held_instants(problem: Problem, contact_force: Array) -> Flags:
     """Instants at which contact forces determine where all bodies are, shape (n_instants,).
 
-    A body that contact alone holds may lie anywhere along a rigid motion that neither goes against
-    a contact that presses nor rubs: without friction, on level ground. Until contacts first carry
-    anything it is at rest. Forces are stacked, (n_forces, n_instants), N.
+    A body that contact alone holds may lie anywhere along a rigid motion that neither
+    goes against a contact that presses nor rubs: without friction, on level ground.
+    Until contacts first carry anything it is at rest. Forces are stacked, (n_forces,
+    n_instants), N.
     """
     held = np.ones(problem.n_instants, dtype=bool)
     if problem.motions is None:
@@ -136,7 +152,10 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
     holds = np.where(rules.normal[:, None], force, bound) > 0.0
     moved = jumps(problem) @ problem.motions
     patterns, kind = np.unique(holds, axis=1, return_inverse=True)
-    sure = [np.linalg.matrix_rank(moved[pattern]) == moved.shape[1] for pattern in patterns.T]
+    sure = [
+        np.linalg.matrix_rank(moved[pattern]) == moved.shape[1]
+        for pattern in patterns.T
+    ]
     at_rest = ~np.logical_or.accumulate(holds.any(axis=0))
     return np.asarray(np.asarray(sure)[kind.ravel()] | at_rest)
 
@@ -144,14 +163,15 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
 def determinate_forces(problem: Problem) -> Flags:
     """Where contact forces are determinate, stacked, shape (n_forces, n_instants).
 
-    Where prescribed displacements alone make a jump, a normal force is not, nor is the friction
-    that it carries; friction of a known bound is while it slips. Forces that can balance each other
-    (`solver.reference.glued`) are not.
+    Where prescribed displacements alone make a jump, a normal force is not, nor is the
+    friction that it carries; friction of a known bound is while it slips. Forces that
+    can balance each other (`solver.reference.glued`) are not.
     """
     dofs, displacement = problem.prescribed
     free = np.ones(problem.n_dofs)
     free[dofs] = 0.0
-    all_jumps, rules = jumps(problem), rules_of(problem)
+    all_jumps = jumps(problem)
+    rules = rules_of(problem)
     moves = abs(all_jumps) @ free > 0.0
     slips = np.diff(all_jumps[:, dofs] @ displacement, axis=1, prepend=0.0) != 0.0
     slips[rules.normal] = False
@@ -159,7 +179,9 @@ def determinate_forces(problem: Problem) -> Flags:
     moves &= (moves | ~rules.normal)[rules.partner]
     moving = np.flatnonzero(moves)
     free_jumps = (all_jumps @ sparse.diags_array(free))[moving]
-    ring = np.any(self_stresses(free_jumps, rules.compliance[moving] == 0.0) != 0.0, axis=1)
+    ring = np.any(
+        self_stresses(free_jumps, rules.compliance[moving] == 0.0) != 0.0, axis=1
+    )
     moves[moving[ring]] = False
     return np.asarray(moves[:, None] | slips)
 
@@ -167,17 +189,21 @@ def determinate_forces(problem: Problem) -> Flags:
 def kkt_residual(fields: Fields, problem: Problem) -> float:
     """Largest violation of equilibrium, laws and what is prescribed, as a share of the forces.
 
-    By the equations alone, at every instant, however the fields were found: relative to the largest
-    contact force, or to a small share of what the displacement makes of forces inside elements,
-    which rounding is a share of; and to the load where all vanish.
+    By the equations alone, at every instant, however the fields were found: relative to
+    the largest contact force, or to a small share of what the displacement makes of
+    forces inside elements, which rounding is a share of; and to the load where all
+    vanish.
     """
     displacement = fields.displacement / problem.scales.displacement
     force = fields.contact_force / problem.scales.force
-    stiffness, all_jumps = assembled_stiffness(problem), jumps(problem)
+    stiffness = assembled_stiffness(problem)
+    all_jumps = jumps(problem)
     outer = external_force(problem)
     fixed, prescribed = problem.prescribed
     free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
-    missed = stiffness.diagonal()[fixed, None] * np.abs(displacement[fixed] - prescribed)
+    missed = stiffness.diagonal()[fixed, None] * np.abs(
+        displacement[fixed] - prescribed
+    )
     inner = stiffness @ displacement
     missing = inner - outer - all_jumps.T @ force
     unbalanced = missing[free]
@@ -188,18 +214,23 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     unit = abs(all_jumps) @ stiffness.diagonal()
     unit = unit / (1.0 + unit * rules.compliance)
     jump = all_jumps @ displacement + rules.compliance[:, None] * force
-    opening, slip = jump + rules.gap[:, None], np.diff(jump, axis=1, prepend=0.0)
-    broken = broken_laws(rules, unit, force, opening, slip) * determinate_forces(problem)
+    opening = jump + rules.gap[:, None]
+    slip = np.diff(jump, axis=1, prepend=0.0)
+    broken = broken_laws(rules, unit, force, opening, slip) * determinate_forces(
+        problem
+    )
     wrong = unbalanced, broken, missed
     largest = max(float(np.abs(part).max(initial=0.0)) for part in wrong)
-    return largest / size if size > 0.0 else largest
+    if size > 0.0:
+        return largest / size
+    return largest
 
 
 def force_size(force: Array, outer: Array, elastic: Array, reaction: Array) -> float:
     """Size that violations of forces are a share of, scaled.
 
-    By contact forces, loads, the parts of forces inside elements without signs, and reactions of
-    what is held; each of shape (n, n_instants).
+    By contact forces, loads, the parts of forces inside elements without signs, and
+    reactions of what is held; each of shape (n, n_instants).
     """
     sizes = [force, ELASTIC * outer, ELASTIC * elastic]
     size = max(float(np.abs(part).max(initial=0.0)) for part in sizes)
@@ -208,15 +239,20 @@ def force_size(force: Array, outer: Array, elastic: Array, reaction: Array) -> f
     # Where bodies move as they like, what holds them has rounding alone to hold.
     if carried > NOTHING * float(elastic.max(initial=0.0)):
         acting = max(acting, carried)
-    return min(size, HIDDEN * acting) if acting > 0.0 else size
+    if acting > 0.0:
+        return min(size, HIDDEN * acting)
+    return size
 
 
-def broken_laws(rules: Rules, unit: Array, force: Array, opening: Array, slip: Array) -> Array:
+def broken_laws(
+    rules: Rules, unit: Array, force: Array, opening: Array, slip: Array
+) -> Array:
     """How far contacts are from their laws, as forces, shape (n_forces, n_instants), scaled.
 
-    It is the distance of the normal force from (f - r g)+ with the opening g, and of the friction
-    force from f - r v cut to its bound, with the slip v. A stiffness r of the pair, `unit`, of
-    shape (n_forces,), makes a force of a length; laws hold if and only if the distances vanish.
+    It is the distance of the normal force from (f - r g)+ with the opening g, and of
+    the friction force from f - r v cut to its bound, with the slip v. A stiffness r of
+    the pair, `unit`, of shape (n_forces,), makes a force of a length; laws hold if and
+    only if the distances vanish.
     """
     unit = unit[:, None]
     bound = rules.bounds(force, slip, opening)

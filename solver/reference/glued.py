@@ -1,12 +1,14 @@
 """Displacements seen from the contacts: what jumps make, and what moves where nothing jumps.
 
-Every jump is the displacement of one degree of freedom, or of one minus another. So jumps join
-degrees of freedom to trees, and the ground is a root. A displacement is u = T j + Z a: a moves each
-tree as one, the structure glued at its contacts, and j are the jumps along its branches.
+Every jump is the displacement of one degree of freedom, or of one minus another. So
+jumps join degrees of freedom to trees, and the ground is a root. A displacement is u =
+T j + Z a: a moves each tree as one, the structure glued at its contacts, and j are the
+jumps along its branches.
 
-Where contacts join bodies in a ring, jumps depend on each other, and some of their forces balance
-each other: at a broken wire, say, both of its new ends rub on the neighbours left and right, four
-jumps between four points. These forces are not determinate.
+Where contacts join bodies in a ring, jumps depend on each other, and some of their
+forces balance each other: at a broken wire, say, both of its new ends rub on the
+neighbours left and right, four jumps between four points. These forces are not
+determinate.
 """
 
 from __future__ import annotations
@@ -19,14 +21,17 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 from solver.arrays import Array, Flags, Indices, sparse_factor
 
 NONE = 1e-9
-"""Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
+"""Eigenvalue of J J', whose entries are whole numbers, and share of a force that count
+as zero."""
 
 
 def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:
     """The two points that every jump is between, the last of all the ground, smaller first."""
     ground = jumps.shape[1]
     first = jumps.indices[jumps.indptr[:-1]]
-    last = np.where(np.diff(jumps.indptr) == 2, jumps.indices[jumps.indptr[1:] - 1], ground)
+    last = np.where(
+        np.diff(jumps.indptr) == 2, jumps.indices[jumps.indptr[1:] - 1], ground
+    )
     return np.minimum(first, last), np.maximum(first, last)
 
 
@@ -51,8 +56,9 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
     Parameters
     ----------
     jumps
-        J, shape (n_jumps, n_dofs), +1 and -1 or one of these in a row. Where jumps depend on each
-        other, each in a ring of them, T has nothing for those that follow from others.
+        J, shape (n_jumps, n_dofs), +1 and -1 or one of these in a row. Where jumps
+        depend on each other, each in a ring of them, T has nothing for those that
+        follow from others.
 
     Returns
     -------
@@ -79,7 +85,9 @@ def _along_branches(
     others = roots[roots != ground]
     rows = np.concatenate([edges[0], others])
     ends = np.concatenate([edges[1], np.full(len(others), ground)])
-    links = sparse.csr_array((np.ones(len(rows)), (rows, ends)), shape=(ground + 1, ground + 1))
+    links = sparse.csr_array(
+        (np.ones(len(rows)), (rows, ends)), shape=(ground + 1, ground + 1)
+    )
     order, parents = breadth_first_order(links, ground, directed=False)
     points = np.setdiff1d(order, roots)
     parents = parents[points]
@@ -90,7 +98,9 @@ def _along_branches(
     step = sparse.csr_array((signs, (points, branches)), shape=(ground, size))
     held = parents < ground
     ones = np.ones(np.count_nonzero(held))
-    beyond = sparse.csr_array((ones, (points[held], parents[held])), shape=(ground, ground))
+    beyond = sparse.csr_array(
+        (ones, (points[held], parents[held])), shape=(ground, ground)
+    )
     moved = step
     while step.nnz:
         step = sparse.csr_array(beyond @ step)
@@ -108,7 +118,8 @@ def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
     rigid
         Jumps with nothing in series, shape (n_jumps,): what has tells its own force.
     """
-    size, places = len(rigid), np.flatnonzero(rigid)
+    size = len(rigid)
+    places = np.flatnonzero(rigid)
     jumps = jumps[places]
     if _is_forest(jumps):
         return np.zeros((size, 0))
@@ -144,7 +155,9 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     first, last = (points.tolist() for points in graph_of(jumps))
     forest = DisjointSet(range(jumps.shape[1] + 1))
     rigid_first = np.argsort(~rigid, kind="stable").tolist()
-    tree_jumps = np.array([jump for jump in rigid_first if forest.merge(first[jump], last[jump])])
+    tree_jumps = np.array(
+        [jump for jump in rigid_first if forest.merge(first[jump], last[jump])]
+    )
     base = np.union1d(np.flatnonzero(rigid), tree_jumps)
     others = np.setdiff1d(np.arange(size), base)
     branches = jumps[tree_jumps]

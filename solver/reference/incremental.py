@@ -5,9 +5,10 @@ Over one instant the displacement increment v minimises a strictly convex functi
 
     phi(v) = 1/2 v' K v - g' v + sum r |v|,
 
-with K the stiffness, r the friction bounds, and g the load that the friction force of the previous
-instant leaves unbalanced. Its minimum is known once every point's status s is: v = 0 where s = 0,
-and K v = g - r s elsewhere. The pull g - K v is then minus the friction force.
+with K the stiffness, r the friction bounds, and g the load that the friction force of
+the previous instant leaves unbalanced. Its minimum is known once every point's status s
+is: v = 0 where s = 0, and K v = g - r s elsewhere. The pull g - K v is then minus the
+friction force.
 """
 
 from __future__ import annotations
@@ -35,12 +36,13 @@ from solver.reference.search import Minimum, Search, Tridiagonal
 from solver.reference.solution import Reference
 
 DEARER = 30
-"""Points that make a system of the general solver cost one more of this one (measured)."""
+"""Points that make a system of the general solver cost one more of this one
+(measured)."""
 TRIALS = 50
 """Sets of points of the strength that are passed within an instant, at most."""
 BALANCED = 1e-6
-"""KKT residual over all that acts up to which an instant is solved; rounding leaves 1e-15, and more
-beside loads of 1e9 times what friction holds."""
+"""KKT residual over all that acts up to which an instant is solved; rounding leaves
+1e-15, and more beside loads of 1e9 times what friction holds."""
 
 
 def rubs_on_supports(problem: Problem) -> bool:
@@ -55,13 +57,15 @@ def rubs_on_supports(problem: Problem) -> bool:
 class IncrementalRod:
     """The incremental solver of rods for which `rubs_on_supports`, ready to march through time.
 
-    A point whose displacement is prescribed may rub too: only the sum of friction force and
-    reaction is determinate there, and friction is as `Problem.with_driven_friction` says.
+    A point whose displacement is prescribed may rub too: only the sum of friction force
+    and reaction is determinate there, and friction is as `Problem.with_driven_friction`
+    says.
     """
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._dofs, self._rules = points_dofs(problem), rules_of(problem)
+        self._dofs = points_dofs(problem)
+        self._rules = rules_of(problem)
         # Degrees of freedom are numbered along one rod after the other.
         whole = assembled_stiffness(problem)
         self._stiffness = Tridiagonal(whole.diagonal(), whole.diagonal(1))
@@ -83,7 +87,10 @@ class IncrementalRod:
         if self._general is None:
             self._general = IncrementalContact(self._problem, stop)
         dearer = 1 + len(self._dofs) // DEARER
-        limit = None if most is None else most // dearer
+        if most is None:
+            limit = None
+        else:
+            limit = most // dearer
         return self._general.march(guess, limit, stop)
 
     def march(
@@ -99,10 +106,11 @@ class IncrementalRod:
         Interrupted
             As soon as `stop` returns True.
         NoReferenceError
-            If friction softens so fast that the general solver is needed, and there are too many
-            points for it.
+            If friction softens so fast that the general solver is needed, and there are
+            too many points for it.
         """
-        starts, self._systems = Starts(), 0
+        starts = Starts()
+        self._systems = 0
         minima: list[Minimum] = []
         balance, status, gone = np.zeros((3, self._problem.n_dofs))
         for instant in range(self._problem.n_instants):
@@ -110,15 +118,19 @@ class IncrementalRod:
                 raise Interrupted
             if most is not None and self._systems >= most:
                 break
-            done, from_guess = self._systems, starts.from_guess
+            done = self._systems
+            from_guess = starts.from_guess
             if guess is not None and from_guess:
                 status = self._on_dofs(guess[:, instant])
-            least = self._minimise(instant, self._load_steps[instant] + balance, status, gone)
+            least = self._minimise(
+                instant, self._load_steps[instant] + balance, status, gone
+            )
             if least is None:
                 return self._marched_in_general(guess, most, stop)
             minima.append(least)
             starts.took(self._systems - done, from_guess=from_guess)
-            balance, status = least.pull, least.status
+            balance = least.pull
+            status = least.status
             gone = gone + np.abs(least.increment)
         return self._gathered(minima)
 
@@ -128,12 +140,15 @@ class IncrementalRod:
         spread[self._dofs] = values
         return spread
 
-    def _minimise(self, instant: int, force: Array, status: Array, gone: Array) -> Minimum | None:
+    def _minimise(
+        self, instant: int, force: Array, status: Array, gone: Array
+    ) -> Minimum | None:
         """Minimise phi over one instant, from a guess of the statuses; None where it has none.
 
         `gone` is the slip accumulated before; all have shape (n_dofs,).
         """
-        move, rules = self._moves[instant], self._rules
+        move = self._moves[instant]
+        rules = self._rules
         given = np.zeros(len(force))
         given[self._fixed] = move
         load = self._movable * (force - self._stiffness.product(given))
@@ -157,13 +172,17 @@ class IncrementalRod:
     ) -> Minimum | None:
         """Minimum that the instant before certainly goes over into, None where that is not sure.
 
-        Which points of the strength are passed within the instant is found by trial. It is sure if
-        the structure is stable where points slip, however far they have softened on the way: then
-        no other minimum slips there alone.
+        Which points of the strength are passed within the instant is found by trial. It
+        is sure if the structure is stable where points slip, however far they have
+        softened on the way: then no other minimum slips there alone.
         """
-        rules, movable, dofs, end = self._rules, self._movable, self._dofs, gone
+        rules = self._rules
+        movable = self._movable
+        dofs = self._dofs
+        end = gone
         for _ in range(TRIALS):
-            factor, slope = rules.strength(end[dofs]), rules.strength.slope(end[dofs])
+            factor = rules.strength(end[dofs])
+            slope = rules.strength.slope(end[dofs])
             slope = first * self._on_dofs(slope) * movable
             bound = (first * self._on_dofs(factor) - slope * (end - gone)) * movable
             search = Search(self._stiffness.stiffened(slope), bound, movable)
@@ -171,9 +190,12 @@ class IncrementalRod:
                 least = search(force, status * search.rubs)
                 reached = gone + np.abs(least.increment)
                 if np.array_equal(
-                    rules.strength.segment(end[dofs]), rules.strength.segment(reached[dofs])
+                    rules.strength.segment(end[dofs]),
+                    rules.strength.segment(reached[dofs]),
                 ):
-                    growth = self._on_dofs(rules.strength.lowest_slope(gone[dofs], reached[dofs]))
+                    growth = self._on_dofs(
+                        rules.strength.lowest_slope(gone[dofs], reached[dofs])
+                    )
                     softest = self._stiffness.stiffened(first * growth * movable)
                     slips = movable * (least.increment != 0.0)
                     softest.solve_kept(slips, np.zeros_like(force))
@@ -184,21 +206,26 @@ class IncrementalRod:
                 return None
             finally:
                 self._systems += search.solutions
-            end, status = reached, least.status
+            end = reached
+            status = least.status
         return None
 
     def _gathered(self, minima: list[Minimum]) -> Reference:
         """Solution of the first instants' minima, after which nothing moves."""
-        problem, dofs = self._problem, self._dofs
+        problem = self._problem
+        dofs = self._dofs
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
         for instant, least in enumerate(minima):
-            increments[instant], pulls[instant] = least.increment, least.pull
+            increments[instant] = least.increment
+            pulls[instant] = least.pull
         solved = np.zeros(problem.n_instants, dtype=bool)
         solved[: len(minima)] = [least.residual <= BALANCED for least in minima]
         moved = np.cumsum(increments, axis=0).T
         inside = self._stiffness.largest_row * float(np.abs(moved).max(initial=0.0))
         displacement = moved * problem.scales.displacement
-        friction = problem.with_driven_friction(0.0 - pulls.T[dofs], moved[problem.row_dofs])
+        friction = problem.with_driven_friction(
+            0.0 - pulls.T[dofs], moved[problem.row_dofs]
+        )
         return Reference(
             problem=problem,
             displacement=displacement,
@@ -206,7 +233,8 @@ class IncrementalRod:
             contact_force=friction * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
             residual=max([0.0, *(least.residual for least in minima)]),
-            unbalanced=max([0.0, *(least.violation for least in minima)]) * problem.scales.force,
+            unbalanced=max([0.0, *(least.violation for least in minima)])
+            * problem.scales.force,
             rounding=LEFT_INSIDE * inside * problem.scales.force,
             converged=solved,
             is_lost=not solved[: len(minima)].all(),
@@ -229,7 +257,9 @@ def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Re
     return replace(solution, seconds=time.perf_counter() - start)
 
 
-def incremental_solver(problem: Problem, stop: Callable[[], bool] | None = None) -> Incremental:
+def incremental_solver(
+    problem: Problem, stop: Callable[[], bool] | None = None
+) -> Incremental:
     """Prepare the solver that the interfaces of a problem call for.
 
     Raises
@@ -237,13 +267,15 @@ def incremental_solver(problem: Problem, stop: Callable[[], bool] | None = None)
     Interrupted
         As soon as `stop` returns True.
     NoReferenceError
-        If there is none, as the problem holds what no solver reads, or goes on from where another
-        ends.
+        If there is none, as the problem holds what no solver reads, or goes on from
+        where another ends.
     """
     if problem.no_reference:
         raise NoReferenceError(problem.no_reference)
     if problem.goes_on:
-        raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
+        raise NoReferenceError(
+            "Incremental solvers begin where nothing has slipped yet."
+        )
     if rubs_on_supports(problem):
         return IncrementalRod(problem)
     return IncrementalContact(problem, stop)

@@ -1,8 +1,8 @@
 """Frictional contact through time, each instant from the states of the one before.
 
-Where friction softens an instant may have several solutions: the one that goes on from the instant
-before is followed while the load of the instant grows, in steps so small that between their ends no
-other branches off.
+Where friction softens an instant may have several solutions: the one that goes on from
+the instant before is followed while the load of the instant grows, in steps so small
+that between their ends no other branches off.
 """
 
 from __future__ import annotations
@@ -16,7 +16,14 @@ from solver.arrays import Array
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.newton import Newton
-from solver.reference.rules import HELD, Increment, InstantSolution, Sides, Starts, States
+from solver.reference.rules import (
+    HELD,
+    Increment,
+    InstantSolution,
+    Sides,
+    Starts,
+    States,
+)
 
 PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
@@ -25,7 +32,8 @@ TOGETHER = 1e-10
 SHORTEST = 2.0**-12
 """Share of the load of an instant within which the solution is lost, where it jumps."""
 SLIDES = 100
-"""Slips at most, each with the friction that the one before has left, up to the next solution."""
+"""Slips at most, each with the friction that the one before has left, up to the next
+solution."""
 AT_REST = 1e-9
 """Change of slips, as a share of the largest, at which they have come to rest."""
 
@@ -33,14 +41,16 @@ AT_REST = 1e-9
 class Instants:
     """Jumps and forces of a condensed structure, one instant after the other.
 
-    `rest` is a displacement from which contacts may be guessed, (n_dofs, n_instants), and `guess`
-    are states to try, (n, n_instants). `may_hold` says whether there may be an equilibrium at an
-    instant, where none is found at once. `stop` is that of `LinearSystem`.
+    `rest` is a displacement from which contacts may be guessed, (n_dofs, n_instants),
+    and `guess` are states to try, (n, n_instants). `may_hold` says whether there may be
+    an equilibrium at an instant, where none is found at once. `stop` is that of
+    `LinearSystem`.
 
     Attributes
     ----------
     jumps_at
-        First instant at which no solution goes on from the one before; None while all do.
+        First instant at which no solution goes on from the one before; None while all
+        do.
     has_others
         Whether another solution of the last instant was met, which is not stable.
     """
@@ -56,20 +66,31 @@ class Instants:
         may_hold: Callable[[int], bool],
         stop: Callable[[], bool] | None = None,
     ) -> None:
-        self._newton, rules = Newton(condensed, stop), condensed.rules
+        self._newton = Newton(condensed, stop)
+        rules = condensed.rules
         self.system = self._newton.system
-        self._may_hold, self._is_lost = may_hold, False
-        self._condensed, self._rules = condensed, rules
-        self._opening, self._force = rules.gap.copy(), np.zeros_like(rules.gap)
-        self._load, self._shift = np.zeros_like(self._newton.strained), np.zeros_like(rules.gap)
-        self._motion, self._intact = np.zeros(condensed.gauge.shape[1]), np.ones_like(rules.gap)
+        self._may_hold = may_hold
+        self._is_lost = False
+        self._condensed = condensed
+        self._rules = rules
+        self._opening = rules.gap.copy()
+        self._force = np.zeros_like(rules.gap)
+        self._load = np.zeros_like(self._newton.strained)
+        self._shift = np.zeros_like(rules.gap)
+        self._motion = np.zeros(condensed.gauge.shape[1])
+        self._intact = np.ones_like(rules.gap)
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
-        self._starts, self._has_guess = Starts(), guess is not None
+        self._starts = Starts()
+        self._has_guess = guess is not None
         self._guesses: list[States] = []
         if guess is not None:
-            self._guesses.append(np.where(rules.smooth[:, None], OPEN, guess).astype(np.int8))
+            self._guesses.append(
+                np.where(rules.smooth[:, None], OPEN, guess).astype(np.int8)
+            )
         if rest is not None:
-            self._guesses.append(rules.states_at(condensed.jump(rest)[condensed.moving]))
+            self._guesses.append(
+                rules.states_at(condensed.jump(rest)[condensed.moving])
+            )
         has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
         # Nothing has acted yet: then nothing moves, though a free body might.
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
@@ -77,20 +98,28 @@ class Instants:
     def __call__(self, instant: int) -> Increment:
         """What an instant adds, with the slip, or opening, of each jump.
 
-        The forces that move nothing are the multipliers that keep dependent jumps together
-        (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
+        The forces that move nothing are the multipliers that keep dependent jumps
+        together (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch.
+        2).
         """
-        condensed, rules = self._condensed, self._rules
+        condensed = self._condensed
+        rules = self._rules
         self.has_others = False
         if self._is_at_rest[instant]:
             still = self._force, self._force, self._newton.strained, self._motion
             return Increment(*map(np.zeros_like, still))
-        load = condensed.load[:, instant] - self._load - self.system.on_base(self._force)
-        before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
+        load = (
+            condensed.load[:, instant] - self._load - self.system.on_base(self._force)
+        )
+        before = (
+            rules.compliance * self._force - condensed.shift[:, instant] + self._shift
+        )
         held = before - np.where(rules.normal, self._opening, 0.0)
         step = self._together(Sides(load, self._bound(instant), held), instant)
-        self._load, self._shift = condensed.load[:, instant], condensed.shift[:, instant]
-        slip, self._force = step.jump - before, step.force
+        self._load = condensed.load[:, instant]
+        self._shift = condensed.shift[:, instant]
+        slip = step.jump - before
+        self._force = step.force
         self._opening += slip
         self._newton.gone += np.abs(slip)
         self._newton.strained += step.strained
@@ -105,14 +134,18 @@ class Instants:
 
     def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""
-        condensed, stresses = self._condensed, self._condensed.stresses
-        done, from_guess = self.system.solutions, self._starts.from_guess
+        condensed = self._condensed
+        stresses = self._condensed.stresses
+        done = self.system.solutions
+        from_guess = self._starts.from_guess
         for _ in range(PASSES):
             solved = self._solved(sides, instant)
             if solved is None:
                 # All contacts stay where they are.
                 held = sides.held + self._rules.normal * self._opening
-                return self.system(np.full_like(self._states, HELD), replace(sides, held=held))
+                return self.system(
+                    np.full_like(self._states, HELD), replace(sides, held=held)
+                )
             self._states, step, _ = solved
             if not stresses.size:
                 break
@@ -128,15 +161,17 @@ class Instants:
 
     def _solved(self, sides: Sides, instant: int) -> InstantSolution | None:
         """Find the states of the jumps and the step, or None."""
-        rules, newton = self._rules, self._newton
-        # A body that falls, rolls or slides a long way touches elsewhere than one instant before,
-        # or slips as a whole.
+        rules = self._rules
+        newton = self._newton
+        # A body that falls, rolls or slides a long way touches elsewhere than one
+        # instant before, or slips as a whole.
         known = [states[:, instant] for states in self._guesses]
         still = np.zeros_like(sides.held)
         nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
         begin = InstantSolution(self._states, nothing, still)
         guesses = begin.guesses(known)
-        # Where there may be several solutions, the one that goes on from the instant before.
+        # Where there may be several solutions, the one that goes on from the instant
+        # before.
         if self._has_guess and self._starts.from_guess and not rules.is_curved:
             guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, sides, guesses)
@@ -152,7 +187,8 @@ class Instants:
         self, at: InstantSolution, sides: Sides, known: list[States], instant: int
     ) -> InstantSolution | None:
         """Follow the solution from the instant before; where it is lost, look for any."""
-        rules, force = self._rules, self._force
+        rules = self._rules
+        force = self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
         # Under these nothing is added to the instant before.
         pulled = -self.system.on_base(force)
@@ -178,13 +214,16 @@ class Instants:
         The method may depend on the share, too.
         """
         begin, end = sides
-        share, length = 0.0, 0.25
+        share = 0.0
+        length = 0.25
         while share < 1.0:
             target = min(share + length, 1.0)
             part = begin.towards(end, target)
             following = newton_at(target).follow(at, part, at.guesses(known))
             if following is not None:
-                at, share, length = following, target, 2.0 * length
+                at = following
+                share = target
+                length = 2.0 * length
             elif length > SHORTEST:
                 length *= 0.25
             else:
@@ -196,23 +235,28 @@ class Instants:
     ) -> InstantSolution | None:
         """A stable solution beyond one that is lost, or None.
 
-        With the friction that slip so far has left the next slip is larger, and so on up to the
-        nearest solution; Newton's method is tried once the same contacts slip again. Where the
-        bound is known each slip lowers the energy (convex-concave procedure: Yuille, Rangarajan,
-        Neural Comput. 15, 2003), so slips come to rest. That may be where the structure is not
-        stable, as on a ridge between two slopes: it is left down one of them. What the last
-        friction alone comes to is the last resort.
+        With the friction that slip so far has left the next slip is larger, and so on
+        up to the nearest solution; Newton's method is tried once the same contacts slip
+        again. Where the bound is known each slip lowers the energy (convex-concave
+        procedure: Yuille, Rangarajan, Neural Comput. 15, 2003), so slips come to rest.
+        That may be where the structure is not stable, as on a ridge between two slopes:
+        it is left down one of them. What the last friction alone comes to is the last
+        resort.
         """
         end = sides[1]
-        begins, fallen = sides[0], np.abs(at.slip)
+        begins = sides[0]
+        fallen = np.abs(at.slip)
         for number in range(SLIDES + 1):
-            before, falls = at, np.abs(at.slip)
+            before = at
+            falls = np.abs(at.slip)
             if number == SLIDES:
                 falls = np.full_like(falls, self._rules.strength.slips[-1])
             slid = self._slid(at, (begins, end), (fallen, falls), known)
             if slid is None:
                 return None
-            at, begins, fallen = slid, end, falls
+            at = slid
+            begins = end
+            fallen = falls
             if number < SLIDES and not np.array_equal(at.states, before.states):
                 continue
             near = self._newton.near(at, end)
@@ -240,7 +284,9 @@ class Instants:
         if slid is not None:
             return slid
         slid, share = self._followed(
-            lambda share: self._newton.with_friction_left(before + share * (after - before)),
+            lambda share: self._newton.with_friction_left(
+                before + share * (after - before)
+            ),
             at,
             sides,
             known,

@@ -193,7 +193,8 @@ class _Points:
 
     def _bound(self, slip: Array) -> Array:
         """Largest friction force g(s) min(r + mu N, cap), (n_points, n_instants)."""
-        law, along = self.law, self.law.tangential
+        law = self.law
+        along = self.law.tangential
         bound = law.by_point(along.bound) * np.ones_like(slip)
         if self.opening is not None and self.pressing is not None:
             far = OPENED * _largest(self.opening)
@@ -233,7 +234,9 @@ def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Po
         yield _Points(law, slider, friction, opening, pressing, tuple(jumps), is_given)
 
 
-def _jump(problem: Problem, law: Contact, component: Component, displacement: Array) -> Array:
+def _jump(
+    problem: Problem, law: Contact, component: Component, displacement: Array
+) -> Array:
     """Displacement above minus that below at points, shape (n_points, n_instants)."""
     jump = displacement[problem.row_dofs[component.above]]
     if component.below is not None:
@@ -252,7 +255,9 @@ def _contact_force(problem: Problem, force: Array) -> Array:
     total = np.zeros((problem.n_dofs, problem.n_instants))
     for name, law in problem.rubbing.items():
         pairs = np.bincount(law.points)[law.points]
-        for place, component in zip(problem.contact_places[name], law.components, strict=True):
+        for place, component in zip(
+            problem.contact_places[name], law.components, strict=True
+        ):
             carried = force[place][law.points] / pairs[:, None]
             for side, sign in zip(component.sides, (1.0, -1.0), strict=False):
                 np.add.at(total, problem.row_dofs[side], sign * carried)
@@ -279,7 +284,8 @@ def _inner_force(problem: Problem, displacement: Array) -> tuple[Array, Array]:
     total = np.zeros((problem.n_dofs, problem.n_instants))
     sizes = np.zeros_like(total)
     for part in problem.substructures:
-        own, stiffness = displacement[part.dofs], part.elasticity.stiffness
+        own = displacement[part.dofs]
+        stiffness = part.elasticity.stiffness
         np.add.at(total, part.dofs, stiffness @ own)
         np.add.at(sizes, part.dofs, abs(stiffness) @ np.abs(own))
     return total, sizes
@@ -296,7 +302,9 @@ def _prescribed(problem: Problem) -> tuple[Indices, Array]:
     )
 
 
-def _balance_of_parts(problem: Problem, displacement: Array, force: Array) -> Iterator[Array]:
+def _balance_of_parts(
+    problem: Problem, displacement: Array, force: Array
+) -> Iterator[Array]:
     """Yield what every substructure lacks to balance, with the forces of its rows."""
     for part in problem.substructures:
         missing = np.asarray(part.elasticity.stiffness @ displacement[part.dofs])
@@ -306,7 +314,9 @@ def _balance_of_parts(problem: Problem, displacement: Array, force: Array) -> It
         yield missing
 
 
-def _glued(problem: Problem, rows: RowFields, length_size: float, force_size: float) -> float:
+def _glued(
+    problem: Problem, rows: RowFields, length_size: float, force_size: float
+) -> float:
     """Difference of the two sides of all cuts, and the sum of their forces, as shares."""
     largest = 0.0
     for law in problem.interfaces.values():
@@ -327,4 +337,6 @@ def _largest(*parts: Array) -> float:
 
 def _share(value: Array | float, size: float) -> Any:
     """A value as a share of a size; as it is where that is zero."""
-    return value / size if size > 0.0 else value
+    if size > 0.0:
+        return value / size
+    return value

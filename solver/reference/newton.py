@@ -1,16 +1,17 @@
 """Newton's method for the states of one instant of frictional contact.
 
-Solve the linear system of the states (`solver.reference.linear_system`, the bound of friction
-coupled to the normal force), and correct the states by what it shows (Alart and Curnier, Comput.
-Methods Appl. Mech. Eng. 92, 1991). Exact once they repeat. The bound (r + mu f_n) g(s) of a slip s
-is taken by its tangent, which adds its growth per slip to the stiffness where contacts slip
-(solver/README.md, 14).
+Solve the linear system of the states (`solver.reference.linear_system`, the bound of
+friction coupled to the normal force), and correct the states by what it shows (Alart
+and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991). Exact once they repeat. The
+bound (r + mu f_n) g(s) of a slip s is taken by its tangent, which adds its growth per
+slip to the stiffness where contacts slip (solver/README.md, 14).
 
-From afar the states may cycle, above all where bodies hang loose, as they may go anywhere. With
-springs at all jumps that are relaxed where the last solution came to, none is loose: that is the
-proximal point method (Rockafellar, SIAM J. Control Optim. 14, 1976). Its steps are short, and where
-they come to rest the springs carry nothing. They are softened from step to step, until the states
-hold without them (solver/README.md, 6).
+From afar the states may cycle, above all where bodies hang loose, as they may go
+anywhere. With springs at all jumps that are relaxed where the last solution came to,
+none is loose: that is the proximal point method (Rockafellar, SIAM J. Control Optim.
+14, 1976). Its steps are short, and where they come to rest the springs carry nothing.
+They are softened from step to step, until the states hold without them
+(solver/README.md, 6).
 """
 
 from __future__ import annotations
@@ -31,20 +32,26 @@ from solver.reference.linear_system import LinearSystem
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
 
 NEWTON_LIMIT = 30
-"""Newton steps from one guess of the states; more than a dozen means that they cycle."""
+"""Newton steps from one guess of the states; more than a dozen means that they
+cycle."""
 CONVERGED = 1e-9
-"""Relative KKT residual up to which an instant counts as solved, where rounding allows it."""
+"""Relative KKT residual up to which an instant counts as solved, where rounding allows
+it."""
 SETTLED = 1e-12
 """Share of the largest force by which friction may differ from its law."""
-FIRST, SOFTEST, STIFFEST = 1e-2, 1e-8, 1e2
+FIRST = 1e-2
+SOFTEST = 1e-8
+STIFFEST = 1e2
 """Springs, as shares of the stiffness of each jump alone."""
-SOFTER, STIFFER = 0.5, 10.0
+SOFTER = 0.5
+STIFFER = 10.0
 """Factors on them after a step, and where Newton's method cycles in spite of them."""
 STEPS = 60
 """Steps at most; up to 20 are seen where there is a solution."""
 MOST_JUMPS = 4000
 """Jumps up to which springs are tried: that keeps two more matrices of their size."""
-_HELD, _OPEN = np.int8(HELD), np.int8(OPEN)
+_HELD = np.int8(HELD)
+_OPEN = np.int8(OPEN)
 
 
 class Newton:
@@ -55,19 +62,27 @@ class Newton:
     system
         The linear system of the states.
     gone, strained
-        Accumulated slip of all jumps, shape (n,), and y of the base, shape (n_base,), at the
-        instant before: whoever marches through time keeps them.
+        Accumulated slip of all jumps, shape (n,), and y of the base, shape (n_base,),
+        at the instant before: whoever marches through time keeps them.
     largest
         Largest force of the load on a jump, scaled.
     """
 
-    def __init__(self, condensed: Condensation, stop: Callable[[], bool] | None = None) -> None:
-        self.system = LinearSystem(condensed, condensed.stiffness, condensed.gauge, stop)
-        self._condensed, self._rules = condensed, condensed.rules
+    def __init__(
+        self, condensed: Condensation, stop: Callable[[], bool] | None = None
+    ) -> None:
+        self.system = LinearSystem(
+            condensed, condensed.stiffness, condensed.gauge, stop
+        )
+        self._condensed = condensed
+        self._rules = condensed.rules
         rules = self._rules
-        self.gone, self.strained = np.zeros_like(rules.gap), np.zeros(len(condensed.base))
+        self.gone = np.zeros_like(rules.gap)
+        self.strained = np.zeros(len(condensed.base))
         self._smooth: Indices = np.flatnonzero(rules.smooth)
-        self._rubs: Indices = np.union1d(np.flatnonzero(rules.friction > 0.0), rules.bonds)
+        self._rubs: Indices = np.union1d(
+            np.flatnonzero(rules.friction > 0.0), rules.bonds
+        )
         self._carry: Indices = rules.partner[self._rubs]
         self.largest = float(np.abs(condensed.load).max(initial=0.0))
         # Slips that say how far friction has fallen, where it falls no further.
@@ -93,12 +108,16 @@ class Newton:
         if self._fallen is None:
             return strength(self.gone + slip)
         fallen = self.gone + self._fallen
-        return strength(fallen) - strength.rise(fallen) + strength.rise(self.gone + slip)
+        return (
+            strength(fallen) - strength.rise(fallen) + strength.rise(self.gone + slip)
+        )
 
     def _slope(self, slip: Array) -> Array:
         """Growth of that factor per further slip, shape (n,)."""
         slope = self._rules.strength.slope(self.gone + slip)
-        return slope if self._fallen is None else np.maximum(slope, 0.0)
+        if self._fallen is None:
+            return slope
+        return np.maximum(slope, 0.0)
 
     def follow(
         self, at: InstantSolution, sides: Sides, guesses: Iterable[InstantSolution]
@@ -115,18 +134,24 @@ class Newton:
 
         The first is sought from a solution. None where there are too many jumps.
         """
-        condensed, share = self._condensed, FIRST
+        condensed = self._condensed
+        share = FIRST
         if len(condensed.stiffness) > MOST_JUMPS:
             return
-        alone, moved = np.diagonal(condensed.stiffness), np.zeros_like(sides.load)
+        alone = np.diagonal(condensed.stiffness)
+        moved = np.zeros_like(sides.load)
         for _ in range(STEPS):
             springs = share * alone
             held = condensed.elastic + np.diagflat(springs)
-            sprung = LinearSystem(condensed, held, condensed.gauge[:, :0], self.system.stop)
+            sprung = LinearSystem(
+                condensed, held, condensed.gauge[:, :0], self.system.stop
+            )
             pulled = replace(sides, load=sides.load + springs * moved)
             solved = self.seek(sprung, at, pulled)
             if solved is not None:
-                before, at, moved = at, solved, solved.step.strained
+                before = at
+                at = solved
+                moved = solved.step.strained
                 share = max(SOFTER * share, SOFTEST)
                 if np.array_equal(at.states, before.states):
                     yield at
@@ -146,7 +171,8 @@ class Newton:
     def leave(self, at: InstantSolution, sides: Sides) -> InstantSolution:
         """What a solution that is not stable begins to go over into, when it is disturbed.
 
-        It slips on along the motion that costs least, until half of what stops a contact.
+        It slips on along the motion that costs least, until half of what stops a
+        contact.
         """
         rules = self._rules
         growth, free = self._growth(at, at, sides)
@@ -173,15 +199,23 @@ class Newton:
         self, system: LinearSystem, guess: InstantSolution, sides: Sides
     ) -> InstantSolution | None:
         """Seek states and slip, from those of a guess; None where they cycle."""
-        rules, states = self._rules, guess.states
-        slip, force = guess.slip, guess.step.force
+        rules = self._rules
+        states = guess.states
+        slip = guess.slip
+        force = guess.step.force
         pieces: list[bytes] = []
         for _ in range(NEWTON_LIMIT):
-            tangent, piece = sides, states.tobytes()
+            tangent = sides
+            piece = states.tobytes()
             if rules.is_curved:
-                slip = np.where(np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0)
+                slip = np.where(
+                    np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0
+                )
                 tangent, is_capped = self._linearised(system, slip, force, sides)
-                piece += rules.strength.segment(self.gone + slip).tobytes() + is_capped.tobytes()
+                piece += (
+                    rules.strength.segment(self.gone + slip).tobytes()
+                    + is_capped.tobytes()
+                )
             if piece in pieces and not (rules.is_curved and piece == pieces[-1]):
                 return None
             pieces.append(piece)
@@ -191,8 +225,11 @@ class Newton:
             corrected = self._corrected(states, step, tangent, system.friction)
             if self._condensed.rules.is_curved:
                 slip = np.where(rules.normal, 0.0, step.jump - sides.held)
-            force, reached = step.force, InstantSolution(states, step, slip)
-            if np.array_equal(corrected, states) and self._obeys(system, reached, sides):
+            force = step.force
+            reached = InstantSolution(states, step, slip)
+            if np.array_equal(corrected, states) and self._obeys(
+                system, reached, sides
+            ):
                 return reached
             states = corrected
         return None
@@ -204,8 +241,10 @@ class Newton:
 
         And where it is capped.
         """
-        rules, most = self._rules, self._rules.before_slip(sides.bound, force)
-        is_capped, factor = most >= rules.cap, self._factor(slip)
+        rules = self._rules
+        most = self._rules.before_slip(sides.bound, force)
+        is_capped = most >= rules.cap
+        factor = self._factor(slip)
         grows = self._slope(slip) * most
         system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
         bound = np.where(is_capped, rules.cap, sides.bound) * factor - grows * slip
@@ -219,22 +258,28 @@ class Newton:
         slack, _ = self._rounding(at.states, at.step)
         if system.unbalanced > max(CONVERGED * self.largest, slack):
             return False
-        rules, force = self._rules, at.step.force
+        rules = self._rules
+        force = at.step.force
         if not rules.is_curved:
             return True
         most = rules.before_slip(sides.bound, force)
         most = self._factor(np.abs(at.slip)) * most
         sticks = (at.states == HELD) & ~rules.normal
         excess = np.where(sticks, np.abs(force) - most - slack, 0.0)
-        wrong = np.where(np.abs(at.states) == 1, np.abs(force + at.states * most), excess)
+        wrong = np.where(
+            np.abs(at.states) == 1, np.abs(force + at.states * most), excess
+        )
         largest = max(self.largest, np.abs(force).max())
         return bool(wrong.max(initial=0.0) <= SETTLED * largest)
 
-    def _goes_on(self, at: InstantSolution, reached: InstantSolution, sides: Sides) -> bool:
+    def _goes_on(
+        self, at: InstantSolution, reached: InstantSolution, sides: Sides
+    ) -> bool:
         """Whether a solution is the one that another goes over into.
 
-        So it is if the structure is stable however far the contacts that slip in either have
-        softened on the way, whatever else slips: then no other solution slips there alone.
+        So it is if the structure is stable however far the contacts that slip in either
+        have softened on the way, whatever else slips: then no other solution slips
+        there alone.
         """
         growth, free = self._growth(at, reached, sides)
         if growth is None:
@@ -252,15 +297,22 @@ class Newton:
     ) -> tuple[Array | None, Indices]:
         """Stiffness of contacts, (n,), as far as they soften between two solutions.
 
-        And the places in the base of what moves, (n_free,); none where nothing softens. None where
-        a spring in series snaps by itself; then the places are those of such springs.
+        And the places in the base of what moves, (n_free,); none where nothing softens.
+        None where a spring in series snaps by itself; then the places are those of such
+        springs.
         """
-        rules, condensed = self._rules, self._condensed
-        begin, end = np.abs(at.slip), np.abs(reached.slip)
-        carried = [rules.before_slip(sides.bound, one.step.force) for one in (at, reached)]
+        rules = self._rules
+        condensed = self._condensed
+        begin = np.abs(at.slip)
+        end = np.abs(reached.slip)
+        carried = [
+            rules.before_slip(sides.bound, one.step.force) for one in (at, reached)
+        ]
         on_way = self.gone + np.minimum(begin, end), self.gone + np.maximum(begin, end)
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        growth = np.where(slips, rules.strength.lowest_slope(*on_way) * np.maximum(*carried), 0.0)
+        growth = np.where(
+            slips, rules.strength.lowest_slope(*on_way) * np.maximum(*carried), 0.0
+        )
         if not np.any(growth < 0.0):
             return growth, np.zeros(0, dtype=np.intp)
         sprung = rules.compliance > 0.0
@@ -283,7 +335,8 @@ class Newton:
     def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
         """Force that rounding may make anywhere; and of a jump that is not held, (n,) or (1,).
 
-        A held jump is the deformation less the rigid motion: rounding of that makes forces at all.
+        A held jump is the deformation less the rigid motion: rounding of that makes
+        forces at all.
         """
         inside = self.system.inside(self.strained + step.strained)
         slack = ROUNDING * (inside + self.largest)
@@ -291,9 +344,13 @@ class Newton:
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
         return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
 
-    def _corrected(self, states: States, step: Increment, sides: Sides, friction: Array) -> States:
+    def _corrected(
+        self, states: States, step: Increment, sides: Sides, friction: Array
+    ) -> States:
         """States that jump and force call for; what is up to rounding calls for none."""
-        rules, system, force = self._rules, self.system, step.force
+        rules = self._rules
+        system = self.system
+        force = step.force
         moved = system.unit * (step.jump - sides.held)
         slack, blur = self._rounding(states, step)
         held = states == HELD
@@ -302,7 +359,9 @@ class Newton:
         most = sides.bound + np.maximum(friction * carries, 0.0) + slack * held
         pulled = np.where(held, -force, moved)
         corrected = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
-        corrected = np.where(np.abs(states) == 1, states * (states * moved >= -blur), corrected)
+        corrected = np.where(
+            np.abs(states) == 1, states * (states * moved >= -blur), corrected
+        )
         corrected[self._smooth] = OPEN
         closed = np.where(held, force >= -slack, moved < -blur)
         corrected = np.where(rules.normal, np.where(closed, _HELD, _OPEN), corrected)

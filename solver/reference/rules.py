@@ -1,8 +1,8 @@
 """What jumps of the displacement obey at one instant, and their states.
 
-A normal jump is HELD at the gap, or OPEN without force. A tangential one is HELD where it was,
-slips with s = -1 or +1 against the friction force -s (r + mu f_n), or is OPEN: without force, as
-where the contact is open or there is no friction.
+A normal jump is HELD at the gap, or OPEN without force. A tangential one is HELD where
+it was, slips with s = -1 or +1 against the friction force -s (r + mu f_n), or is OPEN:
+without force, as where the contact is open or there is no friction.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ from solver.reference.assembly import NoReferenceError
 States = NDArray[np.int8]
 HELD = 0
 EXPECTED = 2.5
-"""Systems that an instant takes from the states of the one before, until it is known: the most on
-charts of the bar, where a guess from a neighbour takes 1 to 7, and one from an iterate 1.7."""
+"""Systems that an instant takes from the states of the one before, until it is known:
+the most on charts of the bar, where a guess from a neighbour takes 1 to 7, and one from
+an iterate 1.7."""
 OF_JUMPS = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance")
 """Fields of rules that have a row for each jump."""
 
@@ -42,17 +43,18 @@ class Rules:
     gap
         Opening where it vanishes, scaled; 0 of tangential ones.
     partner
-        Place of the normal jump whose force carries the friction; the own place without one.
+        Place of the normal jump whose force carries the friction; the own place without
+        one.
     friction
         Coefficient mu, 0 of normal jumps.
     bound
-        Friction force r that needs no normal force, scaled, shape (n, n_instants), or (n, 1) where
-        it stays the same; 0 of normal jumps.
+        Friction force r that needs no normal force, scaled, shape (n, n_instants), or
+        (n, 1) where it stays the same; 0 of normal jumps.
     cap
         Largest friction force before slip, scaled; infinite where there is none.
     compliance
-        Displacement in series with the jump, per force, scaled; 0 where there is none. What is said
-        of the jump is then said of the jump and it together.
+        Displacement in series with the jump, per force, scaled; 0 where there is none.
+        What is said of the jump is then said of the jump and it together.
     strength
         Factor on all bounds over accumulated slip, scaled.
     """
@@ -89,7 +91,9 @@ class Rules:
         alone = partner < 0
         partner[alone] = np.flatnonzero(alone)
         own = {name: getattr(self, name)[moving] for name in OF_JUMPS}
-        return replace(self, **own | {"partner": partner, "friction": own["friction"] * ~alone})
+        return replace(
+            self, **own | {"partner": partner, "friction": own["friction"] * ~alone}
+        )
 
     @cached_property
     def ages(self) -> bool:
@@ -133,7 +137,9 @@ class Rules:
             under = self.partner[self.bonds]
             bound[self.bonds] *= is_intact(opening[under], force[under])
         most = self.before_slip(bound, force)
-        return most * self.strength(np.cumsum(np.abs(slip), axis=1)) if self.ages else most
+        if self.ages:
+            return most * self.strength(np.cumsum(np.abs(slip), axis=1))
+        return most
 
 
 def rules_of(problem: Problem) -> Rules:
@@ -144,7 +150,9 @@ def rules_of(problem: Problem) -> Rules:
     NoReferenceError
         If slip changes friction otherwise on one interface than on another.
     """
-    strengths, parts, first = set[Strength](), list[Rules](), 0
+    strengths = set[Strength]()
+    parts = list[Rules]()
+    first = 0
     for law in problem.rubbing.values():
         parts += _components(law, first)
         first += len(law.components) * len(law.positions)
@@ -152,24 +160,35 @@ def rules_of(problem: Problem) -> Rules:
             strengths.add(law.tangential.strength or PLAIN)
     if len(strengths) > 1:
         raise NoReferenceError(problem.no_reference)
-    stacked = {name: in_rows([getattr(part, name) for part in parts]) for name in OF_JUMPS}
+    stacked = {
+        name: in_rows([getattr(part, name) for part in parts]) for name in OF_JUMPS
+    }
     return Rules(**stacked, strength=next(iter(strengths), PLAIN))
 
 
 def _components(law: Contact, first: int) -> list[Rules]:
     """Rules of one interface, component by component, from a place in the stack on."""
-    size, along = len(law.positions), law.tangential
-    none, no, places = np.zeros(size), np.zeros(size, dtype=bool), first + np.arange(size)
-    endless, soft = np.full(size, np.inf), law.in_parallel(along.softness)
-    bound, friction = law.by_point(along.bound), law.mean_by_point(along.friction)
+    size = len(law.positions)
+    along = law.tangential
+    none = np.zeros(size)
+    no = np.zeros(size, dtype=bool)
+    places = first + np.arange(size)
+    endless = np.full(size, np.inf)
+    soft = law.in_parallel(along.softness)
+    bound = law.by_point(along.bound)
+    friction = law.mean_by_point(along.friction)
     normal = []
     if law.normal is not None:
         across = law.in_parallel(law.normal.softness)
         gap = law.mean_by_point(law.normal.gap)
         normal = [Rules(~no, gap, places, none, none[:, None], endless, across)]
-        # Without friction what is in series along changes nothing, and tells the jump from others.
+        # Without friction what is in series along changes nothing, and tells the jump
+        # from others.
         soft = soft if bound.any() or friction.any() else across
-    cap = endless if along.cap is None else law.by_point(along.cap)
+    if along.cap is None:
+        cap = endless
+    else:
+        cap = law.by_point(along.cap)
     return [*normal, Rules(no, none, places, friction, bound, cap, soft)]
 
 
@@ -184,8 +203,8 @@ class Sides:
     bound
         Friction force r that needs no normal force, shape (n,).
     held
-        What held jumps come to in the step, shape (n,): minus the opening, or nothing; on top of
-        the length before of what is in series.
+        What held jumps come to in the step, shape (n,): minus the opening, or nothing;
+        on top of the length before of what is in series.
     """
 
     load: Array
@@ -206,8 +225,9 @@ class Sides:
 class Increment(NamedTuple):
     """What an instant adds to the one before, and the forces at its end, scaled.
 
-    Jumps and forces are of all jumps, (n,), with the new length of what is in series, as
-    `Sides.held`; then follow y of the base, (n_base,), and the rigid motions, (n_motions,).
+    Jumps and forces are of all jumps, (n,), with the new length of what is in series,
+    as `Sides.held`; then follow y of the base, (n_base,), and the rigid motions,
+    (n_motions,).
     """
 
     jump: Array
@@ -236,12 +256,14 @@ class Starts:
 
     def __init__(self) -> None:
         # Systems and instants, from the guess and from the instant before.
-        self._guess, self._before = [0.0, 0], [EXPECTED, 1]
+        self._guess = [0.0, 0]
+        self._before = [EXPECTED, 1]
 
     @property
     def from_guess(self) -> bool:
         """Whether to begin from the guess."""
-        (guess, guessed), (before, times) = self._guess, self._before
+        (guess, guessed) = self._guess
+        (before, times) = self._before
         return guess * times <= before * guessed
 
     def took(self, systems: int, *, from_guess: bool) -> None:

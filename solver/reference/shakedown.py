@@ -1,21 +1,24 @@
 """The load up to which slip may cease: Melan's theorem for friction, and its like in the plane.
 
-**Known bounds** (A. Klarbring, M. Ciavarella, J. R. Barber, Shakedown in elastic contact problems
-with Coulomb friction, Int. J. Solids Struct. 44, 2007): slip that stays leaves forces behind that
-keep all others within the bound b at all instants (solver/README.md, 15). The matrix from slip to
-these is regular, so that they may be any. The limit holds wherever the slip begins.
+**Known bounds** (A. Klarbring, M. Ciavarella, J. R. Barber, Shakedown in elastic
+contact problems with Coulomb friction, Int. J. Solids Struct. 44, 2007): slip that
+stays leaves forces behind that keep all others within the bound b at all instants
+(solver/README.md, 15). The matrix from slip to these is regular, so that they may be
+any. The limit holds wherever the slip begins.
 
-**In the plane** slip changes what presses. With all contacts closed their forces follow from the
-slips w of their points, f = S w - q(t), the pressing ones, too. So what friction can hold at an
-instant is a polyhedron, |f_t| <= r + mu f_n or A w <= b(t), which the load moves, and the slips are
-pushed by its planes. What lies inside at all instants of a cycle may stay for ever. Where slip
-changes what presses, whether it comes to that depends on the start, but for certain plane problems
-below a critical mu (Klarbring et al.; L.-E. Andersson, J. R. Barber, Y.-J. Ahn, Attractors in
-frictional systems subjected to periodic loads, SIAM J. Appl. Math. 73, 2013).
+**In the plane** slip changes what presses. With all contacts closed their forces follow
+from the slips w of their points, f = S w - q(t), the pressing ones, too. So what
+friction can hold at an instant is a polyhedron, |f_t| <= r + mu f_n or A w <= b(t),
+which the load moves, and the slips are pushed by its planes. What lies inside at all
+instants of a cycle may stay for ever. Where slip changes what presses, whether it comes
+to that depends on the start, but for certain plane problems below a critical mu
+(Klarbring et al.; L.-E. Andersson, J. R. Barber, Y.-J. Ahn, Attractors in frictional
+systems subjected to periodic loads, SIAM J. Appl. Math. 73, 2013).
 
-A point that presses and does not rub, or whose friction needs no pressing force, has a plane of its
-own, f_n >= 0: between all planes the contacts are closed. Beyond the largest swing there is no slip
-with which they stick and stay closed: something slips, or opens, in every cycle.
+A point that presses and does not rub, or whose friction needs no pressing force, has a
+plane of its own, f_n >= 0: between all planes the contacts are closed. Beyond the
+largest swing there is no slip with which they stick and stay closed: something slips,
+or opens, in every cycle.
 """
 
 from __future__ import annotations
@@ -33,14 +36,17 @@ from solver.reference.assembly import NoReferenceError
 from solver.reference.condensation import Condensation
 
 MOST_KNOWN = 1000
-"""Points of known bound above which matrices, which are full, take more than some seconds."""
+"""Points of known bound above which matrices, which are full, take more than some
+seconds."""
 FELT = 1e-9
-"""Share of the largest bound up to which a force that changes is rounding, as for HiGHS."""
+"""Share of the largest bound up to which a force that changes is rounding, as for
+HiGHS."""
 SLACK = 1e-9
 """Share of its size by which rounding lets a corner lie beyond a plane."""
 MOST_POINTS = 500
-"""Points up to which the program of the plane, whose matrix is full, takes some seconds: 423 of ten
-layers 3.6, 769 of a block 26, 893 of twenty layers 145 (measured)."""
+"""Points up to which the program of the plane, whose matrix is full, takes some
+seconds: 423 of ten layers 3.6, 769 of a block 26, 893 of twenty layers 145
+(measured)."""
 UNBOUNDED = 3
 """Status of `linprog` where the factor may grow without end."""
 
@@ -53,7 +59,8 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     Raises
     ------
     NoReferenceError
-        Where bounds depend on the pressing force or on slip, or there are too many points.
+        Where bounds depend on the pressing force or on slip, or there are too many
+        points.
     """
     if problem.opens or _count(problem) > MOST_KNOWN:
         raise NoReferenceError(
@@ -64,21 +71,33 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     condensed = Condensation(problem)
     rules = condensed.rules
     if rules.ages:
-        raise NoReferenceError("Where friction changes with slip the theorem says nothing.")
-    residual, elastic, rings = condensed.stiffness, -condensed.load[:, cycle], condensed.stresses
+        raise NoReferenceError(
+            "Where friction changes with slip the theorem says nothing."
+        )
+    residual = condensed.stiffness
+    elastic = -condensed.load[:, cycle]
+    rings = condensed.stresses
     if rules.compliance.any():
-        rings = np.zeros((len(rules.compliance), 0))  # what gives way tells its own force
+        rings = np.zeros(
+            (len(rules.compliance), 0)
+        )  # what gives way tells its own force
         stiff = 1.0 / rules.compliance[:, None]
         tied = stiff * condensed.ties.toarray()
         gives = np.linalg.solve(residual + condensed.ties.T @ tied, tied.T)
         residual = np.diagflat(stiff) - tied @ gives
         elastic = gives.T @ elastic - residual @ condensed.shift[:, cycle]
-    rubs, free = np.flatnonzero(rules.bounded), np.flatnonzero(~rules.bounded)
-    carried = np.linalg.solve(residual[np.ix_(free, free)], residual[np.ix_(free, rubs)]).T
+    rubs = np.flatnonzero(rules.bounded)
+    free = np.flatnonzero(~rules.bounded)
+    carried = np.linalg.solve(
+        residual[np.ix_(free, free)], residual[np.ix_(free, rubs)]
+    ).T
     elastic = elastic[rubs] - carried @ elastic[free]
-    bound = np.broadcast_to(rules.bound[rubs], (len(rubs), problem.n_instants))[:, cycle]
+    bound = np.broadcast_to(rules.bound[rubs], (len(rubs), problem.n_instants))[
+        :, cycle
+    ]
     scale = float(bound.max(initial=0.0)) or 1.0
-    elastic, bound = elastic / scale, bound / scale
+    elastic = elastic / scale
+    bound = bound / scale
     if rings.shape[1]:
         return _limit_in_rings(elastic, bound, rings[rubs])
     return _limit_of_points(elastic, bound)
@@ -109,11 +128,17 @@ def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
             sparse.kron(rings, sparse.eye_array(count)),
         ]
     )
-    solution = _largest(size, sparse.vstack([within, -within]), np.tile(bound.ravel(), 2))
-    return np.inf if solution.status == UNBOUNDED else float(solution.x[size])
+    solution = _largest(
+        size, sparse.vstack([within, -within]), np.tile(bound.ravel(), 2)
+    )
+    if solution.status == UNBOUNDED:
+        return np.inf
+    return float(solution.x[size])
 
 
-def _largest(place: int, matrix: Array | sparse.sparray, limit: Array) -> OptimizeResult:
+def _largest(
+    place: int, matrix: Array | sparse.sparray, limit: Array
+) -> OptimizeResult:
     """Largest value of one of the unknowns x, not below zero, with matrix x <= limit."""
     bounds = np.tile([-np.inf, np.inf], (matrix.shape[1], 1))
     bounds[place, 0] = 0.0
@@ -132,8 +157,8 @@ class SlipSpace:
     Attributes
     ----------
     matrix
-        A, shape (n_planes, n_points), N/m: where each point slips to negative w, where to positive,
-        and where one opens whose friction does not say so.
+        A, shape (n_planes, n_points), N/m: where each point slips to negative w, where
+        to positive, and where one opens whose friction does not say so.
     limit
         b, shape (n_planes, n_instants), N.
     """
@@ -150,14 +175,16 @@ def slip_space(problem: Problem) -> SlipSpace:
     Raises
     ------
     NoReferenceError
-        Where contacts give way before they slip, friction changes with slip, nothing rubs, forces
-        do not follow from jumps, or there are too many points.
+        Where contacts give way before they slip, friction changes with slip, nothing
+        rubs, forces do not follow from jumps, or there are too many points.
     """
     if _count(problem) > MOST_POINTS:
         raise NoReferenceError(f"The planes are those of at most {MOST_POINTS} points.")
     condensed = Condensation(problem)
     rules = condensed.rules
-    is_whole = len(condensed.base) == len(condensed.moving) and not condensed.stresses.size
+    is_whole = (
+        len(condensed.base) == len(condensed.moving) and not condensed.stresses.size
+    )
     if (
         not is_whole
         or rules.compliance.any()
@@ -168,12 +195,16 @@ def slip_space(problem: Problem) -> SlipSpace:
         raise NoReferenceError(
             "The planes are those of Coulomb's friction, where forces follow from slips."
         )
-    stiffness, rubs = condensed.elastic, np.flatnonzero(~rules.normal)
+    stiffness = condensed.elastic
+    rubs = np.flatnonzero(~rules.normal)
     closed = np.where(rules.normal, -rules.gap, 0.0)
     still = (stiffness @ closed)[:, None] - condensed.load
-    friction, pressing = rules.friction[rubs, None], rules.partner[rubs]
-    carried, bound = friction * stiffness[np.ix_(pressing, rubs)], rules.bound[rubs]
-    tangential, held = stiffness[np.ix_(rubs, rubs)], friction * still[pressing] + bound
+    friction = rules.friction[rubs, None]
+    pressing = rules.partner[rubs]
+    carried = friction * stiffness[np.ix_(pressing, rubs)]
+    bound = rules.bound[rubs]
+    tangential = stiffness[np.ix_(rubs, rubs)]
+    held = friction * still[pressing] + bound
     # Friction that takes pressing says so by itself.
     alone = np.setdiff1d(np.flatnonzero(rules.normal), pressing[~rules.bounded[rubs]])
     matrix = np.concatenate(
@@ -200,7 +231,8 @@ def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     limit = space.limit[:, cycle]
     mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)
     least = (limit - mean[:, None]).min(axis=1)
-    unit, scale = float(np.abs(space.matrix).max()), float(np.abs(limit).max()) or 1.0
+    unit = float(np.abs(space.matrix).max())
+    scale = float(np.abs(limit).max()) or 1.0
     size = space.matrix.shape[1]
     matrix = np.column_stack([space.matrix / unit, -least / scale])
     solution = _largest(size, matrix, mean / scale)
@@ -216,7 +248,8 @@ def room_of_two(space: SlipSpace, cycle: slice) -> Array:
     -------
     Corners in their order, shape (n_corners, 2), m; none where nothing is left.
     """
-    matrix, limit = space.matrix, space.limit[:, cycle].min(axis=1)
+    matrix = space.matrix
+    limit = space.limit[:, cycle].min(axis=1)
     slack = SLACK * float(np.abs(space.limit).max(initial=0.0))
     corners = []
     for pair in combinations(range(len(matrix)), 2):

@@ -27,34 +27,39 @@ class Reference:
     displacement
         Shape (n_dofs, n_instants), m.
     deformation
-        The same but for rigid motions of bodies that contact alone holds, which would hide it.
+        The same but for rigid motions of bodies that contact alone holds, which would
+        hide it.
     contact_force
-        Nodal forces on the bodies above, stacked as `Problem.sum_of_contact` says, shape
-        (n_forces, n_instants), N.
+        Nodal forces on the bodies above, stacked as `Problem.sum_of_contact` says,
+        shape (n_forces, n_instants), N.
     status
-        Shape (n_points, n_instants), the points stacked interface by interface: -1 slip backward,
-        0 stick, +1 slip forward, 2 open. The increment of a sticking point is zero.
+        Shape (n_points, n_instants), the points stacked interface by interface: -1 slip
+        backward, 0 stick, +1 slip forward, 2 open. The increment of a sticking point is
+        zero.
     residual
-        Relative KKT residual, the maximum over the instants. Of rods: distance of 0 from the
-        subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|.
+        Relative KKT residual, the maximum over the instants. Of rods: distance of 0
+        from the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided
+        by the sum of |g|.
     unbalanced
         The same before it is divided, N.
     converged
         Whether the instants are solved, shape (n_instants,).
     ambiguous
-        Instants whose solution is certainly one of several, same shape; others may be, too, where
-        friction is large.
+        Instants whose solution is certainly one of several, same shape; others may be,
+        too, where friction is large.
     steps
         Newton steps, which are linear systems of full size, in all.
     rounding
         What rounding alone may leave of `unbalanced`, N.
     jumps_at
-        First instant that has no solution that goes on from the instant before, as friction falls
-        with slip faster than the structure unloads: what follows is another equilibrium, if any.
+        First instant that has no solution that goes on from the instant before, as
+        friction falls with slip faster than the structure unloads: what follows is
+        another equilibrium, if any.
     is_lost
         Whether an instant that was tried is not solved.
     collapse
-        From when on no contact forces balance the loads, where it is known that they do not.
+        From when on no contact forces balance the loads, where it is known that they do
+        not.
     seconds
         Time that `reference_of` took.
     """
@@ -91,8 +96,8 @@ class Reference:
 def fingerprint(problem: Problem) -> bytes:
     """Digest all that the incremental solvers read of a problem, and nothing that they do not.
 
-    So cuts count where degrees of freedom depend on them, as in the plane, and do not along a rod;
-    the method never does. Problems that differ by rounding count as two.
+    So cuts count where degrees of freedom depend on them, as in the plane, and do not
+    along a rod; the method never does. Problems that differ by rounding count as two.
 
     Raises
     ------
@@ -100,7 +105,8 @@ def fingerprint(problem: Problem) -> bytes:
         If a problem holds anything that they do not read.
     """
     force = external_force(problem)
-    scales, rules = problem.scales, rules_of(problem)
+    scales = problem.scales
+    rules = rules_of(problem)
     laws = problem.rubbing
     matrices = assembled_stiffness(problem), jumps(problem)
     for matrix in matrices:
@@ -114,7 +120,11 @@ def fingerprint(problem: Problem) -> bytes:
         *problem.prescribed,
         *(getattr(rules, name) for name in OF_JUMPS),
         [rules.strength.slips, rules.strength.factors],
-        *(part for matrix in matrices for part in (matrix.indptr, matrix.indices, matrix.data)),
+        *(
+            part
+            for matrix in matrices
+            for part in (matrix.indptr, matrix.indices, matrix.data)
+        ),
         *(law.positions for law in laws.values()),
         [] if problem.rest is None else problem.rest,
     ]

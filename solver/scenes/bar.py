@@ -17,7 +17,13 @@ from solver.discrete.substructure import tributary
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_bar
-from solver.settings.definitions import ANY, LOAD, POSITIVE, CurveParameter, SettingGroup
+from solver.settings.definitions import (
+    ANY,
+    LOAD,
+    POSITIVE,
+    CurveParameter,
+    SettingGroup,
+)
 from solver.settings.load_paths import interpolate
 from solver.settings.profiles import Profile, harmonic_means, means
 from solver.settings.scene import Icon, Settings
@@ -26,7 +32,8 @@ SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falli
 """Those that leave no element without a section."""
 SETTLEMENTS = {
     "linear": Profile(
-        "rises evenly from 0 at the left end to 1 at the right end", ((0.0, 0.0), (1.0, 1.0))
+        "rises evenly from 0 at the left end to 1 at the right end",
+        ((0.0, 0.0), (1.0, 1.0)),
     ),
     **shared.PROFILES,
 }
@@ -41,7 +48,8 @@ DONE = {
 """Words for what is done along the bar, by the setting of its path."""
 SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
-BAR, ENDS = SettingGroup("Bar"), SettingGroup("Ends")
+BAR = SettingGroup("Bar")
+ENDS = SettingGroup("Ends")
 KINDS = ("held", "spring", "pulled", "free")
 HOLDING = ("held", "spring")
 PATHS = {
@@ -79,7 +87,9 @@ def _spring(side: str) -> param.Number[float]:
     )
 
 
-def _moved_end(side: str, path: str, preset: str) -> tuple[param.Number[float], CurveParameter]:
+def _moved_end(
+    side: str, path: str, preset: str
+) -> tuple[param.Number[float], CurveParameter]:
     """Define how far what holds an end is moved, and its path."""
     return shared.sized_path(
         path,
@@ -98,12 +108,16 @@ def _moved_end(side: str, path: str, preset: str) -> tuple[param.Number[float], 
 
 def _end_of(settings: Any, side: str) -> End:
     """The end as a part of the structure."""
-    kind, paths = getattr(settings, f"{side}_end"), PATHS[side]
+    kind = getattr(settings, f"{side}_end")
+    paths = PATHS[side]
     if kind == "free":
         return End()
     if kind == "pulled":
         return End(force=settings.path(paths["force"]))
-    stiffness = getattr(settings, f"{side}_spring") if kind == "spring" else np.inf
+    if kind == "spring":
+        stiffness = getattr(settings, f"{side}_spring")
+    else:
+        stiffness = np.inf
     return End(displacement=settings.path(paths["displacement"]), spring=stiffness)
 
 
@@ -117,13 +131,24 @@ def _ends_in_words(rods: Rods) -> tuple[str, str]:
             outward = end.force if side == "right" else -end.force
             moved.append(f"{the} is {shared.acting(outward, 'pulled', 'pushed')}")
         elif end.displacement is not None and end.displacement.any():
-            at = f"the spring at {the}" if end.is_on_spring else the
-            moved.append(f"{at} is {shared.acting(end.displacement, 'moved', 'moved back')}")
+            if end.is_on_spring:
+                at = f"the spring at {the}"
+            else:
+                at = the
+            moved.append(
+                f"{at} is {shared.acting(end.displacement, 'moved', 'moved back')}"
+            )
         else:
-            word = "on a spring" if end.is_on_spring else "held" if end.is_prescribed else "free"
+            if end.is_on_spring:
+                word = "on a spring"
+            elif end.is_prescribed:
+                word = "held"
+            else:
+                word = "free"
             still.setdefault(word, []).append(the)
     rests = [
-        f"{word} at {'both ends' if len(ends) == 2 else ends[0]}" for word, ends in still.items()
+        f"{word} at {'both ends' if len(ends) == 2 else ends[0]}"
+        for word, ends in still.items()
     ]
     return shared.listed(rests) if rests else "", ", and ".join(moved)
 
@@ -264,7 +289,10 @@ class BarSettings(Settings):
     def check_together(self) -> None:
         """Refuse what has no digits left, or no equilibrium, too."""
         table = self.section_profile
-        factors = [1.0] if isinstance(table, str) else [factor for _, factor in table]
+        if isinstance(table, str):
+            factors = [1.0]
+        else:
+            factors = [factor for _, factor in table]
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise self.refusal(
                 "section_profile",
@@ -314,15 +342,28 @@ class BarSettings(Settings):
         """The bar in a sentence."""
         rods = self.structure()
         bound = self.law.without_slip(rods.bound)
-        table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
+        if bound.all():
+            table = "rough"
+        elif bound.any():
+            table = "partly rough"
+        else:
+            table = "smooth"
         rests, moved = _ends_in_words(rods)
-        clauses = [moved] if moved else []
+        if moved:
+            clauses = [moved]
+        else:
+            clauses = []
         for path, words in DONE.items():
             if self.acts(path):
-                clauses.append(words[0].format(shared.acting(self.path(path), *words[1:])))
+                clauses.append(
+                    words[0].format(shared.acting(self.path(path), *words[1:]))
+                )
         if self.pressure_load != "steady":
             clauses.append("what presses it changes")
-        body = "A steel bar" if shared.is_steel(self.young) else "An elastic bar"
+        if shared.is_steel(self.young):
+            body = "A steel bar"
+        else:
+            body = "An elastic bar"
         head = f"{body} lies on a {table} table{f', {rests}' if rests else ''}"
         return f"{'; '.join([head, *clauses])}."
 
@@ -354,7 +395,9 @@ class BarSettings(Settings):
                 "hold an end, lower the forces, or raise friction or pressure",
             )
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterator[ExactCurve]:
         """Friction along the bar and the loop of its end, where closed forms are known."""
         return exact_bar(self.structure(), problem)
 

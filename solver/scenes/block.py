@@ -45,13 +45,16 @@ PRESCRIBED: dict[str, tuple[bool, bool]] = {
     "pushed": (True, False),
     "dragged": (False, True),
 }
-"""Whether the normal and the tangential displacement are prescribed; a traction is, otherwise."""
+"""Whether the normal and the tangential displacement are prescribed; a traction is,
+otherwise."""
 AT_REST = ("free", "roller", "clamped")
 MEANS = (("traction", "Pa", 1e15, 2e8), ("displacement", "m", 1e12, 1e-4))
 """What is given along a side: its unit, its largest size, and where its slider ends."""
 
 
-def _is_given(side: str, component: str, prescribed: bool | None = None) -> Callable[..., bool]:
+def _is_given(
+    side: str, component: str, prescribed: bool | None = None
+) -> Callable[..., bool]:
     """Make the test whether anything but rest is given along a side, and is of this kind."""
 
     def applies(settings: PlaneSettings) -> bool:
@@ -65,10 +68,18 @@ def _is_given(side: str, component: str, prescribed: bool | None = None) -> Call
 def _settings_of(side: str, component: str) -> dict[str, Parameter]:
     """Settings of what is given: how large it is, how it varies along the side, and over time."""
     along = "x" if side == "top" else "y"
-    towards = "outward" if component == "normal" else f"along {along}"
-    axis = along if component == "tangential" else "yx"["xy".index(along)]
-    name, group = f"{side}_{component}", SettingGroup(side.capitalize())
-    title, given = f"{group.name} {component}", _is_given(side, component)
+    if component == "normal":
+        towards = "outward"
+    else:
+        towards = f"along {along}"
+    if component == "tangential":
+        axis = along
+    else:
+        axis = "yx"["xy".index(along)]
+    name = f"{side}_{component}"
+    group = SettingGroup(side.capitalize())
+    title = f"{group.name} {component}"
+    given = _is_given(side, component)
     means = {
         f"{name}_{kind}": group.quantity(
             0.0,
@@ -108,7 +119,9 @@ class SideSettings(PlaneSettings):
     def side(self, side: str) -> Side:
         """What is given along a side, for x and y."""
         normal, tangential = (self._given(side, component) for component in COMPONENTS)
-        return Side(tangential, normal) if side == "top" else Side(normal, tangential)
+        if side == "top":
+            return Side(tangential, normal)
+        return Side(normal, tangential)
 
     def _given(self, side: str, component: str) -> Given:
         kind = getattr(self, side)
@@ -118,7 +131,9 @@ class SideSettings(PlaneSettings):
             return Given(prescribed, rest, rest)
         sign = -1.0 if side == "left" and component == "normal" else 1.0
         mean = sign * self.path(f"{side}_{component}_load")
-        return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
+        return Given(
+            prescribed, mean, mean * getattr(self, f"{side}_{component}_slope")
+        )
 
 
 for _side in LOADED_SIDES:
@@ -223,11 +238,17 @@ class BlockSettings(SideSettings):
         PRESETS,
         "Path of the body force over time: a preset of both components.",
         title="Path of the body force",
-        applies=lambda settings: settings.body_force_x != 0.0 or settings.body_force_y != 0.0,
+        applies=lambda settings: (
+            settings.body_force_x != 0.0 or settings.body_force_y != 0.0
+        ),
     )
     top = redefined(SideSettings.param["top"], "displacement")
-    top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
-    top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
+    top_normal_displacement = redefined(
+        SideSettings.param["top_normal_displacement"], -4e-5
+    )
+    top_tangential_displacement = redefined(
+        SideSettings.param["top_tangential_displacement"], 2e-5
+    )
 
     def drives(self) -> tuple[Drive, ...]:
         """Loads and motions over time that are not zero, both components of the body force too."""
@@ -284,7 +305,10 @@ class BlockSettings(SideSettings):
         """Make the block; one metre thick."""
         sides = {side: self.side(side) for side in ("left", "right", "top")}
         is_preset = isinstance(self.gap, str)
-        gap = self.gap_at(self.places) if is_preset else gap_at(self.gap, self.places)
+        if is_preset:
+            gap = self.gap_at(self.places)
+        else:
+            gap = gap_at(self.gap, self.places)
         return replace(
             self.stack(),
             support=Support(gap, self.friction_at_nodes()),
@@ -303,20 +327,37 @@ class BlockSettings(SideSettings):
                 continue
             inward = -self.path(f"{side}_normal_load")
             along = self.path(f"{side}_tangential_load")
-            own = [shared.acting(inward, "pressed", "pulled")] if inward.any() else []
-            own += [shared.acting(along, "moved", "moved back")] if along.any() else []
-            acts += [f"{shared.listed(own)} at its {side}"] if own else []
+            if inward.any():
+                own = [shared.acting(inward, "pressed", "pulled")]
+            else:
+                own = []
+            if along.any():
+                own += [shared.acting(along, "moved", "moved back")]
+            else:
+                own += []
+            if own:
+                acts += [f"{shared.listed(own)} at its {side}"]
+            else:
+                acts += []
         if self._body_force() is not None:
             acts.append("loaded all through")
         if self.has("spring"):
             acts.append("pulled back by a spring")
         held = [side for side in LOADED_SIDES if getattr(self, side) == "clamped"]
         acts += [f"held at its {side}" for side in held]
-        does = shared.listed(acts) if acts else "left alone"
-        block = "A steel block" if shared.is_steel(self.young) else "An elastic block"
+        if acts:
+            does = shared.listed(acts)
+        else:
+            does = "left alone"
+        if shared.is_steel(self.young):
+            block = "A steel block"
+        else:
+            block = "An elastic block"
         return f"{block} lies on a {support} {rough} support; it is {does}."
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterable[ExactCurve]:
         """Tractions on a parabola, once there are forces for them, or the slide on a spring."""
         body = self.structure()
         if self.gap != "parabola":
@@ -336,4 +377,6 @@ class BlockSettings(SideSettings):
         if not sizes.any():
             return None
         phases = self.times() / self.duration
-        return sizes[:, None] * PRESETS[self.body_load].value(phases, self.seed, self.cycles)
+        return sizes[:, None] * PRESETS[self.body_load].value(
+            phases, self.seed, self.cycles
+        )

@@ -29,12 +29,14 @@ from solver.reference.closed_forms.pulled_bar import (
 )
 
 SMALL = 0.12
-"""Largest half-width of a contact, over the length and the height of its body, that is still that
-of a half-plane: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
+"""Largest half-width of a contact, over the length and the height of its body, that is
+still that of a half-plane: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
 UNCOUPLED = 0.49
-"""Poisson's ratio from which on pressure and friction leave each other alone on a rigid support."""
+"""Poisson's ratio from which on pressure and friction leave each other alone on a rigid
+support."""
 RIGID = 50.0
-"""Slide of a body over its largest deformation, from which on that is left out: 2 % of it."""
+"""Slide of a body over its largest deformation, from which on that is left out: 2 % of
+it."""
 STEADY = 0.01
 """Change of the pressing force, as a share, that is none."""
 
@@ -63,13 +65,18 @@ def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
 
     Where friction softens that ends where the load would be more than the bar can take.
     """
-    (_, slip_length, *_), (_, ratio, *_) = strength.slips, strength.factors
-    bound, slope = float(bar.bound[0]), abs(ratio - 1.0) / slip_length
+    (_, slip_length, *_) = strength.slips
+    (_, ratio, *_) = strength.factors
+    bound = float(bar.bound[0])
+    slope = abs(ratio - 1.0) / slip_length
     if not slope or np.any(np.diff(bar.load, prepend=0.0) < 0.0):
         return
     gamma = np.sqrt(bound * slope / bar.stiffness)
     share = float(bar.load[-1]) * gamma / bound
-    zone = np.arcsinh(share) if ratio > 1.0 else np.arcsin(min(share, 1.0))
+    if ratio > 1.0:
+        zone = np.arcsinh(share)
+    else:
+        zone = np.arcsin(min(share, 1.0))
     if (share >= 1.0 and ratio < 1.0) or zone > gamma * bar.length:
         return
     given = bar.stiffness, bound, ratio, slip_length
@@ -94,7 +101,8 @@ def exact_parabola(
     body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
     """Pressure and friction of Hertz, Cattaneo and Mindlin, for the forces that are found."""
-    law, contact = problem.rubbing["support"], solution.contact("support")
+    law = problem.rubbing["support"]
+    contact = solution.contact("support")
     assert contact.normal_force is not None
     assert body.support is not None
     total = contact.normal_force.sum(axis=0)
@@ -102,9 +110,14 @@ def exact_parabola(
     friction = float(np.max(body.support.friction))
     if most <= 0.0 or not _is_coulombs(body) or (friction and body.poisson < UNCOUPLED):
         return
-    wide = body.poisson**2 if body.state == "strain" else 0.0
+    if body.state == "strain":
+        wide = body.poisson**2
+    else:
+        wide = 0.0
     modulus = body.young / (1.0 - wide)
-    if HalfPlane(most, radius, modulus).half_width > SMALL * min(body.length, body.height):
+    if HalfPlane(most, radius, modulus).half_width > SMALL * min(
+        body.length, body.height
+    ):
         return
     pressed = np.maximum(total, most * np.finfo(float).eps)
     place = law.positions[:, None] - law.positions @ contact.normal_force / pressed
@@ -145,8 +158,12 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
         return
     slide = rigid_slide(body, body.spring)
     pushed, pressed, _ = wrench(body)
-    stress = max(np.abs(pushed).max() / body.height, np.abs(pressed).max() / body.length)
-    if np.abs(slide).max() < RIGID * stress / body.young * max(body.length, body.height):
+    stress = max(
+        np.abs(pushed).max() / body.height, np.abs(pressed).max() / body.length
+    )
+    if np.abs(slide).max() < RIGID * stress / body.young * max(
+        body.length, body.height
+    ):
         return
     pull = body.spring.stiffness * np.maximum(-slide - body.spring.slack, 0.0)
     yield ExactCurve("loop", slide, pushed + pull)
@@ -157,7 +174,9 @@ def exact_layers(
 ) -> Iterator[ExactCurve]:
     """Force that bends beams, apart without friction, or as one where nothing slips."""
     given = body.sides["right"].y
-    if body.state != "stress" or (body.stiffness is not None and np.ptp(body.stiffness)):
+    if body.state != "stress" or (
+        body.stiffness is not None and np.ptp(body.stiffness)
+    ):
         return
     if not given.prescribed and not np.any(given.mean):
         return
@@ -170,15 +189,25 @@ def exact_layers(
             yield ExactCurve("loop", grown, body.end_force)
         return
     law = body.friction_law
-    apart = law == replace(FrictionLaw(), strength=law.strength) and not np.any(body.friction)
+    apart = law == replace(FrictionLaw(), strength=law.strength) and not np.any(
+        body.friction
+    )
     if not apart:
         if solution is None or np.isfinite([law.stiffness, law.normal_stiffness]).any():
             return
         if any(solution.contact(name).status.any() for name in problem.rubbing):
             return
-    beams, height = (1.0 * len(body.reach), body.height) if apart else (1.0, body.size[1])
+    if apart:
+        beams = 1.0 * len(body.reach)
+        height = body.height
+    else:
+        beams = 1.0
+        height = body.size[1]
     if np.any(body.reach < 1.0):
-        graduated = _leaves(body) if apart else None
+        if apart:
+            graduated = _leaves(body)
+        else:
+            graduated = None
         if graduated is None:
             return
         beams = graduated
@@ -191,12 +220,18 @@ def exact_layers(
 
 def _two_leaves(body: Stack) -> TwoLeaves | None:
     """Closed form of two equal leaves under a pressure that stays while they are bent."""
-    bent, given = body.sides["right"].y.mean, body.sides["top"].y
+    bent = body.sides["right"].y.mean
+    given = body.sides["top"].y
     acts = np.flatnonzero(bent)
-    is_plain = body.friction_law == FrictionLaw() and np.any(body.friction) and not given.prescribed
+    is_plain = (
+        body.friction_law == FrictionLaw()
+        and np.any(body.friction)
+        and not given.prescribed
+    )
     if not np.array_equal(body.reach, [1.0, 1.0]) or not is_plain or not len(acts):
         return None
-    pressure, mu = -given.mean[max(acts[0] - 1, 0) :], np.asarray(body.friction)
+    pressure = -given.mean[max(acts[0] - 1, 0) :]
+    mu = np.asarray(body.friction)
     if np.ptp(pressure) or np.ptp(mu) or pressure[0] <= 0.0:
         return None
     size = body.length, body.height, body.young, body.poisson
@@ -208,7 +243,8 @@ def _leaves(body: Stack) -> float | None:
 
     Leaves grow shorter the way they are bent, and nothing else presses them together.
     """
-    bent, steps = body.sides["right"].y.mean, np.diff(body.reach)
+    bent = body.sides["right"].y.mean
+    steps = np.diff(body.reach)
     grows = np.all(steps < 0.0) and np.all(bent >= 0.0)
     falls = np.all(steps > 0.0) and np.all(bent <= 0.0)
     pressed = any(not body.sides[side].y.is_zero for side in ("top", "bottom"))

@@ -1,7 +1,7 @@
 """A fault into which a fluid is let in: it takes friction away, and slip spreads from there.
 
-The strength of the fault is mu (sigma - p), with p the pressure of the fluid, which spreads along
-it by diffusion (solver/README.md, 17).
+The strength of the fault is mu (sigma - p), with p the pressure of the fluid, which
+spreads along it by diffusion (solver/README.md, 17).
 """
 
 from __future__ import annotations
@@ -37,7 +37,9 @@ from solver.settings.scene import Icon
 
 PROFILES = {
     "uniform": Profile("1 all along", ((0.0, 1.0), (1.0, 1.0))),
-    "rising": Profile("rises evenly from 1 at the well to 2 at the end", ((0.0, 1.0), (1.0, 2.0))),
+    "rising": Profile(
+        "rises evenly from 1 at the well to 2 at the end", ((0.0, 1.0), (1.0, 2.0))
+    ),
     "barrier": Profile(
         "1 up to 0.15 times the length, and 5 from 0.16 times the length on",
         ((0.0, 1.0), (0.15, 1.0), (0.16, 5.0), (1.0, 5.0)),
@@ -47,18 +49,19 @@ PROFILES = {
 FINE = 4000
 """Intervals along the fault between which the strength of the closed form is linear."""
 INFINITE = 0.3
-"""Largest front, over the sides of the body, that is still that of an infinite one: to 2 %
-(tests/scenes/test_a_fluid_drives_slip.py)."""
+"""Largest front, over the sides of the body, that is still that of an infinite one: to
+2 % (tests/scenes/test_a_fluid_drives_slip.py)."""
 MOST_SPREAD = 300_000_000
-"""Nodes times instants times points of a path, at most, as each point spreads on its own."""
+"""Nodes times instants times points of a path, at most, as each point spreads on its
+own."""
 OF_BOTH_SIDES = {
     "tangential_stiffness": 0.5,
     "contact_stiffness": 0.5,
     "strength": 2.0,
     "slip_length": 2.0,
 }
-"""Settings over the slip between both sides of the fault, with the factor on the values that were
-given when they were over that of one side."""
+"""Settings over the slip between both sides of the fault, with the factor on the values
+that were given when they were over that of one side."""
 ROUND = 1e-9
 """Share of the strength that rounding adds to it or takes away."""
 
@@ -67,14 +70,16 @@ ROUND = 1e-9
 class Fault:
     """A fault as a structure.
 
-    One quarter is enough: the body above the fault, to the right of its middle. Below lies its
-    image turned by half a turn, so that no pressure changes on the fault and its strength is known;
-    to the left lies the other image, which moves along as much and across the other way round. The
-    fault slips by twice what this quarter moves along it: slip, and a law over it, are the fault's
-    (`Support.is_image`), while displacements are those of the quarter.
+    One quarter is enough: the body above the fault, to the right of its middle. Below
+    lies its image turned by half a turn, so that no pressure changes on the fault and
+    its strength is known; to the left lies the other image, which moves along as much
+    and across the other way round. The fault slips by twice what this quarter moves
+    along it: slip, and a law over it, are the fault's (`Support.is_image`), while
+    displacements are those of the quarter.
 
-    The bound of the body's support is less already by what the fluid takes: shear stress far away
-    and the fluid's pressure at the middle, (n_instants,), Pa, are for whoever draws them.
+    The bound of the body's support is less already by what the fluid takes: shear
+    stress far away and the fluid's pressure at the middle, (n_instants,), Pa, are for
+    whoever draws them.
     """
 
     body: Stack
@@ -205,9 +210,15 @@ class FaultSettings(PlaneSettings):
         doc="Accumulated slip between both sides of the fault at which its friction is the last.",
     )
     length = shared.size(
-        600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", BODY
+        600.0,
+        (10.0, 1e4),
+        "Length",
+        "Length of the body to the right of the well.",
+        BODY,
     )
-    height = shared.size(600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", BODY)
+    height = shared.size(
+        600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", BODY
+    )
     young = shared.young(BODY, 6e10, (1e9, 1e12))
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
@@ -233,17 +244,25 @@ class FaultSettings(PlaneSettings):
         times = start = self.times()
         if self.instants == 1:  # a fluid needs all of the time before
             start = instants_of(self.duration, 2, self.knots("injection_load"), times)
-        fluid = spread(place, start, self.path_at("injection_load", start), self.diffusivity)
-        return fluid if start is times else fluid[:, np.searchsorted(start, times)]
+        fluid = spread(
+            place, start, self.path_at("injection_load", start), self.diffusivity
+        )
+        if start is times:
+            return fluid
+        return fluid[:, np.searchsorted(start, times)]
 
     def pressing(self, place: Array) -> Array:
         """Normal stress along the fault before any fluid is let in, shape (n_places,), Pa."""
-        return np.asarray(self.normal_stress * shared.at_nodes(self, place, "normal_profile"))
+        return np.asarray(
+            self.normal_stress * shared.at_nodes(self, place, "normal_profile")
+        )
 
     def largest_friction(self, place: Array) -> Array:
         """Largest friction per area along the fault, shape (n_places, n_instants), Pa."""
         mu = self.friction * shared.at_nodes(self, place, "friction_profile")
-        return np.asarray(mu[:, None] * (self.pressing(place)[:, None] - self.fluid(place)))
+        return np.asarray(
+            mu[:, None] * (self.pressing(place)[:, None] - self.fluid(place))
+        )
 
     def check_together(self) -> None:
         """Refuse a fluid that would open the fault, or take minutes to spread."""
@@ -256,7 +275,8 @@ class FaultSettings(PlaneSettings):
                 f"at most {most} points with {self.n_instants} instants",
                 "give fewer points, or fewer elements along",
             )
-        pressing, fluid = self.pressing(self.places), self.fluid(self.places)
+        pressing = self.pressing(self.places)
+        fluid = self.fluid(self.places)
         spare = pressing - fluid.max(axis=1)
         worst = int(spare.argmin())
         if spare[worst] < 0.0:
@@ -269,15 +289,20 @@ class FaultSettings(PlaneSettings):
     def structure(self) -> Fault:
         """Make the quarter of the body; one metre thick.
 
-        Its top is moved as far as the stress takes, and holds it where all of the fault slips.
+        Its top is moved as far as the stress takes, and holds it where all of the fault
+        slips.
         """
         modulus = 0.5 * self.young / (1.0 + self.poisson)
-        strength, none = self.largest_friction(self.places), np.zeros(self.n_instants)
-        level, free = Given(True, none), Given(False, none)
+        strength = self.largest_friction(self.places)
+        none = np.zeros(self.n_instants)
+        level = Given(True, none)
+        free = Given(False, none)
         moved = none + self.shear_stress / modulus * self.height
         body = replace(
             self.stack(),
-            support=Support(np.zeros(len(strength)), self.friction, strength, is_image=True),
+            support=Support(
+                np.zeros(len(strength)), self.friction, strength, is_image=True
+            ),
             sides={
                 "left": Side(free, level),
                 "right": Side(free, Given(False, none + self.shear_stress)),
@@ -297,10 +322,13 @@ class FaultSettings(PlaneSettings):
             "a quarter is seen."
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterator[ExactCurve]:
         """Front of slip and the friction, as long as slip spreads in an infinite body.
 
-        It does where strength falls with time, everywhere, and grows away from the well.
+        It does where strength falls with time, everywhere, and grows away from the
+        well.
         """
         stress = self.shear_stress
         if np.any(np.diff(self.path("injection_load")) < 0.0):
@@ -308,7 +336,9 @@ class FaultSettings(PlaneSettings):
         place = np.linspace(0.0, self.length, FINE + 1)
         lack = self.largest_friction(place) - stress
         small = ROUND * float(np.abs(lack).max())
-        spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
+        spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(
+            np.diff(lack, axis=0) >= -small
+        )
         if self.law != FrictionLaw() or not spreads or stress <= 0.0:
             return
         front = fronts(place, lack)
@@ -320,7 +350,9 @@ class FaultSettings(PlaneSettings):
         strength = self.largest_friction(nodes)
         for instant in np.flatnonzero(front):
             ahead = nodes > front[instant]
-            added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))
+            added = stress_ahead(
+                nodes[ahead], place, lack[:, instant], float(front[instant])
+            )
             friction[ahead, instant] += added
             friction[~ahead, instant] = strength[~ahead, instant]
         yield ExactCurve("friction", nodes, -friction)

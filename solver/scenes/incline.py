@@ -1,7 +1,7 @@
 """A block on a slope that rises and falls, caught by a spring uphill (solver/README.md, 9).
 
-The block is drawn as it lies on the slope: x runs uphill, and its weight turns instead. The spring
-pulls at the foot of the uphill side once it has slid down by the slack.
+The block is drawn as it lies on the slope: x runs uphill, and its weight turns instead.
+The spring pulls at the foot of the uphill side once it has slid down by the slack.
 """
 
 from __future__ import annotations
@@ -77,9 +77,15 @@ class InclineSettings(PlaneSettings):
         title="Spring stiffness",
         unit="N/m",
     )
-    length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", BODY)
+    length = shared.size(
+        0.1, (0.01, 1.0), "Length b", "Length of the block's base.", BODY
+    )
     height = shared.size(
-        0.05, (0.01, 1.0), "Height h", "Height of the block; it tips where tan θ > b/h.", BODY
+        0.05,
+        (0.01, 1.0),
+        "Height h",
+        "Height of the block; it tips where tan θ > b/h.",
+        BODY,
     )
     young = shared.young(BODY, 1e7, (1e6, 1e12))
     elements = redefined(PlaneSettings.param["elements"], 24)
@@ -107,18 +113,23 @@ class InclineSettings(PlaneSettings):
         return replace(
             self.stack(),
             support=Support(np.zeros(self.nodes[0]), self.friction_at_nodes()),
-            body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
+            body_force=-density * np.stack([np.sin(angle), np.cos(angle)])
+            if density
+            else None,
             spring=Spring(self.slack, self.spring),
             tilt=angle,
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterator[ExactCurve]:
         """Force of the spring over the angle: what friction leaves to it, up and down."""
         mu = self.friction_at_nodes()
         if not self.weight or self.law != FrictionLaw() or np.ptp(mu):
             return
         angle = np.radians(self.path("slope_load"))
-        down, friction = self.weight * np.sin(angle), np.max(mu) * self.weight * np.cos(angle)
+        down = self.weight * np.sin(angle)
+        friction = np.max(mu) * self.weight * np.cos(angle)
         # As down is not negative, a force that begins at zero never falls below it.
         (force,) = play(down[None], friction[None])
         yield ExactCurve("loop", np.degrees(angle), force)
@@ -126,6 +137,8 @@ class InclineSettings(PlaneSettings):
     def sentence(self) -> str:
         """The block on its slope in a sentence."""
         path = self.path("slope_load")
-        moves = shared.acting(path, "rises", "falls", "rises and falls", "rises and falls")
+        moves = shared.acting(
+            path, "rises", "falls", "rises and falls", "rises and falls"
+        )
         slope = f"{'rough' if self.is_rough else 'smooth'} slope that {moves}"
         return f"A block lies on a {slope}; a spring catches it when it slides down."

@@ -157,7 +157,9 @@ class LayersSettings(PlaneSettings):
     @property
     def spans(self) -> tuple[int, ...]:
         """Elements along every layer."""
-        return tuple(np.maximum(np.rint(self._shares * self.elements), 1).astype(int).tolist())
+        return tuple(
+            np.maximum(np.rint(self._shares * self.elements), 1).astype(int).tolist()
+        )
 
     @property
     def _shares(self) -> Array:
@@ -204,18 +206,27 @@ class LayersSettings(PlaneSettings):
 
     def structure(self) -> Stack:
         """Make the stack; its left end is clamped; one metre thick."""
-        rest, stack, up = np.zeros(self.n_instants), self.stack(), self.elements_up
-        bricks = [Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)]
+        rest = np.zeros(self.n_instants)
+        stack = self.stack()
+        up = self.elements_up
+        bricks = [
+            Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)
+        ]
         stack = replace(stack, bricks=bricks)
-        held, free = Given(True, rest), Given(False, rest)
-        pressing, bend = self.path("pressure_load"), self.path("bend_load")
-        pull, bent = Given(False, self.path("pull_load")), Given(True, bend)
+        held = Given(True, rest)
+        free = Given(False, rest)
+        pressing = self.path("pressure_load")
+        bend = self.path("bend_load")
+        pull = Given(False, self.path("pull_load"))
+        bent = Given(True, bend)
         if self.bending == "force":
             bent = Given(False, bend / (stack.longest * self.thickness))
         elif self.bending == "moment":
-            # Over a layer a linear traction has a moment of its extreme times thickness^2 / 6.
+            # Over a layer a linear traction has a moment of its extreme times
+            # thickness^2 / 6.
             extreme = -6.0 * bend / (stack.longest * self.thickness**2)
-            pull, bent = replace(pull, slope=extreme), free
+            pull = replace(pull, slope=extreme)
+            bent = free
         return replace(
             stack,
             friction=shared.factors_of(self)[:, None] * stack.friction,
@@ -228,17 +239,26 @@ class LayersSettings(PlaneSettings):
             },
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterator[ExactCurve]:
         """Force that bends the layers, where they act apart or as one."""
         return exact_layers(self.structure(), problem, solution)
 
     def sentence(self) -> str:
         """The stack in a sentence."""
         kind = "steel" if shared.is_steel(self.young) else "elastic"
-        lengths = "" if self.layer_lengths == "equal" else " of different lengths"
+        if self.layer_lengths == "equal":
+            lengths = ""
+        else:
+            lengths = " of different lengths"
         layers = f"{self.layers} {kind} layers{lengths}"
-        pressed = "are pressed together and rub" if self.pressure else "lie on each other"
-        bent, pull = self.path("bend_load"), self.path("pull_load")
+        if self.pressure:
+            pressed = "are pressed together and rub"
+        else:
+            pressed = "lie on each other"
+        bent = self.path("bend_load")
+        pull = self.path("pull_load")
         ends = shared.acting(bent, "bent up", "bent down", "bent up and down")
         if pull.any():
             ends = f"{ends}, and {shared.acting(pull, 'pulled', 'pushed')}"

@@ -20,7 +20,9 @@ from solver.settings.scene import Settings
 def method_of(settings: Settings) -> Latin:
     """Method that checked settings describe."""
     at_once = settings.finish == "at-once"
-    direction = (Paper if settings.search_direction == "paper" else Auto)(settings.k_scale)
+    direction = (Paper if settings.search_direction == "paper" else Auto)(
+        settings.k_scale
+    )
     updates = settings.k_update == "status" and settings.applies("k_update")
     modes = PGD(
         modes=settings.pgd_modes,

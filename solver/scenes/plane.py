@@ -14,15 +14,23 @@ from solver.arrays import Array
 from solver.discrete.plane.stack import Stack
 from solver.laws import FrictionLaw
 from solver.refusal import plain
-from solver.settings.definitions import BODY, CONTACT, DECOMPOSITION, METHOD, POSITIVE, redefined
+from solver.settings.definitions import (
+    BODY,
+    CONTACT,
+    DECOMPOSITION,
+    METHOD,
+    POSITIVE,
+    redefined,
+)
 from solver.settings.scene import Settings
 
 LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""
 
 FLATTEST = 1e4
-"""Longer over shorter side of an element, at most. Its stiffness varies with the square of that: at
-3e9 no digit of a substructure's is left, at 1e5 none beside a k of a millionth (measured)."""
+"""Longer over shorter side of an element, at most. Its stiffness varies with the square
+of that: at 3e9 no digit of a substructure's is left, at 1e5 none beside a k of a
+millionth (measured)."""
 
 
 class PlaneSettings(Settings):
@@ -131,7 +139,10 @@ class PlaneSettings(Settings):
     @property
     def law(self) -> FrictionLaw:
         """Law of friction, beside mu, and what gives way across."""
-        across = self.normal_stiffness if self.applies("normal_stiffness") else 0.0
+        if self.applies("normal_stiffness"):
+            across = self.normal_stiffness
+        else:
+            across = 0.0
         return replace(super().law, normal_stiffness=across or np.inf)
 
     @property
@@ -148,7 +159,9 @@ class PlaneSettings(Settings):
         """The coefficient mu of the nodes along a body."""
         if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
-        return np.asarray(self.friction * shared.at_nodes(self, self.places, "friction_profile"))
+        return np.asarray(
+            self.friction * shared.at_nodes(self, self.places, "friction_profile")
+        )
 
     @property
     def nodes(self) -> tuple[int, int]:

@@ -21,10 +21,10 @@ from solver.laws import OPEN
 from solver.settings.scene import Settings
 
 MOST_GROWTH = 2
-"""Points by which a contact may grow from an instant to the next: one at each of its ends. With
-more, those that close together stick without traction beside points that were there before: with
-1, 2 and 4 of them at each end, neighbours differ by 0.1, 0.3 and 0.7 of the largest friction
-(measured on a parabola, 192 elements)."""
+"""Points by which a contact may grow from an instant to the next: one at each of its
+ends. With more, those that close together stick without traction beside points that
+were there before: with 1, 2 and 4 of them at each end, neighbours differ by 0.1, 0.3
+and 0.7 of the largest friction (measured on a parabola, 192 elements)."""
 SMALL = 0.05
 """Largest strain, or slope of a body, for which small strains hold."""
 AT_ONCE = 2_000_000
@@ -33,7 +33,8 @@ AT_ONCE = 2_000_000
 
 def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
     """Sentences on what a run does not heed: idle settings, and load tables that go on."""
-    idle, duration = settings.defaults("paper"), settings.duration
+    idle = settings.defaults("paper")
+    duration = settings.duration
     names = dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
     remarks = [
         f"{name} does nothing with the other settings as they are"
@@ -51,20 +52,33 @@ def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
 def ends_of_tables(settings: Settings) -> dict[str, float]:
     """Last time, s, of every load path that is a table, by the name of its setting."""
     values = settings.values()
-    return {name: values[name][-1][0] for name in settings.paths if isinstance(values[name], tuple)}
+    return {
+        name: values[name][-1][0]
+        for name in settings.paths
+        if isinstance(values[name], tuple)
+    }
 
 
 def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
     """Sentences on what an iterate shows, at the end or on the way, that no status tells."""
     remarks = list(settings.left_out())
-    beyond = beyond_small_strain(settings.structure(), iterate.problem, iterate.displacement)
-    remarks += [] if beyond is None else [beyond]
+    beyond = beyond_small_strain(
+        settings.structure(), iterate.problem, iterate.displacement
+    )
+    if beyond is None:
+        remarks += []
+    else:
+        remarks += [beyond]
     standing = _standing_on_an_end(settings, iterate)
     if standing.any():
-        problem, first = iterate.problem, int(np.argmax(standing))
+        problem = iterate.problem
+        first = int(np.argmax(standing))
         loads = loads_at(problem.drives, first)
         time = f"{problem.instants[first]:.4g} s"
-        when = f"{loads}, at {time}," if loads else f"{time} on"
+        if loads:
+            when = f"{loads}, at {time},"
+        else:
+            when = f"{time} on"
         remarks.append(
             f"From {when} the body tips: it stands on one end of its base. Take a longer "
             "or lower body, less friction, or a side that keeps it from turning."
@@ -86,7 +100,9 @@ def contact_growth(iterate: Iterate) -> int:
         if law.normal is None or not np.any(law.tangential.friction):
             continue
         closed = iterate.contact(name).status != OPEN
-        gained = (closed[:, 1:] & ~closed[:, :-1]).sum(axis=0) * closed[:, :-1].any(axis=0)
+        gained = (closed[:, 1:] & ~closed[:, :-1]).sum(axis=0) * closed[:, :-1].any(
+            axis=0
+        )
         growth = max(growth, int(gained.max(initial=0)))
     return growth
 
@@ -103,12 +119,15 @@ def _standing_on_an_end(settings: Settings, iterate: Iterate) -> NDArray[np.bool
     return np.asarray((closed.sum(axis=0) == 1) & (closed[0] | closed[-1]))
 
 
-def largest_strain(structure: Structure, problem: Problem, displacement: Array) -> float:
+def largest_strain(
+    structure: Structure, problem: Problem, displacement: Array
+) -> float:
     """Largest strain or slope of a solution: the largest derivative of displacement.
 
-    A motion without rotation counts for nothing. Along rods it is that of an element; in the plane
-    the mean over an element, rotation included; of wires the axial strain and that of bending.
-    `displacement` is that of the problem's degrees of freedom, (n_dofs, n_instants), m.
+    A motion without rotation counts for nothing. Along rods it is that of an element;
+    in the plane the mean over an element, rotation included; of wires the axial strain
+    and that of bending. `displacement` is that of the problem's degrees of freedom,
+    (n_dofs, n_instants), m.
     """
     if isinstance(structure, Rope):
         return _of_wires(structure, displacement)
@@ -117,7 +136,9 @@ def largest_strain(structure: Structure, problem: Problem, displacement: Array) 
     return _in_plane(problem.inside, displacement)
 
 
-def beyond_small_strain(structure: Structure, problem: Problem, displacement: Array) -> str | None:
+def beyond_small_strain(
+    structure: Structure, problem: Problem, displacement: Array
+) -> str | None:
     """That an answer is outside of what is modelled, or return None where it is not."""
     strain = largest_strain(structure, problem, displacement)
     if strain <= SMALL:
@@ -148,10 +169,12 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
 def _in_plane(inside: Inside, displacement: Array) -> float:
     corners = inside.nodes[inside.elements]
     width, height = (corners[:, 2] - corners[:, 0]).T[:, :, None, None]
-    step, largest = max(1, AT_ONCE // len(inside.nodes)), 0.0
+    step = max(1, AT_ONCE // len(inside.nodes))
+    largest = 0.0
     for first in range(0, displacement.shape[1], step):
         moved = inside.displacement(displacement, slice(first, first + step))
         a, b, c, d = (moved[corner] for corner in inside.elements.T)
-        along, up = 0.5 * (b - a + c - d) / width, 0.5 * (d - a + c - b) / height
+        along = 0.5 * (b - a + c - d) / width
+        up = 0.5 * (d - a + c - b) / height
         largest = max(largest, float(np.abs([along, up]).max()))
     return largest

@@ -10,7 +10,12 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.discrete.problem import Problem
-from solver.discrete.rope.cross_section import CONSTRUCTIONS, MOST_LAYERS, CrossSection, laid
+from solver.discrete.rope.cross_section import (
+    CONSTRUCTIONS,
+    MOST_LAYERS,
+    CrossSection,
+    laid,
+)
 from solver.discrete.rope.rope import Rope, RopeWire
 from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
@@ -158,7 +163,9 @@ class RopeSettings(Settings):
         try:
             section = laid(self.construction)
         except RefusedError as refused:
-            raise self.refusal("construction", refused.allowed, refused.remedy) from refused
+            raise self.refusal(
+                "construction", refused.allowed, refused.remedy
+            ) from refused
         if section.wires > MOST_WIRES:
             remedy = f"it has {section.wires}: leave some out"
             raise self.refusal("construction", f"at most {MOST_WIRES} wires", remedy)
@@ -173,7 +180,9 @@ class RopeSettings(Settings):
     def n_bodies(self) -> int:
         """Number of wires whose slip is sought; the core does not slip."""
         section = self.section
-        return section.wires - 1 if self.is_clamped else len(section.layers)
+        if self.is_clamped:
+            return section.wires - 1
+        return len(section.layers)
 
     @property
     def n_interfaces(self) -> int:
@@ -191,7 +200,11 @@ class RopeSettings(Settings):
         """Refuse a curvature that no fall-off is known of."""
         super().check_together()
         shared.factors_of(self)
-        if self.is_clamped and self.fall_off == 0.0 and not self.path("tension_load").any():
+        if (
+            self.is_clamped
+            and self.fall_off == 0.0
+            and not self.path("tension_load").any()
+        ):
             raise self.refusal(
                 "fall_off",
                 "a distance above 0, where there is no tension to tell it",
@@ -202,22 +215,29 @@ class RopeSettings(Settings):
         """Distance over which the curvature falls to exp(-1), m."""
         if self.fall_off:
             return float(self.fall_off)
-        return float(np.sqrt(self.section.stuck_bending / self.path("tension_load").max()))
+        return float(
+            np.sqrt(self.section.stuck_bending / self.path("tension_load").max())
+        )
 
     def structure(self) -> Rope:
         """Make the strand.
 
-        Wires of a layer pass every fibre, one after the other: under a uniform curvature half a
-        turn of one of them, from the outermost fibre to the innermost, which do not slip, is all
-        there is.
+        Wires of a layer pass every fibre, one after the other: under a uniform
+        curvature half a turn of one of them, from the outermost fibre to the innermost,
+        which do not slip, is all there is.
         """
-        curvature, tension = self.path("load"), self.path("tension_load")
-        bounds = self.section.friction_bounds(tension, self.friction, shared.factors_of(self))
+        curvature = self.path("load")
+        tension = self.path("tension_load")
+        bounds = self.section.friction_bounds(
+            tension, self.friction, shared.factors_of(self)
+        )
         if self.tension_load == "steady":
             bounds = bounds[:, 0]
         share = np.ones(self.elements + 1)
         if self.is_clamped:
-            share = np.exp(-np.linspace(0.0, self.length, len(share)) / self.falls_off())
+            share = np.exp(
+                -np.linspace(0.0, self.length, len(share)) / self.falls_off()
+            )
         along = np.outer(share, curvature)
         wires = [
             RopeWire(
@@ -256,9 +276,17 @@ class RopeSettings(Settings):
 
     def sentence(self) -> str:
         """The strand in a sentence."""
-        bent = shared.acting(self.path("load"), "bent up", "bent down", "bent up and down")
-        where = "near a clamp" if self.is_clamped else "alike all along"
-        tension = "" if self.tension_load == "steady" else "; its tension changes"
+        bent = shared.acting(
+            self.path("load"), "bent up", "bent down", "bent up and down"
+        )
+        if self.is_clamped:
+            where = "near a clamp"
+        else:
+            where = "alike all along"
+        if self.tension_load == "steady":
+            tension = ""
+        else:
+            tension = "; its tension changes"
         wires = self.section.wires
         return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
 
@@ -272,7 +300,9 @@ class RopeSettings(Settings):
             return None
         return BentStrand(self.section, self.friction, float(tension[0]), factors)
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterator[ExactCurve]:
         """Moment over the curvature, where a closed form is known."""
         strand = self.bent_strand()
         if strand is not None:

@@ -28,10 +28,12 @@ STRAND = SettingGroup("Strand")
 PROFILES = {
     "uniform": Profile("1 all along", ((0.0, 1.0), (1.0, 1.0))),
     "rising": Profile(
-        "rises evenly from 0.2 at the left end to 1.8 at the right end", ((0.0, 0.2), (1.0, 1.8))
+        "rises evenly from 0.2 at the left end to 1.8 at the right end",
+        ((0.0, 0.2), (1.0, 1.8)),
     ),
     "falling": Profile(
-        "falls evenly from 1.8 at the left end to 0.2 at the right end", ((0.0, 1.8), (1.0, 0.2))
+        "falls evenly from 1.8 at the left end to 0.2 at the right end",
+        ((0.0, 1.8), (1.0, 0.2)),
     ),
     "gap": Profile(
         "1, and 0 in the middle fifth of the length",
@@ -72,14 +74,20 @@ def profile(
 ) -> CurveParameter:
     """Define a factor on something along a body; its default is the first preset.
 
-    Help is needed of what is more than a preset or points; `others` are what a curve takes.
+    Help is needed of what is more than a preset or points; `others` are what a curve
+    takes.
     """
     name = what.removeprefix("the ")
-    title = name if name == what else name.capitalize()
+    if name == what:
+        title = name
+    else:
+        title = name.capitalize()
     return group.curve(
         next(iter(presets)),
         {
-            preset: TablePreset(profile.description, partial(_over_length, profile.points))
+            preset: TablePreset(
+                profile.description, partial(_over_length, profile.points)
+            )
             for preset, profile in presets.items()
         },
         {"position": "m", "factor": ""},
@@ -100,7 +108,9 @@ def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
     """
     tables = [settings.points(name) for name in profiles]
     if all(isinstance(getattr(settings, name), str) for name in profiles):
-        return math.prod((interpolate(table, places) for table in tables), start=np.ones(1))
+        return math.prod(
+            (interpolate(table, places) for table in tables), start=np.ones(1)
+        )
     return means(tables, shares_of(places))
 
 
@@ -108,7 +118,11 @@ def friction_factors(which: str) -> CurveParameter:
     """Define how mu varies from interface to interface."""
     return CONTACT.curve(
         "same",
-        {"same": TablePreset("1 of each", lambda settings: same_for(settings.n_interfaces))},
+        {
+            "same": TablePreset(
+                "1 of each", lambda settings: same_for(settings.n_interfaces)
+            )
+        },
         {"interface": "", "factor": ""},
         f"Factor on mu of each interface {which}: a preset, or points (interface, factor), one for "
         "each, numbered from 1 on.",
@@ -135,10 +149,15 @@ def sized_path(
 ) -> tuple[param.Number[float], CurveParameter]:
     """Define the largest value that presets of a path over time reach, and the path.
 
-    Where that value is 0 by default, there is no path as long as it is. `path` is the name of its
-    setting. The path starts as a `preset`, with `bounds` of its columns; `record` is of the value.
+    Where that value is 0 by default, there is no path as long as it is. `path` is the
+    name of its setting. The path starts as a `preset`, with `bounds` of its columns;
+    `record` is of the value.
     """
-    record = {"title": f"{what[:1].upper()}{what[1:]}", "unit": unit, "path": path} | record
+    record = {
+        "title": f"{what[:1].upper()}{what[1:]}",
+        "unit": unit,
+        "path": path,
+    } | record
     size = group.quantity(default, ends, slider, doc, applies=applies, **record)
     named = (kind for kind in ("pressure", "tension") if kind in what)
     over_time = group.curve(
@@ -149,7 +168,9 @@ def sized_path(
         f"points (s, {unit}).",
         bounds=bounds,
         title=f"Path of the {what}",
-        applies=lambda settings: applies(settings) and bool(default or settings.acts(path)),
+        applies=lambda settings: (
+            applies(settings) and bool(default or settings.acts(path))
+        ),
     )
     return size, over_time
 
@@ -205,14 +226,20 @@ def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
 
 
 def size(
-    default: float, slider: tuple[float, float], title: str, doc: str, group: SettingGroup
+    default: float,
+    slider: tuple[float, float],
+    title: str,
+    doc: str,
+    group: SettingGroup,
 ) -> param.Number[float]:
     """Define a length of a body."""
     return group.quantity(default, (1e-6, 1e4), slider, doc, title=title, unit="m")
 
 
 def young(
-    group: SettingGroup, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
+    group: SettingGroup,
+    default: float = 210e9,
+    slider: tuple[float, float] = (1e8, 1e12),
 ) -> param.Number[float]:
     """Define Young's modulus, that of steel by default."""
     return group.quantity(
@@ -259,13 +286,17 @@ def acting(
     times = int(np.sum(over[1:] & ~over[:-1]))
     if times >= AGAIN:
         return f"{word} again and again"
-    return back.format(word) if size[-1] < 0.5 * peak else word
+    if size[-1] < 0.5 * peak:
+        return back.format(word)
+    return word
 
 
 def listed(parts: Sequence[str]) -> str:
     """Write parts with commas, and the last with an "and"."""
     *first, last = parts
-    return f"{', '.join(first)} and {last}" if first else last
+    if first:
+        return f"{', '.join(first)} and {last}"
+    return last
 
 
 def is_steel(young: float) -> bool:

@@ -61,7 +61,9 @@ class StrandSettings(Settings):
     )
     friction = shared.friction("mu between neighbouring wires")
     friction_factors = shared.friction_factors("between two wires, from the first on")
-    pressure, pressure_load = shared.pressure("neighbouring wires on each other", 20_000.0)
+    pressure, pressure_load = shared.pressure(
+        "neighbouring wires on each other", 20_000.0
+    )
     wires = shared.STRAND.count(
         3,
         (2, 200),
@@ -97,7 +99,9 @@ class StrandSettings(Settings):
         "broken: all wires are cut at the break, and alike.",
         title="Substructures per wire",
     )
-    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", shared.STRAND)
+    length = shared.size(
+        1.0, (0.1, 10.0), "Length L", "Length of the wires.", shared.STRAND
+    )
     young = shared.young(shared.STRAND)
     section = shared.section("Area of the cross section of a wire.", shared.STRAND)
 
@@ -127,7 +131,8 @@ class StrandSettings(Settings):
 
         The wires are at rest and free of stress before the first instant.
         """
-        stiffness, load = self.young * self.section, self.path("load")
+        stiffness = self.young * self.section
+        load = self.path("load")
         is_moved = self.grip == "displacement"
         return Rods(
             length=self.length,
@@ -136,7 +141,9 @@ class StrandSettings(Settings):
             substructures=self.substructures,
             bound=shared.bound(self, np.ones(self.elements + 1)),
             left=End(displacement=np.zeros_like(load)),
-            right=End(displacement=load * self.length / stiffness) if is_moved else End(load),
+            right=End(displacement=load * self.length / stiffness)
+            if is_moved
+            else End(load),
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
@@ -146,7 +153,9 @@ class StrandSettings(Settings):
             friction_law=self.law,
         )
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterator[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterator[ExactCurve]:
         """Forces of the broken wire and of each neighbour, where they are known."""
         strand = self.structure()
         exact = broken_wire(strand)
@@ -158,12 +167,20 @@ class StrandSettings(Settings):
         """The strand in a sentence."""
         kind = "steel" if shared.is_steel(self.young) else "elastic"
         wires = f"{self.wires} {kind} wires"
-        broken = f", number {self.broken} broken," if self.broken else ""
+        if self.broken:
+            broken = f", number {self.broken} broken,"
+        else:
+            broken = ""
         pulled = shared.acting(self.path("load"), "pulled", "pushed")
-        grip = " by one grip" if self.grip == "displacement" else ""
+        if self.grip == "displacement":
+            grip = " by one grip"
+        else:
+            grip = ""
         if self.pressure_load != "steady":
             grip += "; what presses them together changes"
-        return f"{wires}{broken} rub on each other; their right ends are {pulled}{grip}."
+        return (
+            f"{wires}{broken} rub on each other; their right ends are {pulled}{grip}."
+        )
 
     def _break_node(self) -> int:
         node = round(self.break_position * self.elements)
@@ -176,10 +193,13 @@ class StrandSettings(Settings):
         share = 1.0 - self._break_node() / self.elements
         beside = shared.factors_of(self)[max(self.broken - 2, 0) : self.broken].tolist()
         pressed = self.friction * self.path("pressure_load")
-        bound = np.sum([self.law.without_slip(factor * pressed) for factor in beside], axis=0)
+        bound = np.sum(
+            [self.law.without_slip(factor * pressed) for factor in beside], axis=0
+        )
         most = share * self.length * bound * self.law.strongest
         worst = int(np.argmax(tension - most))
-        largest, capacity = float(tension[worst]), float(most[worst])
+        largest = float(tension[worst])
+        capacity = float(most[worst])
         if largest > capacity or largest == capacity > 0.0:
             raise self.refusal(
                 self.size_or_table("load"),

@@ -26,7 +26,9 @@ class WallSettings(PlaneSettings):
 
     scene = "wall"
     title = "Wall of bricks"
-    source = "R. K. Livesley, Int. J. Numer. Meth. Eng. 12, 1978: blocks that only touch"
+    source = (
+        "R. K. Livesley, Int. J. Numer. Meth. Eng. 12, 1978: blocks that only touch"
+    )
     icon = Icon(
         ground="M3 29H45",
         body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 17H41V22H34Z"
@@ -39,7 +41,9 @@ class WallSettings(PlaneSettings):
     has_joints = True
     PARTS: ClassVar = {}
 
-    bricks = BODY.count(12, (1, 200), (1, 20), "Bricks of a course.", title="Bricks along")
+    bricks = BODY.count(
+        12, (1, 200), (1, 20), "Bricks of a course.", title="Bricks along"
+    )
     courses = BODY.count(6, (1, 200), (1, 20), "Courses of bricks.")
     bond = BODY.choice(
         "running",
@@ -61,8 +65,12 @@ class WallSettings(PlaneSettings):
         title="Height of the opening",
         applies=lambda settings: settings.opening > 0,
     )
-    length = shared.size(0.25, (0.05, 1.0), "Length of a brick", "Length of a whole brick.", BODY)
-    height = shared.size(0.12, (0.02, 0.5), "Height of a brick", "Height of a course.", BODY)
+    length = shared.size(
+        0.25, (0.05, 1.0), "Length of a brick", "Length of a whole brick.", BODY
+    )
+    height = shared.size(
+        0.12, (0.02, 0.5), "Height of a brick", "Height of a course.", BODY
+    )
     pressure, pressure_load = shared.sized_path(
         "pressure_load",
         "pressure",
@@ -131,10 +139,16 @@ class WallSettings(PlaneSettings):
     young = redefined(PlaneSettings.param["young"], 1e10)
     poisson = redefined(PlaneSettings.param["poisson"], 0.2)
     instants = redefined(PlaneSettings.param["instants"], 41)
-    elements = redefined(PlaneSettings.param["elements"], 6, title="Elements of a brick along")
-    elements_up = redefined(PlaneSettings.param["elements_up"], 3, title="Elements of a brick up")
+    elements = redefined(
+        PlaneSettings.param["elements"], 6, title="Elements of a brick along"
+    )
+    elements_up = redefined(
+        PlaneSettings.param["elements_up"], 3, title="Elements of a brick up"
+    )
     macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
-    substructures = redefined(PlaneSettings.param["substructures"], 1, applies=lambda _: False)
+    substructures = redefined(
+        PlaneSettings.param["substructures"], 1, applies=lambda _: False
+    )
     substructures_up = redefined(
         PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
     )
@@ -168,13 +182,17 @@ class WallSettings(PlaneSettings):
         if not self.opening:
             return bricks
         first = (self.bricks - self.opening) // 2
-        return with_opening(bricks, size, (first, first + self.opening), self.opening_height)
+        return with_opening(
+            bricks, size, (first, first + self.opening), self.opening_height
+        )
 
     @property
     def _groups(self) -> Indices | None:
         if self.brick_groups >= self.n_substructures:
             return None
-        return grouped(self._bricks, (self.elements, self.elements_up), self.brick_groups)
+        return grouped(
+            self._bricks, (self.elements, self.elements_up), self.brick_groups
+        )
 
     @property
     def ends(self) -> dict[str, int]:
@@ -192,16 +210,24 @@ class WallSettings(PlaneSettings):
         """Refuse halves that no element fits, joints without a pair, and too many bricks."""
         for name, most, beside in (
             ("opening", self.bricks - 2, f"two of {self.bricks} bricks stay beside it"),
-            ("opening_height", self.courses - 1, f"one of {self.courses} courses is the lintel"),
+            (
+                "opening_height",
+                self.courses - 1,
+                f"one of {self.courses} courses is the lintel",
+            ),
         ):
             value = getattr(self, name)
             if self.opening and value > most:
                 remedy = "lower it, or build a larger wall"
                 raise self.refusal(name, f"at most {max(most, 0)}, as {beside}", remedy)
         super().check_together()
-        if (self.opening or (self.bond == "running" and self.courses > 1)) and self.elements % 2:
+        if (
+            self.opening or (self.bond == "running" and self.courses > 1)
+        ) and self.elements % 2:
             remedy = "take an even number, or bond=stack"
-            raise self.refusal("elements", "an even number, as there are half bricks", remedy)
+            raise self.refusal(
+                "elements", "an even number, as there are half bricks", remedy
+            )
         if self.bricks > 1 and self.elements_up < 2:
             raise self.refusal(
                 "elements_up",
@@ -230,19 +256,38 @@ class WallSettings(PlaneSettings):
             sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
             tilt=angle if np.any(angle) else None,
         )
-        return replace(stack, support=Support(np.zeros(stack.grid[0] + 1), self.friction))
+        return replace(
+            stack, support=Support(np.zeros(stack.grid[0] + 1), self.friction)
+        )
 
     def sentence(self) -> str:
         """The wall in a sentence."""
         way = "moved" if self.top == "moved" else "pulled"
-        ways = (f"{way} {where}" for where in ("to the right", "to the left", "to and fro"))
+        ways = (
+            f"{way} {where}" for where in ("to the right", "to the left", "to and fro")
+        )
         driven = shared.acting(self.path("top_load"), *ways)
-        ground = "a tilted ground" if np.any(self.path("slope_load")) else "the ground"
-        pressed = ", pressed from above," if np.any(self.path("pressure_load")) else ""
+        if np.any(self.path("slope_load")):
+            ground = "a tilted ground"
+        else:
+            ground = "the ground"
+        if np.any(self.path("pressure_load")):
+            pressed = ", pressed from above,"
+        else:
+            pressed = ""
         if self.n_substructures == 1:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
-        bond = "in running bond" if self.bond == "running" else "one above the other"
-        hole = " round an opening" if self.opening else ""
+        if self.bond == "running":
+            bond = "in running bond"
+        else:
+            bond = "one above the other"
+        if self.opening:
+            hole = " round an opening"
+        else:
+            hole = ""
         bricks = f"{self.n_substructures} bricks {bond}{hole}{pressed}"
-        touch = "and rub on" if self.is_rough else "and slide freely on"
+        if self.is_rough:
+            touch = "and rub on"
+        else:
+            touch = "and slide freely on"
         return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."

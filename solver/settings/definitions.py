@@ -25,7 +25,8 @@ ANY = -1e15, 1e15
 POSITIVE = ANY, (0.0, 1e15)
 """Bounds of both columns of a path without values below zero."""
 FAR = 1e6
-"""Numbers from here on are no limits to anybody's problem, but to the digits of a computer."""
+"""Numbers from here on are no limits to anybody's problem, but to the digits of a
+computer."""
 
 
 GONE = {
@@ -59,10 +60,11 @@ class About:
     applies
         Whether it does anything, given all the settings.
     path
-        Setting of the path over time that reaches this value: where it is a table, that has its
-        own size, and this value does nothing.
+        Setting of the path over time that reaches this value: where it is a table, that
+        has its own size, and this value does nothing.
     places
-        What it places or scales in a picture: "right x" along a side, "body" throughout.
+        What it places or scales in a picture: "right x" along a side, "body"
+        throughout.
     presets
         A line on each of the presets that it has, by name, without a full stop.
     """
@@ -117,8 +119,10 @@ class CurveParameter(Parameter):
         **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
-        self.presets, self.bounds = presets, bounds
-        self.columns, self.units = tuple(units), tuple(units.values())
+        self.presets = presets
+        self.bounds = bounds
+        self.columns = tuple(units)
+        self.units = tuple(units.values())
 
     @property
     def abscissa(self) -> str:
@@ -151,15 +155,18 @@ def title_of(definition: Parameter) -> str:
 def is_logarithmic(definition: Any) -> bool:
     """Whether a slider over a number is logarithmic: where it goes over far more than a decade."""
     low, high = definition.softbounds
-    return bool(low > 0.0 and high >= (100 if isinstance(definition, param.Integer) else 20) * low)
+    return bool(
+        low > 0.0
+        and high >= (100 if isinstance(definition, param.Integer) else 20) * low
+    )
 
 
 @dataclass(frozen=True)
 class SettingGroup:
     """Heading under which settings stand, which makes their definitions.
 
-    All have help; what else they take are entries of `About`, and a `title` where a widget does not
-    call a setting by its name.
+    All have help; what else they take are entries of `About`, and a `title` where a
+    widget does not call a setting by its name.
     """
 
     name: str
@@ -186,7 +193,9 @@ class SettingGroup:
     ) -> param.Integer[int]:
         """Whole-number setting."""
         common = self._common(doc, **record)
-        return param.Integer(default=default, bounds=bounds, softbounds=slider, **common)
+        return param.Integer(
+            default=default, bounds=bounds, softbounds=slider, **common
+        )
 
     def switch(self, default: bool, doc: str, **record: Any) -> param.Boolean[bool]:
         """On/off setting."""
@@ -196,7 +205,9 @@ class SettingGroup:
         self, default: str, options: Iterable[str], doc: str, **record: Any
     ) -> param.Selector[str]:
         """Setting that is one of a few names."""
-        return param.Selector(default=default, objects=list(options), **self._common(doc, **record))
+        return param.Selector(
+            default=default, objects=list(options), **self._common(doc, **record)
+        )
 
     def preset(
         self, default: str, presets: Mapping[str, Described], doc: str, **record: Any
@@ -219,7 +230,9 @@ class SettingGroup:
         common = self._common(doc, presets=_lines_on(presets), **record)
         return CurveParameter(default, presets, units, bounds, **common)
 
-    def _common(self, doc: str, title: str | None = None, **record: Any) -> dict[str, Any]:
+    def _common(
+        self, doc: str, title: str | None = None, **record: Any
+    ) -> dict[str, Any]:
         """Arguments of param that all settings have."""
         metadata = {"about": About(self.name, **record)}
         return {"doc": doc, "label": title, "constant": True, "metadata": metadata}
@@ -229,8 +242,11 @@ def _lines_on(presets: Mapping[str, Described]) -> dict[str, str]:
     return {name: preset.description for name, preset in presets.items()}
 
 
-CONTACT, LOAD, BODY = SettingGroup("Contact"), SettingGroup("Load"), SettingGroup("Body")
-METHOD, DECOMPOSITION = SettingGroup("Method"), SettingGroup("Decomposition")
+CONTACT = SettingGroup("Contact")
+LOAD = SettingGroup("Load")
+BODY = SettingGroup("Body")
+METHOD = SettingGroup("Method")
+DECOMPOSITION = SettingGroup("Decomposition")
 
 
 def redefined(
@@ -267,7 +283,9 @@ def allowed(definition: Parameter) -> str:
     if isinstance(definition, param.Selector):
         return ", ".join(definition.objects)
     low, high = definition.bounds
-    least, most = (f"{plain(end)} {about(definition).unit}".strip() for end in (low, high))
+    least, most = (
+        f"{plain(end)} {about(definition).unit}".strip() for end in (low, high)
+    )
     if isinstance(definition, param.Integer):
         return f"a whole number from {least} to {most}"
     if high < FAR:
@@ -279,7 +297,9 @@ def allowed(definition: Parameter) -> str:
     return f"any number from 0 on (to {most})"
 
 
-def unknown(name: str, value: object, scene: str, known: Mapping[str, Parameter]) -> SettingError:
+def unknown(
+    name: str, value: object, scene: str, known: Mapping[str, Parameter]
+) -> SettingError:
     """Refusal of a name that no setting of a scene has, with the nearest ones and their meaning."""
     own = f"a setting of {scene}"
     if name in GONE:
@@ -348,10 +368,14 @@ def _checked_curve(definition: CurveParameter, name: str, value: object) -> str 
         raise refuse("choose a preset, or give a table of points")
     if not isinstance(value, list | tuple) or not value:
         raise refuse(f"give at least one {'pair' if definition.is_path else 'row'}")
-    rows, size = [], len(definition.columns)
+    rows = []
+    size = len(definition.columns)
     for number, row in enumerate(value, start=1):
         if not isinstance(row, list | tuple) or len(row) != size:
-            what = "a pair of numbers" if definition.is_path else f"{size} numbers"
+            if definition.is_path:
+                what = "a pair of numbers"
+            else:
+                what = f"{size} numbers"
             raise refuse(f"row {number} must be {what}")
         if not all(map(is_number, row)):
             raise refuse(f"row {number} has an entry that is not a number")
@@ -362,12 +386,21 @@ def _checked_curve(definition: CurveParameter, name: str, value: object) -> str 
                 raise SettingError(name, value, least, f"raise the negative {column}")
             is_counted = isinstance(low, int)
             if not low <= entry <= high or (is_counted and entry != int(entry)):
-                kind = "a whole number" if is_counted else "a number"
-                ends = " to ".join(f"{plain(end)} {unit}".strip() for end in (low, high))
-                raise refuse(f"row {number}: {column} is {plain(entry)}, give {kind} from {ends}")
+                if is_counted:
+                    kind = "a whole number"
+                else:
+                    kind = "a number"
+                ends = " to ".join(
+                    f"{plain(end)} {unit}".strip() for end in (low, high)
+                )
+                raise refuse(
+                    f"row {number}: {column} is {plain(entry)}, give {kind} from {ends}"
+                )
         rows.append(tuple(map(float, row)))
         if definition.is_path and number > 1 and rows[-1][0] <= rows[-2][0]:
-            raise refuse(f"row {number}: {definition.abscissa} must increase from row to row")
+            raise refuse(
+                f"row {number}: {definition.abscissa} must increase from row to row"
+            )
     return tuple(rows)
 
 
@@ -375,6 +408,11 @@ def parse(text: str) -> object:
     """Value of a setting from text, as typed on a command line or in an address."""
     try:
         table: dict[str, object] = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):  # no TOML, digits beyond Python's limit, deep nesting
+    except (
+        ValueError,
+        RecursionError,
+    ):  # no TOML, digits beyond Python's limit, deep nesting
         return text
-    return table["value"] if len(table) == 1 else text
+    if len(table) == 1:
+        return table["value"]
+    return text

@@ -14,11 +14,14 @@ SHORTEST_SLIP = 1e-12
 LARGEST_FACTOR = 1e3
 """Of a strength."""
 STIFFNESSES = 1e-9, 1e9
-"""Of contacts and springs, over that of bodies: softer or stiffer, no digits are left."""
+"""Of contacts and springs, over that of bodies: softer or stiffer, no digits are
+left."""
 
 
 STRENGTHS = {
-    "constant": TablePreset("1, whatever has slipped", lambda settings: settings.strength_points()),
+    "constant": TablePreset(
+        "1, whatever has slipped", lambda settings: settings.strength_points()
+    ),
     "linear": TablePreset(
         "from 1 evenly to friction_ratio at slip_length, where it stays",
         lambda settings: settings.strength_points(),
@@ -124,8 +127,13 @@ class FrictionSettings(MethodSettings):
         """Law of friction, beside mu."""
         if self.friction_law == "compliant":
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
-        changes = self.is_linear_in_slip or (self.is_general and self.strength != "constant")
-        strength = Strength(*zip(*self.strength_points(), strict=True)) if changes else None
+        changes = self.is_linear_in_slip or (
+            self.is_general and self.strength != "constant"
+        )
+        if changes:
+            strength = Strength(*zip(*self.strength_points(), strict=True))
+        else:
+            strength = None
         if not self.is_general:
             return FrictionLaw(strength=strength)
         return FrictionLaw(
@@ -140,7 +148,10 @@ class FrictionSettings(MethodSettings):
         table: str | Rows = self.strength
         if not (self.is_linear_in_slip or isinstance(table, str)):
             return table
-        last = self.friction_ratio if self.is_linear_in_slip else 1.0
+        if self.is_linear_in_slip:
+            last = self.friction_ratio
+        else:
+            last = 1.0
         return (0.0, 1.0), (self.slip_length, last)
 
     def check_together(self) -> None:
@@ -157,15 +168,17 @@ class FrictionSettings(MethodSettings):
                     "the factor at slip 0 is 1, as the rest of the law says what friction is there",
                 )
         if self.is_general:
-            for name in self.definitions().keys() & {"tangential_stiffness", "normal_stiffness"}:
-                remedy = (
-                    "write 0 where nothing gives way, or take away friction where nothing holds"
-                )
+            for name in self.definitions().keys() & {
+                "tangential_stiffness",
+                "normal_stiffness",
+            }:
+                remedy = "write 0 where nothing gives way, or take away friction where nothing holds"
                 self.check_digits(name, self.contact_unit, remedy)
 
     def check_digits(self, name: str, size: float, remedy: str) -> None:
         """Refuse a stiffness that leaves no digits beside that of bodies, or of theirs."""
-        value, unit = getattr(self, name), about(self.definitions()[name]).unit
+        value = getattr(self, name)
+        unit = about(self.definitions()[name]).unit
         low, high = (share * size for share in STIFFNESSES)
         if self.applies(name) and value and not low <= value <= high:
             none = "0, or " if self.definitions()[name].bounds[0] == 0.0 else ""

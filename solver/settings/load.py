@@ -24,8 +24,9 @@ from solver.settings.load_paths import (
 )
 
 EVERY_POINT = 2_000_000
-"""Nodes times instants up to which every point of a table of a path is an instant: 10 s along the
-bar. Beyond, those stay without which it would be wrong by `THINNED` somewhere."""
+"""Nodes times instants up to which every point of a table of a path is an instant: 10 s
+along the bar. Beyond, those stay without which it would be wrong by `THINNED`
+somewhere."""
 THINNED = 1e-3
 """Share of its range by which a path that is thinned may differ from its table."""
 POINTS = 9
@@ -92,21 +93,29 @@ class LoadSettings(FrictionSettings):
     @cache
     def _sizes(cls) -> Mapping[str, tuple[str, ...]]:
         """Settings of what presets of each path over time may reach."""
-        paths = {name: about(definition).path for name, definition in cls.definitions().items()}
+        paths = {
+            name: about(definition).path
+            for name, definition in cls.definitions().items()
+        }
         return {
-            path: tuple(n for n in paths if paths[n] == path) for path in paths.values() if path
+            path: tuple(n for n in paths if paths[n] == path)
+            for path in paths.values()
+            if path
         }
 
     def size_setting(self, path: str) -> str | None:
         """Setting of the largest value that a preset of a path reaches; None where that is 1."""
-        sizes, definitions = self._sizes().get(path, ()), self.definitions()
+        sizes = self._sizes().get(path, ())
+        definitions = self.definitions()
         acting = (name for name in sizes if about(definitions[name]).applies(self))
         return next(acting, sizes[0] if sizes else None)
 
     def size_of(self, path: str) -> float:
         """Largest value that a preset of a path over time reaches."""
         name = self.size_setting(path)
-        return 1.0 if name is None else float(getattr(self, name))
+        if name is None:
+            return 1.0
+        return float(getattr(self, name))
 
     def acts(self, path: str) -> bool:
         """Whether a path over time has any size, of its preset or of its own."""
@@ -114,12 +123,17 @@ class LoadSettings(FrictionSettings):
 
     def size_or_table(self, path: str) -> str:
         """Name of the setting by which a path becomes smaller: of its size, or its table."""
-        return self.size_setting(path) or path if isinstance(getattr(self, path), str) else path
+        if isinstance(getattr(self, path), str):
+            return self.size_setting(path) or path
+        return path
 
     def curve_units(self, name: str) -> tuple[str, ...]:
         """Units of a curve under the present values: those of a path are as its size."""
-        units, size = self.definitions()[name].units, self.size_setting(name)
-        return units if size is None else (units[0], about(self.definitions()[size]).unit)
+        units: tuple[str, ...] = self.definitions()[name].units
+        size = self.size_setting(name)
+        if size is None:
+            return units
+        return (units[0], about(self.definitions()[size]).unit)
 
     def preset(self, name: str) -> Preset | None:
         """Preset that a path over time has; None where it is a table."""
@@ -133,7 +147,9 @@ class LoadSettings(FrictionSettings):
     def is_repeatable(self) -> bool:
         """Whether any load path is a preset that comes back to where it began."""
         presets = map(self.preset, self.paths)
-        return any(preset is not None and preset.repeats is not None for preset in presets)
+        return any(
+            preset is not None and preset.repeats is not None for preset in presets
+        )
 
     def times(self) -> Array:
         """Instants, shape (n_instants,), s: points of all paths, and others spread between them."""
@@ -148,7 +164,9 @@ class LoadSettings(FrictionSettings):
     def _times(self) -> Array:
         instants = self._instants({name: getattr(self, name) for name in self._tables})
         if self.n_nodes * len(instants) > EVERY_POINT and self._tables:
-            instants = self._instants({name: self._thinned(name) for name in self._tables})
+            instants = self._instants(
+                {name: self._thinned(name) for name in self._tables}
+            )
         instants.flags.writeable = False
         return instants
 
@@ -165,7 +183,9 @@ class LoadSettings(FrictionSettings):
     def _instants(self, tables: Mapping[str, Rows]) -> Array:
         """Instants for these tables and all presets; a single one has those where paths turn."""
         knots = {name: np.array(table)[:, 0] for name, table in tables.items()}
-        presets = (name for name in self.paths if name not in tables and self.size_of(name))
+        presets = (
+            name for name in self.paths if name not in tables and self.size_of(name)
+        )
         knots |= {name: self.knots(name) for name in presets}
         if self.instants == 1:
             knots = {name: self._turning(name, times) for name, times in knots.items()}
@@ -237,10 +257,15 @@ class LoadSettings(FrictionSettings):
         times = instants_of(self.duration, 2, NO_KNOTS, self.knots(name))
         times = instants_of(self.duration, 2, times, even)
         values = self.path_at(name, times)
-        kept = thinned(np.column_stack([times, values]), STRAIGHT * float(np.ptp(values)))
+        kept = thinned(
+            np.column_stack([times, values]), STRAIGHT * float(np.ptp(values))
+        )
         return as_points(times[kept], values[kept])
 
 
 def as_points(where: Array, values: Array) -> Rows:
     """Points with as many digits as one likes to read."""
-    return tuple((float(f"{a:.6g}"), float(f"{b:.6g}")) for a, b in zip(where, values, strict=True))
+    return tuple(
+        (float(f"{a:.6g}"), float(f"{b:.6g}"))
+        for a, b in zip(where, values, strict=True)
+    )

@@ -19,7 +19,8 @@ NO_LOAD = 1e-14
 """What rounding makes of a whole number of half waves, where a load vanishes."""
 DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
 HELD = 0.25
-"""Share of the interval after which "hold" stays where it is, and "delayed" and "cycles" begin."""
+"""Share of the interval after which "hold" stays where it is, and "delayed" and
+"cycles" begin."""
 CYCLES = 6
 LOOSE = 0.2
 """Share of its pressure that a bolt has left when it has loosened."""
@@ -35,7 +36,9 @@ def interpolate(points: Rows | Array, where: Array) -> Array:
     between: Array = np.interp(where, abscissae, values)
     steep = ~np.isfinite(between)
     if steep.any():  # a slope beyond the largest number: points that all but coincide
-        between[steep] = values[np.searchsorted(abscissae, where[steep], side="right") - 1]
+        between[steep] = values[
+            np.searchsorted(abscissae, where[steep], side="right") - 1
+        ]
     return between
 
 
@@ -45,9 +48,10 @@ class Preset:
 
     The description is a line on it, where "the value" is the largest that it reaches.
 
-    Points, for a seed of what is random, are phases after the beginning, and ordinates. It begins
-    after a share of the interval, and comes back to where it is from another on, if at all. A wave
-    has ordinates at such phases in place of straight lines, where it bends.
+    Points, for a seed of what is random, are phases after the beginning, and ordinates.
+    It begins after a share of the interval, and comes back to where it is from another
+    on, if at all. A wave has ordinates at such phases in place of straight lines, where
+    it bends.
     """
 
     description: str
@@ -63,7 +67,9 @@ class Preset:
             again = self.repeats + (1.0 - self.repeats) * (turns - np.floor(turns))
             phase = np.where(phase > self.repeats, again, phase)
         after = np.maximum(phase - self.begins, 0.0) / (1.0 - self.begins)
-        return self.wave(after) if self.wave else np.interp(after, *self.points(seed))
+        if self.wave:
+            return self.wave(after)
+        return np.interp(after, *self.points(seed))
 
     def corners(self, seed: int, cycles: int = 1) -> Array:
         """Phases inside the interval at which it turns back or bends."""
@@ -101,7 +107,9 @@ def _size_of_walk(seed: int) -> tuple[Array, Array]:
     crossed = np.flatnonzero(walk[:-1] * walk[1:] < 0.0)
     zeros = crossed + walk[crossed] / (walk[crossed] - walk[crossed + 1])
     every = np.union1d(phases, zeros / RANDOM_POINTS)
-    return every, np.where(np.isin(every, phases), np.abs(np.interp(every, phases, walk)), 0.0)
+    return every, np.where(
+        np.isin(every, phases), np.abs(np.interp(every, phases, walk)), 0.0
+    )
 
 
 def _sine(phase: Array) -> Array:
@@ -111,7 +119,9 @@ def _sine(phase: Array) -> Array:
 
 QUARTERS = 0.0, 1.0, 0.0, -1.0, 0.0
 PRESETS: dict[str, Preset] = {
-    "ramp": _lines("rises evenly from 0 to the value, which it has at the end", 0.0, 1.0),
+    "ramp": _lines(
+        "rises evenly from 0 to the value, which it has at the end", 0.0, 1.0
+    ),
     "triangle": _lines(
         "rises evenly to the value in the middle of the interval, and falls back to 0",
         *(0.0, 1.0, 0.0),
@@ -229,7 +239,9 @@ INJECTIONS: dict[str, Preset] = {
         *(1.0, 1.0, 0.0),
         wave=lambda phase: np.where(phase <= 0.5, 1.0, 0.0),
     ),
-    "rising": _lines("rises evenly from nothing to the value, which it has at the end", 0.0, 1.0),
+    "rising": _lines(
+        "rises evenly from nothing to the value, which it has at the end", 0.0, 1.0
+    ),
     "pulses": _lines(
         "the value, then six times down to nothing and back, in straight lines",
         *(1.0, *[0.0, 1.0] * CYCLES),
@@ -245,23 +257,31 @@ def instants_of(
 ) -> Array:
     """Instants spread over a time interval, s, with knots of paths among them.
 
-    Between knots they are evenly spaced, and no step is longer than one of `number` equal ones: of
-    instants from 0 on, or of a single one at the end. Knots outside do not count; corners, which
-    are those of presets, are an instant or a knot where they differ from it by rounding alone.
+    Between knots they are evenly spaced, and no step is longer than one of `number`
+    equal ones: of instants from 0 on, or of a single one at the end. Knots outside do
+    not count; corners, which are those of presets, are an instant or a knot where they
+    differ from it by rounding alone.
     """
-    even = np.linspace(0.0, duration, number) if number > 1 else np.array([duration])
+    if number > 1:
+        even = np.linspace(0.0, duration, number)
+    else:
+        even = np.array([duration])
     knots = np.unique(knots[(knots >= 0.0) & (knots <= duration)])
     corners = np.unique(corners)
     corners = corners[np.diff(corners, prepend=-duration) > SAME * duration]
     every = np.union1d(knots, apart(corners, knots, SAME * duration))
-    if len(apart(every, even, SAME * duration)) == 0 and np.all(np.diff(every) > SAME * duration):
+    if len(apart(every, even, SAME * duration)) == 0 and np.all(
+        np.diff(every) > SAME * duration
+    ):
         return even
     every = np.union1d(every, even[[0, -1]])
     shares = np.diff(every) * ((number - 1) / duration)
     steps = np.maximum(np.ceil(shares - SAME * number), 1.0).astype(np.intp)
     first = np.concatenate([[0], np.cumsum(steps)])
     place = np.arange(first[-1]) - np.repeat(first[:-1], steps)
-    spread = np.repeat(every[:-1], steps) + place * np.repeat(np.diff(every) / steps, steps)
+    spread = np.repeat(every[:-1], steps) + place * np.repeat(
+        np.diff(every) / steps, steps
+    )
     return np.append(spread, every[-1])
 
 
@@ -270,7 +290,9 @@ def apart(times: Array, others: Array, least: float) -> Array:
     if len(others) == 0:
         return times
     after = np.searchsorted(others, times).clip(0, len(others) - 1)
-    nearest = np.minimum(np.abs(times - others[after]), np.abs(times - others[after - 1]))
+    nearest = np.minimum(
+        np.abs(times - others[after]), np.abs(times - others[after - 1])
+    )
     return np.asarray(times[nearest > least])
 
 
@@ -288,15 +310,18 @@ def thinned(points: Rows | Array, allowed: float) -> Array:
     The first and the last point stay, and the largest and the smallest value.
     """
     times, values = np.array(points).T.tolist()
-    kept, tops = [0], {values.index(max(values)), values.index(min(values))}
-    low, high = -math.inf, math.inf
+    kept = [0]
+    tops = {values.index(max(values)), values.index(min(values))}
+    low = -math.inf
+    high = math.inf
     for place in range(1, len(times)):
         last = kept[-1]
         slope = (values[place] - values[last]) / (times[place] - times[last])
         if place - 1 > last and (place - 1 in tops or not low <= slope <= high):
             last = place - 1
             kept.append(last)
-            low, high = -math.inf, math.inf
+            low = -math.inf
+            high = math.inf
         span = times[place] - times[last]
         low = max(low, (values[place] - allowed - values[last]) / span)
         high = min(high, (values[place] + allowed - values[last]) / span)

@@ -28,7 +28,8 @@ def _on_modes(settings: MethodSettings) -> bool:
 class MethodSettings(param.Parameterized):
     """Settings of the method, which hold alone and together; a scene adds its own.
 
-    `checked` is the one edge at which values are verified; `replace` gives new settings.
+    `checked` is the one edge at which values are verified; `replace` gives new
+    settings.
     """
 
     scene: str = ""
@@ -51,7 +52,8 @@ class MethodSettings(param.Parameterized):
             "tolerance": 1e-10,
         },
     }
-    """What `method` sets at once; a scene that lacks an option keeps its own default."""
+    """What `method` sets at once; a scene that lacks an option keeps its own
+    default."""
 
     substructures = DECOMPOSITION.count(
         10,
@@ -212,14 +214,16 @@ class MethodSettings(param.Parameterized):
     def definitions(cls) -> Mapping[str, Any]:
         """Definition of every setting, by name, in the order of their groups."""
         parameters = {name: cls.param[name] for name in cls.param}
-        return {n: one for n, one in parameters.items() if "about" in (one.metadata or {})}
+        return {
+            n: one for n, one in parameters.items() if "about" in (one.metadata or {})
+        }
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
         """Settings of plain values by name; what is left out is as by default, or by the method.
 
-        Refuses an unknown name, a wrong type, a value out of range, and values that do not fit
-        together with a `SettingError`.
+        Refuses an unknown name, a wrong type, a value out of range, and values that do
+        not fit together with a `SettingError`.
         """
         definitions = cls.definitions()
         clean = {}
@@ -227,9 +231,16 @@ class MethodSettings(param.Parameterized):
             if name not in definitions:
                 raise unknown(name, value, cls.scene, definitions)
             clean[name] = checked_value(definitions[name], name, value)
-        values = {**cls.of_method(clean.get("method", definitions["method"].default)), **clean}
+        values = {
+            **cls.of_method(clean.get("method", definitions["method"].default)),
+            **clean,
+        }
         # A default that is given takes param as long as anything else.
-        others = {n: value for n, value in values.items() if value is not definitions[n].default}
+        others = {
+            n: value
+            for n, value in values.items()
+            if value is not definitions[n].default
+        }
         settings = cls(**others)
         settings.check_together()
         return settings
@@ -240,14 +251,19 @@ class MethodSettings(param.Parameterized):
         values = dict(cls.METHODS[method])
         for name, value in values.items():
             definition = cls.definitions()[name]
-            if isinstance(definition, param.Selector) and value not in definition.objects:
+            if (
+                isinstance(definition, param.Selector)
+                and value not in definition.objects
+            ):
                 values[name] = definition.default
         return values
 
     @classmethod
     def defaults(cls, method: str) -> dict[str, Any]:
         """Value of every setting where only the method is given."""
-        values = {name: definition.default for name, definition in cls.definitions().items()}
+        values = {
+            name: definition.default for name, definition in cls.definitions().items()
+        }
         return {**values, **cls.of_method(method)}
 
     def check_together(self) -> None:
@@ -259,7 +275,8 @@ class MethodSettings(param.Parameterized):
 
     @cached_property
     def _values(self) -> Mapping[str, Any]:
-        # To ask param for all of them takes longer than an iteration, and they never change.
+        # To ask param for all of them takes longer than an iteration, and they never
+        # change.
         return {name: getattr(self, name) for name in self.definitions()}
 
     def changed(self, base: Self | None = None) -> dict[str, Any]:
@@ -267,10 +284,17 @@ class MethodSettings(param.Parameterized):
 
         Where the method differs too, those that it sets are compared with what it says.
         """
-        defaults = base.values() if base else self.defaults(self.method)
+        if base:
+            defaults = base.values()
+        else:
+            defaults = self.defaults(self.method)
         if base and base.method != self.method:
             defaults.update(self.of_method(self.method))
-        return {name: value for name, value in self._values.items() if value != defaults[name]}
+        return {
+            name: value
+            for name, value in self._values.items()
+            if value != defaults[name]
+        }
 
     def replace(self, /, **changes: object) -> Self:
         """New settings with some values changed, checked as a whole.

@@ -20,9 +20,11 @@ class Profile(NamedTuple):
 
 
 UNSEEN = 0.01
-"""Share of its range by which a table may differ between nodes from the line through them."""
+"""Share of its range by which a table may differ between nodes from the line through
+them."""
 STEEP = 1e-8
-"""Relative change over a piece below which the mean of the inverse is that of the middle."""
+"""Relative change over a piece below which the mean of the inverse is that of the
+middle."""
 
 
 def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indices]:
@@ -63,13 +65,14 @@ def harmonic_means(table: Rows, edges: Array) -> Array:
 def gap_at(table: Rows, nodes: Array) -> Array:
     """Gap at nodes; a point between two that is lower than both is put at the nearer.
 
-    A slope or a curve that the nodes tell stays as it is: only what would touch first and lies
-    between nodes is moved.
+    A slope or a curve that the nodes tell stays as it is: only what would touch first
+    and lies between nodes is moved.
     """
     gap = interpolate(table, nodes)
     x, values = np.array(table).T
     inside = (x > nodes[0]) & (x < nodes[-1])
-    x, values = x[inside], values[inside]
+    x = x[inside]
+    values = values[inside]
     after = np.searchsorted(nodes, x, side="right").clip(1, len(nodes) - 1)
     is_left = x - nodes[after - 1] <= nodes[after] - x
     nearer = np.where(is_left, after - 1, after)

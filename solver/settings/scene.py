@@ -1,6 +1,7 @@
 """Settings of a scene: those that all have, and what is known of a scene by its settings alone.
 
-A settings object is checked once, at the edge, and cannot be changed; `replace` gives a new one.
+A settings object is checked once, at the edge, and cannot be changed; `replace` gives a
+new one.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from solver.settings.load import LoadSettings
 LARGEST_FIELD = 25_000_000
 """Nodes times instants; a run keeps about ten fields over them."""
 COARSEST = 6
-"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
+"""Elements below which a mesh is not coarsened: a front needs a few to be seen at
+all."""
 
 
 class Icon(NamedTuple):
@@ -43,12 +45,17 @@ class Settings(LoadSettings):
     """What it is called, and where it comes from."""
     icon: ClassVar[Icon]
     kind: ClassVar[Literal["rod", "wires", "helices", "plane"]]
-    """What there is to see: a rod on its support, wires beside each other, wires around a core, or
-    plane bodies."""
+    """What there is to see: a rod on its support, wires beside each other, wires around
+    a core, or plane bodies."""
     CHIEF: ClassVar[tuple[str, ...]]
-    ALSO_CHIEF: ClassVar[tuple[str, ...]] = ("seed", "friction", "substructures", "k_scale")
-    """Settings that a scene is about, in the order in which one thinks of them: its own, and those
-    of friction and the method."""
+    ALSO_CHIEF: ClassVar[tuple[str, ...]] = (
+        "seed",
+        "friction",
+        "substructures",
+        "k_scale",
+    )
+    """Settings that a scene is about, in the order in which one thinks of them: its
+    own, and those of friction and the method."""
     GROWS: ClassVar[tuple[str, ...]]
     """Settings by which the structure becomes larger as it is, all of them together."""
     MESH: ClassVar[tuple[str, ...]] = ("elements",)
@@ -58,7 +65,8 @@ class Settings(LoadSettings):
     opens: ClassVar[bool] = False
     """Whether contact may open, so that what presses is an unknown."""
     has_joints: ClassVar[bool] = False
-    """Whether bodies touch each other at joints, and do not lie on the next all along."""
+    """Whether bodies touch each other at joints, and do not lie on the next all
+    along."""
 
     def structure(self) -> Structure:
         """Bodies, with all that acts on them."""
@@ -71,8 +79,9 @@ class Settings(LoadSettings):
     def coarser(self) -> Iterator[Problem]:
         """Yield the same problem, uncut, on ever coarser meshes, as long as a front is seen.
 
-        Until it does not fit its mesh, as where the break of a wire, at the nearest node, leaves
-        less than the tension to friction, or where a mesh so coarse has more instants.
+        Until it does not fit its mesh, as where the break of a wire, at the nearest
+        node, leaves less than the tension to friction, or where a mesh so coarse has
+        more instants.
         """
         coarse = self
         while (elements := coarse.elements // 2) >= COARSEST:
@@ -84,10 +93,13 @@ class Settings(LoadSettings):
                 return
             yield coarse.structure().discretise()
 
-    def exact(self, problem: Problem, solution: LoopFields | None = None) -> Iterable[ExactCurve]:
+    def exact(
+        self, problem: Problem, solution: LoopFields | None = None
+    ) -> Iterable[ExactCurve]:
         """What is known of the scene without a mesh; often that is nothing.
 
-        The solution is that of an incremental solver: closed forms of contact are for its forces.
+        The solution is that of an incremental solver: closed forms of contact are for
+        its forces.
         """
         return ()
 
@@ -120,13 +132,15 @@ class Settings(LoadSettings):
     def behind(self) -> Mapping[str, str]:
         """Settings that place or scale what acts on the scene, where any does.
 
-        By what they are behind: "right x" along a side, "body" throughout. Of several the last
-        counts that is not 0.
+        By what they are behind: "right x" along a side, "body" throughout. Of several
+        the last counts that is not 0.
         """
         settings: dict[str, str] = {}
         for name, definition in self.definitions().items():
             for place in about(definition).places:
-                if self.applies(name) and (place not in settings or getattr(self, name)):
+                if self.applies(name) and (
+                    place not in settings or getattr(self, name)
+                ):
                     settings[place] = name
         return settings
 
@@ -147,7 +161,8 @@ class Settings(LoadSettings):
         """Refuse more parts than there is to deal out, fields beyond memory, and no law at all."""
         super().check_together()
         for part, whole in self.PARTS.items():
-            value, most = getattr(self, part), getattr(self, whole)
+            value = getattr(self, part)
+            most = getattr(self, whole)
             if value > most:
                 raise self.refusal(
                     part,

@@ -25,15 +25,18 @@ NOT_FITTED = "Method", "Stop", "Decomposition"
 """Groups of settings that do not change the answer."""
 FARTHEST = math.log(1e6)
 """How far from its start, in z, a setting may go."""
-COARSE, FAR = math.log(3.0), math.log(1e3)
+COARSE = math.log(3.0)
+FAR = math.log(1e3)
 """Steps from the start by which each setting is tried alone, and how far they go."""
 SAME = 1e-6
 """Share of the misfit up to which two are the same."""
 ACCURACY = 1e-4
 """Of runs that are not certified."""
-FINE, MOST_STEPS = 1e-7, 40
+FINE = 1e-7
+MOST_STEPS = 40
 """Tolerance, and steps, of each."""
-ROUGH, FEW_STEPS = 1e-3, 10
+ROUGH = 1e-3
+FEW_STEPS = 10
 """Tolerance of the misfit, and steps, where only the misfit is asked for."""
 STEP = 1e-4
 """Of differences, in z, of the method."""
@@ -56,7 +59,9 @@ def _why_not(settings: Settings, name: str) -> str:
     if not settings.applies(name):
         return "it does nothing with the other settings as they are"
     is_answered = about(definition).group in NOT_FITTED or name == "duration"
-    return "it does not change what a run finds" if is_answered else ""
+    if is_answered:
+        return "it does not change what a run finds"
+    return ""
 
 
 def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]:
@@ -67,7 +72,8 @@ def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]
     if reason := _why_not(settings, name):
         can = ", ".join(fittable(settings))
         raise SettingError("fitted setting", name, can, f"choose another: {reason}")
-    definition, value = settings.definitions()[name], getattr(settings, name)
+    definition = settings.definitions()[name]
+    value = getattr(settings, name)
     low, high = definition.bounds
     if low >= 0.0 and value > 0.0:
         return value, 0.0, low, high
@@ -115,14 +121,17 @@ class ComparedRuns:
         with np.errstate(divide="ignore", invalid="ignore"):
             ends = [
                 np.where(
-                    self.in_decades, np.log(end / self._start), (end - self._start) / self._size
+                    self.in_decades,
+                    np.log(end / self._start),
+                    (end - self._start) / self._size,
                 )
                 for end in self._ends
             ]
         self.bounds = np.clip(ends, -FARTHEST, FARTHEST)
         accuracy = min(settings.accuracy, ACCURACY)
         self._settings = settings.replace(finish="at-once", accuracy=accuracy)
-        self._measured, self._watch = measured, watch
+        self._measured = measured
+        self._watch = watch
         self._before: States | None = None
         self._known: dict[bytes, Array] = {}
         self.count = 0
@@ -139,13 +148,18 @@ class ComparedRuns:
     def changes(self, z: Array) -> dict[str, float]:
         """Values of the settings by name, with as many digits as anybody writes."""
         values = self.values(z)
-        return {name: float(f"{at:.12g}") for name, at in zip(self.names, values, strict=True)}
+        return {
+            name: float(f"{at:.12g}")
+            for name, at in zip(self.names, values, strict=True)
+        }
 
     def run(self, z: Array) -> ComparedRun:
         """Run at a place; `RefusedError` where settings do not fit or it does not converge."""
         changes = self.changes(z)
         settings = self._settings.replace(**changes)
-        finished = finished_run(settings, errors=False, indicators=False, before=self._before)
+        finished = finished_run(
+            settings, errors=False, indicators=False, before=self._before
+        )
         self.count += 1
         status = finished.solution.status
         if status.ending is not Ending.CONVERGED:
@@ -154,7 +168,9 @@ class ComparedRuns:
         self._before = states_of(finished.iterate)
         beside = LoopComparison(self._measured, finished.loop, finished.problem)
         differences, _ = beside.differences(finished.displacement, finished.force)
-        return ComparedRun(np.array(list(changes.values())), finished, beside, differences)
+        return ComparedRun(
+            np.array(list(changes.values())), finished, beside, differences
+        )
 
     def differences(self, z: Array) -> Array:
         """Of a run, shape (n_rows,); NaN where there is none, so that no step goes there."""
@@ -168,11 +184,13 @@ class ComparedRuns:
             self._watch(self.count, self.nearest)
         return self._known[key]
 
-    def jacobian(self, z: Array, step: float = STEP, ways: Array | None = None) -> Array:
+    def jacobian(
+        self, z: Array, step: float = STEP, ways: Array | None = None
+    ) -> Array:
         """Derivatives of the differences along directions of z, by steps both ways in bounds.
 
-        Directions have shape (q, p), those of the settings by themselves if there are none; the
-        derivatives (n_rows, q). The smallest step is taken one way only.
+        Directions have shape (q, p), those of the settings by themselves if there are
+        none; the derivatives (n_rows, q). The smallest step is taken one way only.
         """
         if ways is None:
             ways = np.eye(len(z))
@@ -209,7 +227,9 @@ class ComparedRuns:
         settings = self._settings.replace(**self.changes(z))
         with contextlib.suppress(RefusedError):
             finer = {name: 2 * getattr(settings, name) for name in settings.MESH}
-            run = finished_run(settings.replace(**finer), errors=False, indicators=False)
+            run = finished_run(
+                settings.replace(**finer), errors=False, indicators=False
+            )
             self.count += 1
             beside = LoopComparison(self._measured, run.loop, run.problem)
             differences, _ = beside.differences(run.displacement, run.force)
@@ -232,7 +252,9 @@ class ComparedRuns:
                     if abs(at) > FAR or not low <= at <= high:
                         break
                     moved = np.where(np.arange(len(best)) == place, at, moved)
-                    misfit, least = (np.sum(self.differences(z) ** 2) for z in (moved, best))
+                    misfit, least = (
+                        np.sum(self.differences(z) ** 2) for z in (moved, best)
+                    )
                     if misfit < (1.0 - SAME) * least:
                         best = moved
                     elif not misfit <= (1.0 + SAME) * least:
@@ -256,8 +278,8 @@ class ComparedRuns:
     def across(self, z: Array, along: Array, bounds: Array) -> Array:
         """Place of the least squares among those that are as far along a direction, (p,), as z.
 
-        It lies within bounds, (2, p). The setting that counts most in the direction follows from
-        the others.
+        It lies within bounds, (2, p). The setting that counts most in the direction
+        follows from the others.
         """
         pivot = int(np.abs(along).argmax())
         free = np.delete(np.arange(len(z)), pivot)

@@ -1,18 +1,20 @@
 """Results of another program over x and t, and the distance of a run to them.
 
-Meshes differ, and with them nodal forces: so friction is brought as a force per length, N/m, of
-rods, and per area, Pa, of bodies in the plane: the traction along the interface, on the body above.
+Meshes differ, and with them nodal forces: so friction is brought as a force per length,
+N/m, of rods, and per area, Pa, of bodies in the plane: the traction along the
+interface, on the body above.
 
-Our field is linear between its points and between its instants; so it has a value w(x, t) at every
-row of the table, which has v. With d = w - v,
+Our field is linear between its points and between its instants; so it has a value w(x,
+t) at every row of the table, which has v. With d = w - v,
 
     distance = |d| / |v|,    |d|^2 = sum over instants of their weight times the mean of d^2 there.
 
-The mean is over the points of that instant, each of which counts as half of the distance to its
-neighbours does; an instant has the trapezoidal weight of the table's own instants. So rows may lie
-anywhere, in any order, and a place that is sampled densely counts no more for that. What only one
-of both covers is left out: rows beside the body or the run, or where our force is an arbitrary
-share of what a support holds. Where v vanishes everywhere, |w| stands in its place.
+The mean is over the points of that instant, each of which counts as half of the
+distance to its neighbours does; an instant has the trapezoidal weight of the table's
+own instants. So rows may lie anywhere, in any order, and a place that is sampled
+densely counts no more for that. What only one of both covers is left out: rows beside
+the body or the run, or where our force is an arbitrary share of what a support holds.
+Where v vanishes everywhere, |w| stands in its place.
 """
 
 from __future__ import annotations
@@ -32,11 +34,13 @@ from solver.files.tables import Reading, Table
 from solver.reference.distance import Fields, determinate_forces
 from solver.settings.scene import Settings
 
-FRICTION, DISPLACEMENT = "friction force", "displacement"
+FRICTION = "friction force"
+DISPLACEMENT = "displacement"
 FEWEST = 4
 """Rows from which on a distance says anything."""
 MOST = 20_000
-"""Rows at most, which take a fifth of a second to read: a page's server does nothing else then."""
+"""Rows at most, which take a fifth of a second to read: a page's server does nothing
+else then."""
 EDGE = 1e-6
 """Share of the body's length by which a point may lie beyond it: of rounded numbers."""
 CAN = "CSV whose head names x, t, and friction force or displacement"
@@ -48,8 +52,9 @@ PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
 class OtherResults:
     """Results of another program for a scene, in SI, and what was understood of the file.
 
-    The quantity is `FRICTION`, on the body above, N/m of rods and Pa of bodies in the plane, or
-    `DISPLACEMENT`, m. Positions, m, times, s, and values are of every row, shape (n_rows,).
+    The quantity is `FRICTION`, on the body above, N/m of rods and Pa of bodies in the
+    plane, or `DISPLACEMENT`, m. Positions, m, times, s, and values are of every row,
+    shape (n_rows,).
     """
 
     quantity: str
@@ -64,15 +69,16 @@ class OtherResults:
 def results_in(table: Table, settings: Settings) -> OtherResults:
     """The results of another program for a scene in a table.
 
-    Its head names the columns x (m), t (s), and friction force or displacement, with units if they
-    are others; further columns are passed over, and rows may have any order.
+    Its head names the columns x (m), t (s), and friction force or displacement, with
+    units if they are others; further columns are passed over, and rows may have any
+    order.
 
     Raises
     ------
     SettingError
-        For a table that is too large, or without these columns; for what is no finite number,
-        another unit, points outside of the body, or fewer than `FEWEST` rows during the run; for a
-        displacement of other scenes than a single rod.
+        For a table that is too large, or without these columns; for what is no finite
+        number, another unit, points outside of the body, or fewer than `FEWEST` rows
+        during the run; for a displacement of other scenes than a single rod.
     """
     table = table.given_as("the results", CAN)
     kind = settings.kind
@@ -90,7 +96,9 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
     x, t, values = reading.numbers
     _check_places(x, t, reading.lines, settings, table.refuse)
     x = np.clip(x, 0.0, settings.length)
-    return OtherResults(quantity, x, t, values, table.source, settings.scene, reading.message)
+    return OtherResults(
+        quantity, x, t, values, table.source, settings.scene, reading.message
+    )
 
 
 def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
@@ -105,21 +113,31 @@ def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
 def _columns(table: Table) -> tuple[str, list[TableColumn]]:
     """The quantity that is named, and the columns of x, t, and of it."""
     if not any(column.quantities[0] for column in table.columns):
-        raise table.refuse("name its columns in the first line, as in x,t,friction force")
+        raise table.refuse(
+            "name its columns in the first line, as in x,t,friction force"
+        )
     x, t = (table.find(table.columns, {kind}) for kind in ("position", "time"))
     if x is None or t is None:
         raise table.refuse(f"its head names no column {'t' if x else 'x'}: add it")
-    fields = {kind: table.find(table.columns, {kind}) for kind in (FRICTION, DISPLACEMENT)}
+    fields = {
+        kind: table.find(table.columns, {kind}) for kind in (FRICTION, DISPLACEMENT)
+    }
     named = [(kind, column) for kind, column in fields.items() if column]
     if len(named) != 1:
-        which = "both friction force and" if named else "neither friction force nor"
+        if named:
+            which = "both friction force and"
+        else:
+            which = "neither friction force nor"
         raise table.refuse(f"its head names {which} displacement: give one of them")
     quantity, column = named[0]
     return quantity, [x, t, column]
 
 
-def _check_places(x: Array, t: Array, lines: Indices, settings: Settings, refuse: Refuse) -> None:
-    length, duration = settings.length, settings.duration
+def _check_places(
+    x: Array, t: Array, lines: Indices, settings: Settings, refuse: Refuse
+) -> None:
+    length = settings.length
+    duration = settings.duration
     beyond = np.flatnonzero((x < -EDGE * length) | (x > (1.0 + EDGE) * length))
     if len(beyond):
         raise refuse(
@@ -140,27 +158,41 @@ class Comparison:
     Friction is that of the interface, or of the first one if there is none of its name.
     """
 
-    def __init__(self, results: OtherResults, problem: Problem, interface: str = "") -> None:
+    def __init__(
+        self, results: OtherResults, problem: Problem, interface: str = ""
+    ) -> None:
         names = list(problem.rubbing)
-        self.results, self._problem = results, problem
-        self.interface = interface if interface in names else names[0]
-        x, t, positions = results.positions, results.times, problem.positions
-        self._places, self._sizes = None, np.ones((1, 1))
+        self.results = results
+        self._problem = problem
+        if interface in names:
+            self.interface = interface
+        else:
+            self.interface = names[0]
+        x = results.positions
+        t = results.times
+        positions = problem.positions
+        self._places = None
+        self._sizes = np.ones((1, 1))
         if results.quantity == FRICTION:
             law = problem.rubbing[self.interface]
             self._places = problem.contact_places[self.interface][-1]
-            self._sizes, positions = law.by_point(law.weights)[:, None], law.positions
+            self._sizes = law.by_point(law.weights)[:, None]
+            positions = law.positions
         self._order = np.argsort(positions, kind="stable")
         grids = positions[self._order], problem.instants
         # Rows as fractional numbers of points and instants
         at = np.array(
-            [np.interp(r, g, np.arange(len(g))) for r, g in zip((x, t), grids, strict=True)]
+            [
+                np.interp(r, g, np.arange(len(g)))
+                for r, g in zip((x, t), grids, strict=True)
+            ]
         )
         counts = _covers(grids[0], x) & _covers(grids[1], t)
         if self._places is not None:
             unknown = ~determinate_forces(problem)[self._places][self._order]
             counts &= _interpolated(unknown.astype(float), at) == 0.0
-        self.counted, self._at = int(counts.sum()), at[:, counts]
+        self.counted = int(counts.sum())
+        self._at = at[:, counts]
         self._values = results.values[counts]
         if self.counted >= FEWEST:
             self._weights = weights_of(x[counts], t[counts])
@@ -200,7 +232,10 @@ def weights_of(positions: Array, times: Array) -> Array:
     # All points of an instant may be one.
     own[lengths[number] == 0.0] = 1.0
     lengths = np.bincount(number, own, len(instants))
-    over_time = _halves(instants) if len(instants) > 1 else np.ones(len(instants))
+    if len(instants) > 1:
+        over_time = _halves(instants)
+    else:
+        over_time = np.ones(len(instants))
     weights = np.empty(len(times))
     weights[order] = over_time[number] * own / lengths[number]
     return weights
@@ -208,7 +243,8 @@ def weights_of(positions: Array, times: Array) -> Array:
 
 def _covers(grid: Array, places: Array) -> Flags:
     """Which places lie between the ends of a grid."""
-    low, high = float(grid.min()), float(grid.max())
+    low = float(grid.min())
+    high = float(grid.max())
     edge = EDGE * (high - low)
     return np.asarray((places >= low - edge) & (places <= high + edge))
 

@@ -2,18 +2,20 @@
 
     fitted = fit(settings, measured, ["friction", "contact_stiffness"])
 
-The differences of `solver.study.measured_loop` are minimised in the sum of their squares, over z:
-the logarithm of a setting over its start, where it is positive and spans decades, else its change
-over its size. From the best of some values of each setting alone a trust-region method (SciPy's
-`least_squares`) goes on within their bounds; every run starts from what stuck and slipped in the
-one before. Then the valley is followed along its weakest direction, both ways, and along each
-setting: where a run is nearer, the method goes on from there.
+The differences of `solver.study.measured_loop` are minimised in the sum of their
+squares, over z: the logarithm of a setting over its start, where it is positive and
+spans decades, else its change over its size. From the best of some values of each
+setting alone a trust-region method (SciPy's `least_squares`) goes on within their
+bounds; every run starts from what stuck and slipped in the one before. Then the valley
+is followed along its weakest direction, both ways, and along each setting: where a run
+is nearer, the method goes on from there.
 
-What is known of a setting is what its profile says (`solver.study.valley`): the values beyond which
-no run is as near, whatever the others are, by two standard errors of the noise. A setting is not
-determined if that goes farther than a factor of 1.5. It stays as near to where it began as the loop
-allows. What may still be known is a combination of such settings: a product of powers, across the
-direction in which the valley goes, with the margin that its own profile has.
+What is known of a setting is what its profile says (`solver.study.valley`): the values
+beyond which no run is as near, whatever the others are, by two standard errors of the
+noise. A setting is not determined if that goes farther than a factor of 1.5. It stays
+as near to where it began as the loop allows. What may still be known is a combination
+of such settings: a product of powers, across the direction in which the valley goes,
+with the margin that its own profile has.
 """
 
 from __future__ import annotations
@@ -57,11 +59,11 @@ class Combination:
     powers
         Of the settings by name.
     value, lower, upper
-        The product in SI, and the ends of what is within two standard errors; NaN where some
-        setting has no logarithm.
+        The product in SI, and the ends of what is within two standard errors; NaN where
+        some setting has no logarithm.
     factor
-        So far from its value each setting is looked at: a product of powers may not be what is
-        known farther away.
+        So far from its value each setting is looked at: a product of powers may not be
+        what is known farther away.
     """
 
     powers: dict[str, float]
@@ -73,7 +75,9 @@ class Combination:
     @property
     def error(self) -> float:
         """Standard error, as a share of the value: half of the distance to the farther end."""
-        return max(self.upper - self.value, self.value - self.lower) / (2.0 * self.value)
+        return max(self.upper - self.value, self.value - self.lower) / (
+            2.0 * self.value
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +87,8 @@ class Fit:
     Attributes
     ----------
     lower, upper
-        Ends of what is within two standard errors of the p settings that were fitted, shape (p,),
-        in SI; infinite where the loop gives none.
+        Ends of what is within two standard errors of the p settings that were fitted,
+        shape (p,), in SI; infinite where the loop gives none.
     correlation
         Of the values, shape (p, p); NaN where there is none.
     together
@@ -92,7 +96,8 @@ class Fit:
     for_the_mesh
         Whether a setting would be known if it were not for the mesh, shape (p,).
     mesh
-        Change of the loop on elements of half the size, as a share of the measured range.
+        Change of the loop on elements of half the size, as a share of the measured
+        range.
     """
 
     settings: Settings
@@ -122,14 +127,14 @@ def fit(
 ) -> Fit:
     """Find the settings under which a run comes nearest to a measured loop.
 
-    It begins at the settings; of these one to four are fitted. `watch` is called after each run
-    with how many there were, and the nearest one.
+    It begins at the settings; of these one to four are fitted. `watch` is called after
+    each run with how many there were, and the nearest one.
 
     Raises
     ------
     RefusedError
-        For settings that cannot be fitted, a loop that is none of this scene or too short, and a
-        first run that does not converge.
+        For settings that cannot be fitted, a loop that is none of this scene or too
+        short, and a first run that does not converge.
     """
     if not 1 <= len(set(names)) == len(names) <= MOST:
         can = f"one to {MOST} settings, each once, of {', '.join(fittable(settings))}"
@@ -139,7 +144,9 @@ def fit(
     count = len(names)
     if rows <= count + 1:
         can = f"at least {count + 2} rows for {count} settings"
-        raise SettingError("the measured loop", measured.source, can, f"{rows} are in the run")
+        raise SettingError(
+            "the measured loop", measured.source, can, f"{rows} are in the run"
+        )
     valley, profiles = _explored(runs)
     is_known = np.array([profile.is_known for profile in profiles])
     blind = _blind(valley, is_known)
@@ -147,7 +154,9 @@ def fit(
     combinations: list[Combination] = []
     for reach in (WALK, LIMIT):
         if not combinations and 0 < len(blind) < (~is_known).sum():
-            combinations = _combinations(valley.around(z, reach), reach, blind, is_known)
+            combinations = _combinations(
+                valley.around(z, reach), reach, blind, is_known
+            )
     return Fit(
         settings=settings.replace(**runs.changes(z)),
         names=runs.names,
@@ -214,7 +223,9 @@ def _margins(valley: Valley, profiles: list[Profile]) -> dict[str, Array]:
     }
 
 
-def _combinations(valley: Valley, reach: float, blind: Array, is_known: Flags) -> list[Combination]:
+def _combinations(
+    valley: Valley, reach: float, blind: Array, is_known: Flags
+) -> list[Combination]:
     """Combinations that are determined of settings that are not, so far around a place."""
     is_open = np.flatnonzero(~is_known)
     floor = [*blind]
@@ -237,7 +248,9 @@ def _combinations(valley: Valley, reach: float, blind: Array, is_known: Flags) -
     return combinations
 
 
-def _combination(valley: Valley, reach: float, moves: Array, powers: Array) -> Combination | None:
+def _combination(
+    valley: Valley, reach: float, moves: Array, powers: Array
+) -> Combination | None:
     """A combination, of powers (p,), if it is known along the moves of a floor, (n, p)."""
     profile = valley.profile(powers)
     # A floor is bent, and no product of powers is the same all along it.
@@ -266,7 +279,9 @@ def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
     known = np.eye(len(is_known))
     if len(blind):
         known = null_space(blind)
-    covariance = known @ np.linalg.pinv(known.T @ jacobian.T @ jacobian @ known) @ known.T
+    covariance = (
+        known @ np.linalg.pinv(known.T @ jacobian.T @ jacobian @ known) @ known.T
+    )
     deviations = np.sqrt(np.diag(covariance))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(deviations, deviations)

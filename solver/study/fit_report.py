@@ -31,18 +31,29 @@ from solver.study.page import (
 from solver.study.quantities.finished import FinishedRun
 from solver.study.valley import FACTOR
 
-PARAMETERS, LOOP, SETTINGS, PAGE = "parameters.csv", "loop.csv", "settings.toml", "fit.html"
+PARAMETERS = "parameters.csv"
+LOOP = "loop.csv"
+SETTINGS = "settings.toml"
+PAGE = "fit.html"
 FILES = PARAMETERS, LOOP, SETTINGS, PAGE
 
 
 def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
     """What was found, a sentence or a row of a table a line."""
-    return [*aligned(_rows(fit)).splitlines(), *messages(fit), _distances(fit, measured)]
+    return [
+        *aligned(_rows(fit)).splitlines(),
+        *messages(fit),
+        _distances(fit, measured),
+    ]
 
 
 def messages(fit: Fit) -> list[str]:
     """What the loop cannot tell, and what else there is to know, in sentences."""
-    lost = [name for name, error in zip(fit.names, fit.errors, strict=True) if math.isinf(error)]
+    lost = [
+        name
+        for name, error in zip(fit.names, fit.errors, strict=True)
+        if math.isinf(error)
+    ]
     sentences = [_known(combination) for combination in fit.together]
     if lost and fit.together:
         sentences.append(
@@ -57,7 +68,11 @@ def messages(fit: Fit) -> list[str]:
     sentences += _bounds(fit)
     if fit.for_the_mesh.any():
         names = listed(
-            [n for n, is_lost in zip(fit.names, fit.for_the_mesh, strict=True) if is_lost]
+            [
+                n
+                for n, is_lost in zip(fit.names, fit.for_the_mesh, strict=True)
+                if is_lost
+            ]
         )
         sentences.append(
             f"With elements of half the size the loop changes by {100.0 * fit.mesh:.2g} % of its "
@@ -68,7 +83,9 @@ def messages(fit: Fit) -> list[str]:
     given = nearest.beside.figures(nearest.run.iterate)["distance_given"]
     sentences += [f"{message}." for message in nearest.beside.drive_messages(given)]
     if not nearest.run.solution.is_certified:
-        sentences.append("The nearest run is not certified, so that values may be less exact.")
+        sentences.append(
+            "The nearest run is not certified, so that values may be less exact."
+        )
     return sentences
 
 
@@ -166,7 +183,10 @@ def as_json(fit: Fit) -> dict[str, Any]:
     """The same for scripts."""
     figures = fit.nearest.beside.figures(fit.nearest.run.iterate)
     return {
-        **{name: figures[name] for name in ("quantity", "distance", "rows", "rows_compared")},
+        **{
+            name: figures[name]
+            for name in ("quantity", "distance", "rows", "rows_compared")
+        },
         "distance_before": fit.first.distance,
         "runs": fit.runs,
         "parameters": {row[0]: _parameter(row) for row in _entries(fit)},
@@ -193,14 +213,22 @@ def _parameter(row: list[Any]) -> dict[str, float]:
 def write_loop(run: FinishedRun, folder: Path) -> None:
     """Write the loop of a run as CSV, with time, in SI."""
     across, up = (f"{name} [{unit}]" for name, unit in run.loop.axes)
-    columns = {"time [s]": run.problem.instants, across: run.displacement, up: run.force}
+    columns = {
+        "time [s]": run.problem.instants,
+        across: run.displacement,
+        up: run.force,
+    }
     write(folder / LOOP, csv_of(columns))
 
 
 def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
     """Write all files."""
     head = ["setting", "unit", "start", "value", "standard_error", "lower", "upper"]
-    write_csv(folder / PARAMETERS, [*head, *(f"correlation_{n}" for n in fit.names)], _entries(fit))
+    write_csv(
+        folder / PARAMETERS,
+        [*head, *(f"correlation_{n}" for n in fit.names)],
+        _entries(fit),
+    )
     write_loop(fit.nearest.run, folder)
     write(folder / SETTINGS, dump(fit.settings))
     sentences = [
@@ -214,11 +242,15 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
         PlotSection("Loop and differences", _panels(fit, measured)),
         f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
     ]
-    write_page(folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections)
+    write_page(
+        folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections
+    )
 
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
-    nearest, beside, first = fit.nearest, fit.nearest.beside, fit.first.run
+    nearest = fit.nearest
+    beside = fit.nearest.beside
+    first = fit.first.run
     x, y = (PanelAxis(title, unit) for title, unit in nearest.run.loop.axes)
     curves = (
         PanelCurve("measured", measured.displacement, measured.force, 5, "points"),
@@ -230,5 +262,7 @@ def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
     share = PanelAxis(f"{beside.quantity}: fitted less measured", "% of its range")
     return [
         Panel("Force over displacement", x, y, curves),
-        Panel("What is left", PanelAxis("row of the table", whole=True), share, (left,)),
+        Panel(
+            "What is left", PanelAxis("row of the table", whole=True), share, (left,)
+        ),
     ]

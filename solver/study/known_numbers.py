@@ -17,7 +17,10 @@ from solver.discrete.rods.rods import Rods
 from solver.discrete.structure import Loop, LoopFields
 from solver.latin import Solution
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
-from solver.reference.closed_forms.fluid_driven_slip import fronts, slip_under_growing_strength
+from solver.reference.closed_forms.fluid_driven_slip import (
+    fronts,
+    slip_under_growing_strength,
+)
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.study.quantities.cycles import turning_points
 
@@ -66,14 +69,25 @@ def loop(answer: Answer) -> Iterator[Number]:
     (exact,) = [curve for curve in curves if curve.of == "loop"]
     loop = answer.loop
     across, up = loop.along(answer.fields)
-    known, found, given, named = exact.across, across, up, loop.across
+    known = exact.across
+    found = across
+    given = up
+    named = loop.across
     if loop.finds_force(answer.problem):
-        known, found, given, named = exact.up, up, across, loop.up
+        known = exact.up
+        found = up
+        given = across
+        named = loop.up
     sizes = np.abs(known)
     places = {"largest": int(sizes.argmax()), "last": len(sizes) - 1}
     for word, place in places.items():
         if word == "largest" or 0.01 < sizes[place] / sizes.max() < 0.99:
-            yield f"{word} {named[0].lower()}", named[1], float(known[place]), float(found[place])
+            yield (
+                f"{word} {named[0].lower()}",
+                named[1],
+                float(known[place]),
+                float(found[place]),
+            )
     if turning_points(given) and (unit := WORKS.get(loop.across[1])):
         start = int(np.argmax(given))
         exact_work, work = (
@@ -92,13 +106,21 @@ def opening(answer: Answer) -> Iterator[Number]:
     assert strand.broken is not None
     wire, node = strand.broken
     before = (wire - 1) * (strand.elements + 1) + node
-    moved, slip = answer.fields.displacement[before : before + 2, -1], exact.slip[node:, -1]
-    yield "opening of the break", "m", float(slip[1] - slip[0]), float(moved[1] - moved[0])
+    moved = answer.fields.displacement[before : before + 2, -1]
+    slip = exact.slip[node:, -1]
+    yield (
+        "opening of the break",
+        "m",
+        float(slip[1] - slip[0]),
+        float(moved[1] - moved[0]),
+    )
 
 
 def _half_plane(answer: Answer, total: float) -> HalfPlane:
     settings = answer.settings
-    return HalfPlane(total, settings.radius, settings.young / (1.0 - settings.poisson**2))
+    return HalfPlane(
+        total, settings.radius, settings.young / (1.0 - settings.poisson**2)
+    )
 
 
 def _places(answer: Answer, force: Array) -> tuple[Array, Array]:
@@ -121,15 +143,18 @@ def pressed_parabola(answer: Answer) -> Iterator[Number]:
 def sheared_parabola(answer: Answer) -> Iterator[Number]:
     """What sticks as the shear has its first peak, and what a cycle takes.
 
-    The half-width is from the second moments of pressure and friction, as of two square roots: a
-    count of nodes would be coarse.
+    The half-width is from the second moments of pressure and friction, as of two square
+    roots: a count of nodes would be coarse.
     """
-    (pressing, shear), friction = answer.support, answer.settings.friction
+    (pressing, shear) = answer.support
+    friction = answer.settings.friction
     first = (answer.settings.instants - 1) // 3
     pressed, held = (np.abs(force[:, first]) for force in (pressing, shear))
     lengths, places = _places(answer, pressed)
-    total, carried = float(pressed.sum()), friction * float(pressed.sum())
-    exact, share = _half_plane(answer, total), float(held.sum()) / carried
+    total = float(pressed.sum())
+    carried = friction * float(pressed.sum())
+    exact = _half_plane(answer, total)
+    share = float(held.sum()) / carried
     moments = friction * float(places**2 @ pressed) - float(places**2 @ held)
     stuck = 2.0 * np.sqrt(moments / (carried - held.sum()))
     yield "half-width of stick", "m", exact.stuck(share), stuck
@@ -157,12 +182,19 @@ def driven_by_fluid(answer: Answer) -> Iterator[Number]:
     lack = own.normal_stress - own.shear_stress / own.friction
     late = slice(own.instants // 2, None)
     diffused = np.sqrt(4.0 * own.diffusivity * own.times()[late])
-    place, slip = answer.problem.rubbing["support"].positions, np.abs(answer.slip[:, late])
+    place = answer.problem.rubbing["support"].positions
+    slip = np.abs(answer.slip[:, late])
     reached = np.array([_front(place, at_instant) for at_instant in slip.T])
-    # The pressure is DP erfc(x / sqrt(4 alpha t)) (R. C. Viesca, J. Fluid Mech. 928, A29, 2021).
+    # The pressure is DP erfc(x / sqrt(4 alpha t)) (R. C. Viesca, J. Fluid Mech. 928,
+    # A29, 2021).
     far = np.linspace(0.0, 20.0, 20_001)
     (exact,) = fronts(far, (lack / own.overpressure - erfc(far))[:, None])
-    yield "front over sqrt(4 alpha t)", "-", exact, reached @ diffused / (diffused @ diffused)
+    yield (
+        "front over sqrt(4 alpha t)",
+        "-",
+        exact,
+        reached @ diffused / (diffused @ diffused),
+    )
 
 
 def _front(place: Array, slip: Array) -> float:
@@ -178,11 +210,16 @@ def growing_strength(answer: Answer) -> Iterator[Number]:
 
     The last node that slips has no part of its share, half an element, that sticks.
     """
-    own, place = answer.settings, answer.problem.rubbing["support"].positions
-    half_length, strength = own.normal_profile[1][0], own.friction * own.normal_stress
+    own = answer.settings
+    place = answer.problem.rubbing["support"].positions
+    half_length = own.normal_profile[1][0]
+    strength = own.friction * own.normal_stress
     stiffness = 0.5 * own.young / (1.0 - own.poisson**2)
-    exact = slip_under_growing_strength(place, half_length, own.shear_stress - strength, stiffness)
-    slip, middle = np.abs(answer.slip[:, -1]), int(np.argmin(np.abs(place - half_length / 2)))
+    exact = slip_under_growing_strength(
+        place, half_length, own.shear_stress - strength, stiffness
+    )
+    slip = np.abs(answer.slip[:, -1])
+    middle = int(np.argmin(np.abs(place - half_length / 2)))
     yield "slip in the middle", "m", exact[0], slip[0]
     yield "slip half-way to the end", "m", exact[middle], slip[middle]
 
@@ -192,8 +229,10 @@ def joint(answer: Answer) -> Iterator[Number]:
 
     Both bodies are in series with it, and their far sides stay where they are.
     """
-    own, law = answer.settings, answer.problem.rubbing["support"]
-    height, modulus = own.height, 0.5 * own.young / (1.0 + own.poisson)
+    own = answer.settings
+    law = answer.problem.rubbing["support"]
+    height = own.height
+    modulus = 0.5 * own.young / (1.0 + own.poisson)
     stiffness = own.tangential_stiffness
     alone = own.shear_stress / stiffness
     slip = answer.slip[:, -1]
@@ -201,7 +240,12 @@ def joint(answer: Answer) -> Iterator[Number]:
     areas = law.by_point(law.weights)
     exact = alone / (1.0 + modulus / (2.0 * stiffness * height))
     yield "slip at the well", "m", exact, float(slip[0])
-    yield "friction per area over slip", "N/m^3", stiffness, float((held / areas / slip).max())
+    yield (
+        "friction per area over slip",
+        "N/m^3",
+        stiffness,
+        float((held / areas / slip).max()),
+    )
 
 
 def _forces(answer: Answer) -> tuple[float, float]:
@@ -216,11 +260,17 @@ def pile(answer: Answer) -> Iterator[Number]:
 
     About the toe what presses, and the weight of the bricks, have half a length.
     """
-    settings, (pressed, brick) = answer.settings, _forces(answer)
+    settings = answer.settings
+    (pressed, brick) = _forces(answer)
     slides = settings.friction * (pressed + brick)
     count = settings.courses
     tips = 0.5 * settings.length * (pressed + count * brick) / (count * settings.height)
-    yield "shear force", "N/m", min(slides, tips), float(answer.loop.along(answer.fields)[1][-1])
+    yield (
+        "shear force",
+        "N/m",
+        min(slides, tips),
+        float(answer.loop.along(answer.fields)[1][-1]),
+    )
 
 
 def weighed_wall(answer: Answer) -> Iterator[Number]:
@@ -254,7 +304,9 @@ def on_slope(answer: Answer) -> Iterator[Number]:
 
 def pushed_block(answer: Answer) -> Iterator[Number]:
     """Forces and moments of the side that pushes a block under pressure, and of its support."""
-    own, problem, fields = answer.settings, answer.problem, answer.fields
+    own = answer.settings
+    problem = answer.problem
+    fields = answer.fields
     load = -own.top_normal_traction * own.length
     pressing = answer.support[0][:, -1]
     push = reaction(problem, "left", 0).of(fields)

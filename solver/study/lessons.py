@@ -1,6 +1,7 @@
 """Lessons: files that are read, checked against the engine, and shown by the page.
 
-A lesson is a question, a prediction, a run with one or two controls, and claims that runs test.
+A lesson is a question, a prediction, a run with one or two controls, and claims that
+runs test.
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ FEWEST_POINTS = 3
 class Claim:
     """A claim of a lesson on a quantity of a run.
 
-    It holds from `low` to `high`, infinite for what never comes; `expected` says so in words.
+    It holds from `low` to `high`, infinite for what never comes; `expected` says so in
+    words.
     """
 
     claim: str
@@ -60,29 +62,35 @@ class Claim:
     def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
         """Whether it holds in a run, and what was measured there, in words.
 
-        A quantity of one instant has to be as expected where the plots stand, too: at a share of
-        the interval.
+        A quantity of one instant has to be as expected where the plots stand, too: at a
+        share of the interval.
         """
-        quantity, value = self.quantity, self.quantity(run)
-        holds, words = self.low <= value <= self.high, _written(value, quantity.unit)
+        quantity = self.quantity
+        value = self.quantity(run)
+        holds = self.low <= value <= self.high
+        words = _written(value, quantity.unit)
         if quantity.when is not None:
             seen = quantity.of(run, round(share * (run.problem.n_instants - 1)))
             if not self.low <= seen <= self.high:
                 holds = False
-                words += f", but {_written(seen, quantity.unit)} at the instant of the plots"
+                words += (
+                    f", but {_written(seen, quantity.unit)} at the instant of the plots"
+                )
         return holds, f"{quantity.title}: {words}; expected {self.expected}"
 
 
 def _written(value: float, unit: str) -> str:
-    return "never" if math.isinf(value) else f"{value:.4g} {unit}".strip()
+    if math.isinf(value):
+        return "never"
+    return f"{value:.4g} {unit}".strip()
 
 
 @dataclass(frozen=True, eq=False)
 class Lesson:
     """A lesson as its file says, whose name it has (app/lessons/README.md).
 
-    `right` is the index of the right choice; text and explanation are in paragraphs. `instant` and
-    `until` are shares of the interval. No `interface` is the first one.
+    `right` is the index of the right choice; text and explanation are in paragraphs.
+    `instant` and `until` are shares of the interval. No `interface` is the first one.
     """
 
     name: str
@@ -109,11 +117,12 @@ class Lesson:
     def curve(self) -> list[tuple[float, float]]:
         """What is measured over the setting that one draws over, in its order.
 
-        Of the checkpoints that change nothing else and ask for the quantity of the first of them:
-        the middle of what is expected, infinite for never.
+        Of the checkpoints that change nothing else and ask for the quantity of the
+        first of them: the middle of what is expected, infinite for never.
         """
         curve: dict[float, float] = {}
-        own, asked = self.settings.values(), ""
+        own = self.settings.values()
+        asked = ""
         for claim in self.checkpoints:
             values = claim.settings.values()
             same = all(values[name] == own[name] for name in own if name != self.draw)
@@ -126,12 +135,15 @@ class Lesson:
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     """Whether what a lesson claims holds, each with a line; equal settings share a run."""
     reads = {claim.quantity.reads for claim in lesson.checkpoints}
-    errors, indicators = "errors" in reads, "indicators" in reads
+    errors = "errors" in reads
+    indicators = "indicators" in reads
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
         key = dump(claim.settings)
         if key not in runs:
-            runs[key] = finished_run(claim.settings, errors=errors, indicators=indicators)
+            runs[key] = finished_run(
+                claim.settings, errors=errors, indicators=indicators
+            )
         holds, words = claim.tested(runs[key], lesson.instant)
         yield holds, f"{'+' if holds else '-'} {claim.claim} {words}"
 
@@ -143,12 +155,19 @@ def lesson_from_file(path: Path) -> Lesson:
 
 
 def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
-    kept = {"scene": str, "settings": dict, "text": str, "explanation": str, "checkpoints": list}
+    kept = {
+        "scene": str,
+        "settings": dict,
+        "text": str,
+        "explanation": str,
+        "checkpoints": list,
+    }
     values = fields_in(Lesson, table, **kept)
     kind = scene_settings(values.pop("scene"))
     with placed("settings"):
         settings = kind.checked(values["settings"])
-    controls, most = values["controls"], f"at most {MOST_CONTROLS} settings"
+    controls = values["controls"]
+    most = f"at most {MOST_CONTROLS} settings"
     is_few = len(controls) <= MOST_CONTROLS
     require(is_few, "controls", controls, most, "a lesson is about one thing")
     check_controls(controls, settings)
@@ -156,7 +175,11 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
         with placed(key):
             values[key] = _paragraphs(values[key], controls)
     checkpoints = tuple(_checkpoints(values["checkpoints"], settings))
-    changed = {"settings": settings, "right": values["right"] - 1, "checkpoints": checkpoints}
+    changed = {
+        "settings": settings,
+        "right": values["right"] - 1,
+        "checkpoints": checkpoints,
+    }
     lesson = Lesson(name=name, **(values | changed))
     _check(lesson)
     return lesson
@@ -164,21 +187,30 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
 
 def _check(lesson: Lesson) -> None:
     """Refuse numbers out of range, and names of what there is not."""
-    right, count = lesson.right + 1, len(lesson.choices)
+    right = lesson.right + 1
+    count = len(lesson.choices)
     can = f"the number of one of at least two choices, of which there are {count}"
     require(1 <= right <= count >= 2, "right", right, can, "count from 1")
-    subject, known = lesson.subject, ", ".join(SUBJECTS)
+    subject = lesson.subject
+    known = ", ".join(SUBJECTS)
     require(subject in SUBJECTS, "subject", subject, known, "say what it is about")
-    instant, until, can = lesson.instant, lesson.until, "a share of the interval, from 0 to 1"
+    instant = lesson.instant
+    until = lesson.until
+    can = "a share of the interval, from 0 to 1"
     require(0.0 <= instant <= 1.0, "instant", instant, can, "say where its plots stand")
     can += " and above 0"
     require(0.0 < until <= 1.0, "until", until, can, "say how far its picture moves")
-    known, are_shown = ", ".join(lesson.views), {*lesson.beside} <= {*lesson.views}
+    known = ", ".join(lesson.views)
+    are_shown = {*lesson.beside} <= {*lesson.views}
     require(are_shown, "beside", lesson.beside, known, "choose some of its views")
-    points = [place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)]
+    points = [
+        place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)
+    ]
     is_drawn = not lesson.draw or len(points) >= FEWEST_POINTS
     can = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
-    require(is_drawn, "draw", lesson.draw, can, "write more checkpoints, or leave it out")
+    require(
+        is_drawn, "draw", lesson.draw, can, "write more checkpoints, or leave it out"
+    )
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
@@ -190,24 +222,34 @@ def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
         elif kind != "control" or name not in controls:
             known = ", ".join(f"{{control:{control}}}" for control in controls)
             remedy = "correct what stands in braces"
-            raise SettingError("placeholder", place, f"{known}, {{value:QUANTITY}}", remedy)
+            raise SettingError(
+                "placeholder", place, f"{known}, {{value:QUANTITY}}", remedy
+            )
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
 
 
 def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim]:
-    require(bool(values), "checkpoints", values, "at least one", "say what the lesson claims")
+    require(
+        bool(values),
+        "checkpoints",
+        values,
+        "at least one",
+        "say what the lesson claims",
+    )
     for number, entry in enumerate(values, start=1):
         with placed(f"checkpoint {number}"):
             is_table = isinstance(entry, dict)
             require(is_table, "checkpoints", entry, "a table", "write [[checkpoints]]")
             check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
-            own, quantity = settings.replace(**entry.get("settings", {})), entry["quantity"]
+            own = settings.replace(**entry.get("settings", {}))
+            quantity = entry["quantity"]
             yield Claim(entry["claim"], own, reading(quantity), *_expected(entry))
 
 
 def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:
     """Both ends of what is expected, and words: a number and its tolerance, a range, or "never"."""
-    value, tolerance = entry["expected"], entry.get("tolerance")
+    value = entry["expected"]
+    tolerance = entry.get("tolerance")
     if value == "never" and tolerance is None:
         return math.inf, math.inf, "never"
     if isinstance(value, list) and tolerance is None and len(value) == 2:
@@ -215,7 +257,9 @@ def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:
             return value[0], value[1], f"{value[0]:g} to {value[1]:g}"
     elif is_number(value) and tolerance is not None:
         if not 0.0 <= tolerance < 1.0:
-            raise SettingError("tolerance", tolerance, "a share from 0 to below 1", "mend it")
+            raise SettingError(
+                "tolerance", tolerance, "a share from 0 to below 1", "mend it"
+            )
         off = abs(value) * tolerance
         return value - off, value + off, f"{value:g} within {100 * tolerance:g} %"
     allowed = 'a number with a tolerance, a range [low, high], or "never"'

@@ -1,11 +1,13 @@
 """Times of all methods from settings to result: errors against them, and who is first where.
 
-Each method pays for what it needs: discretisation, factorisation, the coarser mesh, iterations. One
-pass without the clock finds the errors, and warms up; then timed passes run every method once, in
-turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
+Each method pays for what it needs: discretisation, factorisation, the coarser mesh,
+iterations. One pass without the clock finds the errors, and warms up; then timed passes
+run every method once, in turn, and the median of the passes counts. No error is
+computed while the clock of a pass runs.
 
-Nothing is kept of what was solved before, and `timeit` collects no garbage meanwhile: to collect it
-bills all that the process holds. What is set side by side is of one clock, the processor's or not.
+Nothing is kept of what was solved before, and `timeit` collects no garbage meanwhile:
+to collect it bills all that the process holds. What is set side by side is of one
+clock, the processor's or not.
 """
 
 from __future__ import annotations
@@ -53,21 +55,23 @@ FACTORS = (0.5, 1.0, 2.0)
 """On the sizes and on the instants of the settings."""
 LARGE = (*FACTORS, 4.0, 8.0)
 """On the sizes, where minutes do not matter."""
-LONGEST, LONGEST_OF_LARGE = 10.0, 600.0
+LONGEST = 10.0
+LONGEST_OF_LARGE = 600.0
 """Seconds from which, by estimate, a size is left out."""
 REPEATS = 3
 SLOW = 1.0
 """Seconds from which one run is enough."""
-INCREMENTAL, FAST = "incremental solver", "LATIN fast"
+INCREMENTAL = "incremental solver"
+FAST = "LATIN fast"
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorCurve:
     """What a method reaches, and when.
 
-    Steps are iterations done, or Newton steps of the incremental solver; seconds the time from
-    settings to there, medians of the passes; errors the relative L2 distances to the incremental
-    reference, 0 for itself. All have shape (n,).
+    Steps are iterations done, or Newton steps of the incremental solver; seconds the
+    time from settings to there, medians of the passes; errors the relative L2 distances
+    to the incremental reference, 0 for itself. All have shape (n,).
     """
 
     method: str
@@ -92,23 +96,31 @@ class ErrorCurve:
         """Time from which on the friction force has been so near, and the step it was."""
         near = self.error_force <= level
         first = near.argmax()
-        return (float(self.seconds[first]), float(self.steps[first])) if near[first] else None
+        if near[first]:
+            return (float(self.seconds[first]), float(self.steps[first]))
+        return None
 
 
 def error_against_time(settings: Settings, repeats: int) -> list[ErrorCurve]:
     """Run every method `repeats` times, at least once, in turns; a curve for each."""
     problem = discretise(settings)
     reference = reference_of(problem)
-    distance, forms = distance_to(reference, problem), forms_of(settings)
+    distance = distance_to(reference, problem)
+    forms = forms_of(settings)
     errors = {method: _errors(form, distance) for method, form in forms.items()}
-    times: dict[str, list[list[float]]] = {method: [] for method in (*forms, INCREMENTAL)}
+    times: dict[str, list[list[float]]] = {
+        method: [] for method in (*forms, INCREMENTAL)
+    }
     for _ in range(repeats):
         for method, form in forms.items():
             work = partial(_append_times, times[method], form, len(errors[method]))
             seconds_of(work)
-        times[INCREMENTAL].append([seconds_of(partial(incremental, settings), time.perf_counter)])
+        times[INCREMENTAL].append(
+            [seconds_of(partial(incremental, settings), time.perf_counter)]
+        )
     steps = {method: np.arange(1.0, len(own) + 1.0) for method, own in errors.items()}
-    errors[INCREMENTAL], steps[INCREMENTAL] = np.zeros((1, 2)), np.array([float(reference.steps)])
+    errors[INCREMENTAL] = np.zeros((1, 2))
+    steps[INCREMENTAL] = np.array([float(reference.steps)])
     return [
         ErrorCurve(method, steps[method], np.median(each, axis=0), *errors[method].T)
         for method, each in times.items()
@@ -120,7 +132,10 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
     is_nested = settings.applies("start")
     auto = {"search_direction": "auto", **({"start": "nested"} if is_nested else {})}
     anderson = {**auto, "acceleration": "anderson"}
-    name = "LATIN auto k, nested" if is_nested else "LATIN auto k"
+    if is_nested:
+        name = "LATIN auto k, nested"
+    else:
+        name = "LATIN auto k"
     forms: dict[str, dict[str, Any]] = {
         "LATIN monoscale": {"multiscale": False},
         "LATIN multiscale": {},
@@ -130,13 +145,17 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
         FAST: {**anderson, "finish": "at-once"},
         "LATIN PGD": {"linear_stage": "pgd", **({} if is_nested else auto)},
     }
-    return {method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()}
+    return {
+        method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()
+    }
 
 
 def _errors(settings: Settings, distance: Distance) -> Array:
     """Errors of both fields, (n, 2), until the friction force is as near as the goal."""
     errors: list[tuple[float, float]] = []
-    for iterate, _ in islice(judged(discretise(settings), method_of(settings)), MOST_ITERATIONS):
+    for iterate, _ in islice(
+        judged(discretise(settings), method_of(settings)), MOST_ITERATIONS
+    ):
         force = distance.of_friction_force(iterate)
         errors.append((distance.of_displacement(iterate), force))
         if not math.isfinite(force) or (force <= GOAL and iterate.number > 1):
@@ -153,7 +172,9 @@ def _append_times(passes: list[list[float]], settings: Settings, number: int) ->
     passes.append([decision.seconds for _, decision in decisions])
 
 
-def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.process_time) -> float:
+def seconds_of(
+    work: Callable[[], object], clock: Callable[[], float] = time.process_time
+) -> float:
     """Time of some work, s; of the processor unless another clock is given."""
     return timeit(work, timer=clock, number=1)
 
@@ -184,7 +205,9 @@ class TimesAtSize:
     @property
     def ratio(self) -> float:
         """Time of LATIN over that of the incremental solver; NaN without an answer."""
-        return math.nan if self.message else self.latin / self.incremental
+        if self.message:
+            return math.nan
+        return self.latin / self.incremental
 
 
 def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSize]:
@@ -193,14 +216,19 @@ def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSi
     The method is the fast one; large are sizes that take minutes.
     """
     names = settings.GROWS
-    longest = LONGEST_OF_LARGE if large else LONGEST
+    if large:
+        longest = LONGEST_OF_LARGE
+    else:
+        longest = LONGEST
     measured: dict[tuple[int, int], TimesAtSize] = {}
     for later, size in product(FACTORS, LARGE if large else FACTORS):
         grown = {name: max(1, round(size * getattr(settings, name))) for name in names}
         instants = round(later * (settings.instants - 1)) + 1
         at = grown[names[0]], instants
         if at not in measured:
-            measured[at] = _measured(settings, {**grown, "instants": instants}, at, longest)
+            measured[at] = _measured(
+                settings, {**grown, "instants": instants}, at, longest
+            )
     return list(measured.values())
 
 
@@ -224,6 +252,10 @@ def _measured(
     ending = latin(form).status.ending
     seconds: list[tuple[float, ...]] = []
     while not seconds or (len(seconds) < REPEATS and sum(seconds[0]) < SLOW):
-        seconds.append(tuple(seconds_of(partial(solve, form)) for solve in (latin, incremental)))
+        seconds.append(
+            tuple(seconds_of(partial(solve, form)) for solve in (latin, incremental))
+        )
     mine, others = map(statistics.median, zip(*seconds, strict=True))
-    return TimesAtSize(*at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}")
+    return TimesAtSize(
+        *at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}"
+    )

@@ -1,8 +1,8 @@
 """Whether elements and instants are enough: a quantity on three of each, and what it tends to.
 
-Richardson's extrapolation, with the margin that Roache gives it (J. Fluids Eng. 116, 405, 1994).
-Runs end with the exact solution on their mesh, so what differs between them is the mesh alone, or
-the time step alone.
+Richardson's extrapolation, with the margin that Roache gives it (J. Fluids Eng. 116,
+405, 1994). Runs end with the exact solution on their mesh, so what differs between them
+is the mesh alone, or the time step alone.
 """
 
 from __future__ import annotations
@@ -18,13 +18,15 @@ from solver.study.quantities.quantity import Quantity
 
 SAFETY = 1.25
 """Roache's factor on what is still missing, for three meshes."""
-LEAST_ORDER, LARGEST_ORDER = 0.5, 2.1
-"""Between which an order is believed: a smaller one has shown no limit yet, and a larger one is
-luck, as no quantity of ours has one from linear elements."""
+LEAST_ORDER = 0.5
+LARGEST_ORDER = 2.1
+"""Between which an order is believed: a smaller one has shown no limit yet, and a
+larger one is luck, as no quantity of ours has one from linear elements."""
 UNSURE = 3.0
-"""Times the largest difference, where there is no limit to believe. Where the order is luck it is
-`SAFETY` times (both: Eca and Hoekstra, J. Comput. Phys. 262, 104, 2014)."""
-AN_ELEMENT, TIME_STEP = "an element's size", "a time step"
+"""Times the largest difference, where there is no limit to believe. Where the order is
+luck it is `SAFETY` times (both: Eca and Hoekstra, J. Comput. Phys. 262, 104, 2014)."""
+AN_ELEMENT = "an element's size"
+TIME_STEP = "a time step"
 """What is halved, in words."""
 EQUAL = 1e-6
 """Relative difference up to which two values are one."""
@@ -57,12 +59,15 @@ class Refinement:
     def order(self) -> float | None:
         """Power of that size with which the rest goes; None where there is no such."""
         first, second = self._steps
-        return math.log2(first / second) if first * second > 0.0 else None
+        if first * second > 0.0:
+            return math.log2(first / second)
+        return None
 
     @property
     def limit(self) -> float:
         """What the quantity tends to, or that on the finest mesh where nothing tells it."""
-        order, fine = self.order, self.values[-1]
+        order = self.order
+        fine = self.values[-1]
         if order is None or not LEAST_ORDER <= order <= LARGEST_ORDER:
             return fine
         return fine + self._steps[1] / math.expm1(order * math.log(2.0))
@@ -70,10 +75,13 @@ class Refinement:
     @property
     def margin(self) -> float:
         """To both sides of the limit."""
-        order, widest = self.order, max(map(abs, self._steps))
+        order = self.order
+        widest = max(map(abs, self._steps))
         if order is None or order < LEAST_ORDER:
             return UNSURE * widest
-        return SAFETY * (widest if order > LARGEST_ORDER else abs(self.limit - self.values[-1]))
+        return SAFETY * (
+            widest if order > LARGEST_ORDER else abs(self.limit - self.values[-1])
+        )
 
     @property
     def deviation(self) -> float:
@@ -81,14 +89,19 @@ class Refinement:
         if not any(self._steps):
             return 0.0
         most = abs(self.values[self.own] - self.limit) + self.margin
-        return most / abs(self.limit) if self.limit else math.inf if most else 0.0
+        if self.limit:
+            return most / abs(self.limit)
+        if most:
+            return math.inf
+        return 0.0
 
 
 def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], int]:
     """Settings with three sizes, each twice as fine as the one before, and the place of their own.
 
-    That is the middle one, or the first where the sizes cannot be halved. Names are those of the
-    mesh, or `instants`, of which the steps are counted. What a scene does not take is refused.
+    That is the middle one, or the first where the sizes cannot be halved. Names are
+    those of the mesh, or `instants`, of which the steps are counted. What a scene does
+    not take is refused.
     """
 
     def refined(factor: float) -> Settings:
@@ -96,7 +109,10 @@ def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], 
         for name in names:
             first = 1 if name == "instants" else 0
             size = factor * (settings.values()[name] - first) + first
-            sizes[name] = int(size) if size == int(size) else size
+            if size == int(size):
+                sizes[name] = int(size)
+            else:
+                sizes[name] = size
         return settings.replace(**sizes)
 
     try:
@@ -112,8 +128,12 @@ def decides(settings: Settings, asked: Quantity) -> bool:
 
 def value_on(settings: Settings, asked: Quantity) -> float:
     """A quantity of the solution on a mesh; NaN where no run certifies one."""
-    run = finished_run(settings.replace(finish="at-once"), errors=False, indicators=False)
-    return asked(run) if run.solution.is_certified else math.nan
+    run = finished_run(
+        settings.replace(finish="at-once"), errors=False, indicators=False
+    )
+    if run.solution.is_certified:
+        return asked(run)
+    return math.nan
 
 
 def size_of(settings: Settings) -> str:
@@ -129,7 +149,10 @@ def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
     if refinement.margin == 0.0:
         return f"All three are equal: {size} does not change it."
     limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
-    own = f"This run is within {_share(refinement)} of that." if refinement.limit else ""
+    if refinement.limit:
+        own = f"This run is within {_share(refinement)} of that."
+    else:
+        own = ""
     order = refinement.order
     if order is None:
         told = f"It follows no power of {size}: {limit} is all that is known."
@@ -160,4 +183,6 @@ def which_to_refine(elements: Refinement, instants: Refinement) -> str:
 
 
 def _share(refinement: Refinement) -> str:
-    return f"{100.0 * refinement.deviation:.2g} %" if refinement.deviation < 1.0 else "all of it"
+    if refinement.deviation < 1.0:
+        return f"{100.0 * refinement.deviation:.2g} %"
+    return "all of it"

@@ -1,7 +1,8 @@
 """A report: sections of words, tables and charts, and the one HTML page that a command makes of it.
 
-Words and tables are HTML. A chart is plain data: curves on a pair of axes, or a map over two. It is
-drawn by an entry point of the group `slipfront.renderers`, as the engine has none.
+Words and tables are HTML. A chart is plain data: curves on a pair of axes, or a map
+over two. It is drawn by an entry point of the group `slipfront.renderers`, as the
+engine has none.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ HUES = (
     *("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9"),
     *("#7B5CE0", "#999933", "#8C564B", "#B3003C", "#1F9AA0"),
 )
-"""Of curves, from hue 1 on: Okabe and Ito's palette, told apart by the colour-blind, and five more
-for panels of more curves, which have marks besides."""
+"""Of curves, from hue 1 on: Okabe and Ito's palette, told apart by the colour-blind,
+and five more for panels of more curves, which have marks besides."""
 Line = Literal["solid", "dashed", "dotted", "points"]
 
 
@@ -36,8 +37,8 @@ Line = Literal["solid", "dashed", "dotted", "points"]
 class PanelAxis:
     """A quantity, its unit (empty for a pure number), and whether decades are evenly spaced.
 
-    Without limits all of the curves is shown. On a whole one only whole numbers have a meaning;
-    names stand at 0, 1, ... where these are no numbers.
+    Without limits all of the curves is shown. On a whole one only whole numbers have a
+    meaning; names stand at 0, 1, ... where these are no numbers.
     """
 
     quantity: str
@@ -50,15 +51,18 @@ class PanelAxis:
     @property
     def label(self) -> str:
         """Quantity and unit."""
-        return f"{self.quantity} ({self.unit})" if self.unit else self.quantity
+        if self.unit:
+            return f"{self.quantity} ({self.unit})"
+        return self.quantity
 
 
 @dataclass(frozen=True, eq=False)
 class PanelCurve:
     """One line of a panel: points, shape (n,), in the units of the axes; none is drawn at NaN.
 
-    Curves of one hue belong together; 0 is the neutral one, of references. A curve without a label
-    is not in the legend, and one of "points" has a thin line between them.
+    Curves of one hue belong together; 0 is the neutral one, of references. A curve
+    without a label is not in the legend, and one of "points" has a thin line between
+    them.
     """
 
     label: str
@@ -72,8 +76,8 @@ class PanelCurve:
 class Runs:
     """Points of a chart that each stand for a run, n of them in the order in which they came.
 
-    Each belongs to the curve of its hue; in a panel y is NaN where a run has no value. `holds` is
-    whether it is an answer, and `said` what it is and came to, in words.
+    Each belongs to the curve of its hue; in a panel y is NaN where a run has no value.
+    `holds` is whether it is an answer, and `said` what it is and came to, in words.
     """
 
     numbers: Indices
@@ -126,7 +130,8 @@ class PlotSection:
 Section = str | PlotSection
 """Words and tables are HTML."""
 Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
-"""From sections, what all charts of a page need, once, and each of them as HTML of its own."""
+"""From sections, what all charts of a page need, once, and each of them as HTML of its
+own."""
 Shown = Mapping[str, tuple[str, int]]
 """Columns of a console: head and characters by name."""
 NUMBER = re.compile(r"-|-?\d[\d.e+-]*")
@@ -137,9 +142,16 @@ PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"
 def write_page(file: Path, title: str, report: Sequence[Section]) -> None:
     """Write a report as a page that needs nothing beside it."""
     plots = [part for part in report if isinstance(part, PlotSection)]
-    render = renderer() if plots else None
+    if plots:
+        render = renderer()
+    else:
+        render = None
     missing = f"<p>{escape(NO_CHARTS)}</p>"
-    head, drawn = render(plots) if render else ("", [missing] * len(plots))
+    if render:
+        head, drawn = render(plots)
+    else:
+        head = ""
+        drawn = [missing] * len(plots)
     places = iter(drawn)
     body = "\n".join(part if isinstance(part, str) else next(places) for part in report)
     write(file, PAGE.substitute(title=escape(title), head=head, body=body))
@@ -156,7 +168,9 @@ def renderer() -> Renderer | None:
 
 def bullets(lines: Sequence[str]) -> str:
     """Sentences as a list."""
-    return "<ul>\n" + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
+    return (
+        "<ul>\n" + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
+    )
 
 
 def html_table(rows: Iterable[Sequence[str]]) -> str:
@@ -166,12 +180,21 @@ def html_table(rows: Iterable[Sequence[str]]) -> str:
     for row in rest:
         wide = f'<td class="more" colspan="{len(head)}">{row[0]}</td>'
         lines.append(wide if len(row) == 1 < len(head) else "".join(map(_cell, row)))
-    return "<table>\n{}\n</table>".format("\n".join(f"<tr>{line}</tr>" for line in lines))
+    return "<table>\n{}\n</table>".format(
+        "\n".join(f"<tr>{line}</tr>" for line in lines)
+    )
 
 
 def _cell(text: str) -> str:
-    kind = "number" if NUMBER.fullmatch(text) else f"verdict {text}" if text in VERDICTS else ""
-    return f'<td class="{kind}">{escape(text)}</td>' if kind else f"<td>{escape(text)}</td>"
+    if NUMBER.fullmatch(text):
+        kind = "number"
+    elif text in VERDICTS:
+        kind = f"verdict {text}"
+    else:
+        kind = ""
+    if kind:
+        return f'<td class="{kind}">{escape(text)}</td>'
+    return f"<td>{escape(text)}</td>"
 
 
 def text_of(value: object, digits: int = 2) -> str:
@@ -180,7 +203,11 @@ def text_of(value: object, digits: int = 2) -> str:
         return "yes" if value else "no"
     if not isinstance(value, float):
         return str(value)
-    return "-" if math.isnan(value) else "never" if math.isinf(value) else f"{value:.{digits}g}"
+    if math.isnan(value):
+        return "-"
+    if math.isinf(value):
+        return "never"
+    return f"{value:.{digits}g}"
 
 
 def line_of(entries: Mapping[str, object], shown: Shown) -> str:
@@ -194,7 +221,9 @@ def head_of(shown: Shown) -> str:
     return line_of({name: head for name, (head, _) in shown.items()}, shown)
 
 
-def write_csv(file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
+def write_csv(
+    file: Path, head: Sequence[str], rows: Iterable[Iterable[object]]
+) -> None:
     """Write a table as CSV."""
     with whole_file(file) as open_file:
         csv.writer(open_file).writerows([head, *rows])
@@ -204,6 +233,8 @@ def aligned(rows: Sequence[Sequence[str]]) -> str:
     """A table in columns for a console."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        "  ".join(
+            cell.ljust(width) for cell, width in zip(row, widths, strict=True)
+        ).rstrip()
         for row in rows
     )

@@ -10,7 +10,14 @@ from solver.arrays import Array
 from solver.reduction.svd import Decomposition, front_decay
 from solver.reference.distance import Fields
 from solver.study.page import Line, Panel, PanelAxis, PanelCurve
-from solver.study.paper_runs import EARLY, LONG, Finding, PaperFigure, PaperRuns, paper_figure
+from solver.study.paper_runs import (
+    EARLY,
+    LONG,
+    Finding,
+    PaperFigure,
+    PaperRuns,
+    paper_figure,
+)
 
 SHOWN = 300
 """Iterations that Fig. 3 shows."""
@@ -36,7 +43,10 @@ MODE = PanelAxis("Space mode", "1/√m")
 
 def paper_figures(runs: PaperRuns) -> list[PaperFigure]:
     """Figs. 3 to 8."""
-    return [make(runs) for make in (figure_3, figure_4, figure_5, figure_6, figure_7, figure_8)]
+    return [
+        make(runs)
+        for make in (figure_3, figure_4, figure_5, figure_6, figure_7, figure_8)
+    ]
 
 
 def figure_3(runs: PaperRuns) -> PaperFigure:
@@ -47,7 +57,12 @@ def figure_3(runs: PaperRuns) -> PaperFigure:
         *_over_iterations(runs, "error_displacement", "displacement", "dotted"),
     ]
     panels = [
-        Panel(title, PanelAxis("Iteration"), PanelAxis(axis, logarithmic=True), tuple(curves))
+        Panel(
+            title,
+            PanelAxis("Iteration"),
+            PanelAxis(axis, logarithmic=True),
+            tuple(curves),
+        )
         for title, axis, curves in (
             ("What the method computes", "LATIN indicator η", computed),
             ("What is true", "Relative error", true),
@@ -63,9 +78,12 @@ def figure_3(runs: PaperRuns) -> PaperFigure:
     )
 
 
-def _over_iterations(runs: PaperRuns, name: str, word: str, line: Line) -> list[PanelCurve]:
+def _over_iterations(
+    runs: PaperRuns, name: str, word: str, line: Line
+) -> list[PanelCurve]:
     """Curves of a scalar of the records of both versions."""
-    numbers, both = np.arange(1.0, SHOWN + 1.0), zip(VERSIONS, _both(runs, name), strict=True)
+    numbers = np.arange(1.0, SHOWN + 1.0)
+    both = zip(VERSIONS, _both(runs, name), strict=True)
     return [
         PanelCurve(f"{word}, {version}", numbers, values[:SHOWN], hue, line)
         for hue, (version, values) in enumerate(both, start=1)
@@ -96,7 +114,9 @@ def _rates(runs: PaperRuns, window: tuple[int, int]) -> Finding:
         tails = np.log(_both(runs, name)[:, start - 1 : end])
         multi, mono = np.polyfit(np.arange(end - start + 1), tails.T, 1)[0]
         ratios[name] = float(multi / mono)
-    words = ", ".join(f"{ratio:.2f} for {QUANTITIES[name]}" for name, ratio in ratios.items())
+    words = ", ".join(
+        f"{ratio:.2f} for {QUANTITIES[name]}" for name, ratio in ratios.items()
+    )
     return Finding(
         f"From iteration {start} to {end}, the rate of convergence multiscale over that monoscale "
         f"is {words}.",
@@ -112,16 +132,21 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
     lengths = law.by_point(law.weights)[1:]
     force = np.array([fields.contact_force[1:] for fields in solutions])
     moved = np.array([fields.displacement[1:] for fields in solutions])
-    panels, moments = [], [int(np.abs(problem.instants - at).argmin()) for at in INSTANTS]
+    panels = []
+    moments = [int(np.abs(problem.instants - at).argmin()) for at in INSTANTS]
     for instant, moment in zip(INSTANTS, moments, strict=True):
         shown = zip(("reference", *VERSIONS), force[..., moment] / lengths, strict=True)
         curves = tuple(
             PanelCurve(label, law.positions[1:], values, hue)
             for hue, (label, values) in enumerate(shown)
         )
-        axes = PanelAxis("Position x", "m"), PanelAxis("Friction force per length", "N/m")
+        axes = (
+            PanelAxis("Position x", "m"),
+            PanelAxis("Friction force per length", "N/m"),
+        )
         panels.append(Panel(f"t = {instant:g} s", *axes, curves))
-    early, root = moments[0], np.sqrt(lengths)
+    early = moments[0]
+    root = np.sqrt(lengths)
     return paper_figure(
         4,
         panels,
@@ -134,9 +159,12 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
 
 def _balance(forces: Array) -> Finding:
     """Sum of the friction force along the bar, which a load of zero must find balanced."""
-    totals, size = forces.sum(axis=1), float(np.abs(forces[0]).sum())
+    totals = forces.sum(axis=1)
+    size = float(np.abs(forces[0]).sum())
     labels = zip(("reference", *VERSIONS), totals, strict=True)
-    words = ", ".join(f"{round(total, 1) + 0.0:.1f} N {label}" for label, total in labels)
+    words = ", ".join(
+        f"{round(total, 1) + 0.0:.1f} N {label}" for label, total in labels
+    )
     multi, mono = np.abs(totals[1:] - totals[0])
     return Finding(
         f"Friction force added up along the bar at t = 0.5 s: {words}; its size adds up to "
@@ -162,11 +190,15 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
     noise = runs.five.records[-1].error_force
     orders = np.arange(1.0, len(parts[-1].values) + 1.0)
     curves = [
-        PanelCurve(f"substructure {number}", orders, part.values / largest, number, "points")
+        PanelCurve(
+            f"substructure {number}", orders, part.values / largest, number, "points"
+        )
         for number, part in enumerate(parts, start=1)
     ]
     front = PanelCurve("1/(2n − 1)", orders, front_decay(len(orders)), 0, "dotted")
-    error = PanelCurve("error of the solution", orders, np.full(len(orders), noise), 0, "dashed")
+    error = PanelCurve(
+        "error of the solution", orders, np.full(len(orders), noise), 0, "dashed"
+    )
     panels = []
     for title, limits, shown in (
         ("All, numbered from the clamp", (1e-11, 3.0), (*curves, front, error)),
@@ -201,21 +233,26 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     alike = fourth.correlations(fifth.space_modes)
     turned = fifth.space_modes * np.sign(alike)
     inside = fourth.positions - fourth.positions[0]
-    panels, across = [], PanelAxis("Position in the substructure", "m")
+    panels = []
+    across = PanelAxis("Position in the substructure", "m")
     for order in (1, 3, 5):
         both = (
             PanelCurve("substructure 4", inside, fourth.space_modes[:, order - 1], 4),
             PanelCurve("substructure 5", inside, turned[:, order - 1], 5, "dashed"),
         )
         panels.append(Panel(f"Mode {order}", across, MODE, both))
-    likeness = _correlation("of modes 1, 3, 5 of substructures 4 and 5", alike[[0, 2, 4]])
+    likeness = _correlation(
+        "of modes 1, 3, 5 of substructures 4 and 5", alike[[0, 2, 4]]
+    )
     return paper_figure(6, panels, likeness, _sign_changes(fourth, fifth))
 
 
 def _sign_changes(*parts: Decomposition) -> Finding:
     """Numbers of sign changes along modes 1, 3, 5: how local they are."""
     counts = [
-        np.count_nonzero(np.diff(np.sign(part.space_modes[:, :5:2]), axis=0), axis=0).tolist()
+        np.count_nonzero(
+            np.diff(np.sign(part.space_modes[:, :5:2]), axis=0), axis=0
+        ).tolist()
         for part in parts
     ]
     words = " and ".join(", ".join(map(str, row)) for row in counts)
@@ -228,7 +265,8 @@ def _sign_changes(*parts: Decomposition) -> Finding:
 
 def figure_7(runs: PaperRuns) -> PaperFigure:
     """The first three SVD modes of the displacement of substructure 5."""
-    displacement, force = runs.displacements[-1], runs.friction_forces[-1]
+    displacement = runs.displacements[-1]
+    force = runs.friction_forces[-1]
     curves = tuple(
         PanelCurve(f"mode {order}", displacement.positions, mode, order)
         for order, mode in enumerate(displacement.space_modes.T[:3], start=1)
@@ -247,15 +285,21 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
 
 def figure_8(runs: PaperRuns) -> PaperFigure:
     """The first three displacement modes of the PGD in substructure 5."""
-    exact, last = runs.displacements[-1], runs.five_reduced.iterate
-    rubs = np.isin(last.problem.substructures[-1].rows, last.problem.friction.tangent.above)
+    exact = runs.displacements[-1]
+    last = runs.five_reduced.iterate
+    rubs = np.isin(
+        last.problem.substructures[-1].rows, last.problem.friction.tangent.above
+    )
     kept = last.bases[-1].displacement_modes[rubs, :3]
     root = np.sqrt(exact.space_weights)[:, None]
     sorted_ = np.linalg.qr(kept * root)[0] / root
-    panels, findings = [], []
+    panels = []
+    findings = []
     both = {"orthonormalised in order": sorted_, "as the iteration keeps them": kept}
     for how, modes in both.items():
-        panels.append(Panel(f"PGD modes, {how}", PLACE, MODE, tuple(_beside_svd(exact, modes))))
+        panels.append(
+            Panel(f"PGD modes, {how}", PLACE, MODE, tuple(_beside_svd(exact, modes)))
+        )
         words = f"of PGD with SVD modes 1, 2, 3, {how}"
         findings.append(_correlation(words, exact.correlations(modes)))
     return paper_figure(8, panels, *findings, last=last.number)
@@ -263,9 +307,15 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
 
 def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
     """Modes at length one, turned to the side of the SVD modes that are dotted."""
-    turned = modes * np.sign(exact.correlations(modes)) / np.sqrt(exact.space_weights @ modes**2)
+    turned = (
+        modes
+        * np.sign(exact.correlations(modes))
+        / np.sqrt(exact.space_weights @ modes**2)
+    )
     curves = []
-    for order, (pgd, svd) in enumerate(zip(turned.T, exact.space_modes.T, strict=False), start=1):
+    for order, (pgd, svd) in enumerate(
+        zip(turned.T, exact.space_modes.T, strict=False), start=1
+    ):
         curves += [
             PanelCurve(f"PGD {order}", exact.positions, pgd, order),
             PanelCurve(f"SVD {order}", exact.positions, svd, order, "dotted"),

@@ -17,7 +17,9 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.page import Panel, PlotSection, Section, bullets, write_page
 
-WORDS = tomllib.loads(Path(__file__).with_name("paper_figures.toml").read_text(encoding="utf-8"))
+WORDS = tomllib.loads(
+    Path(__file__).with_name("paper_figures.toml").read_text(encoding="utf-8")
+)
 LOAD = (
     "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of 900 N, "
     "relaxation 0.8, all else as in Table 1."
@@ -29,9 +31,11 @@ FILE = "figures.html"
 EARLY = 10
 """Iterations after which Fig. 4 looks at the friction force."""
 LONG = 800
-"""Iterations of Fig. 3: enough to see the rate of convergence at the end of every error."""
+"""Iterations of Fig. 3: enough to see the rate of convergence at the end of every
+error."""
 CONVERGED = 1e-18
-"""LATIN indicator at which the fields of Figs. 5 to 7 count as converged (error near 1e-6)."""
+"""LATIN indicator at which the fields of Figs. 5 to 7 count as converged (error near
+1e-6)."""
 REDUCED = 100
 """Iterations of the PGD of Fig. 8."""
 
@@ -40,9 +44,9 @@ REDUCED = 100
 class PaperRuns:
     """The friction bar of Table 1 under a sine, and its incremental solution.
 
-    Ten substructures with the coarse problem and without, and iterate `EARLY` of both; five,
-    converged, and with the PGD at its default settings; the converged fields, decomposed in each of
-    the five.
+    Ten substructures with the coarse problem and without, and iterate `EARLY` of both;
+    five, converged, and with the PGD at its default settings; the converged fields,
+    decomposed in each of the five.
     """
 
     reference: Reference
@@ -57,13 +61,17 @@ class PaperRuns:
 
 def paper_runs() -> PaperRuns:
     """Solve and decompose all of them."""
-    settings = CATALOGUE["bar"].checked({"method": "paper", "load": "sine", "peak": 900.0})
+    settings = CATALOGUE["bar"].checked(
+        {"method": "paper", "load": "sine", "peak": 900.0}
+    )
     reference = reference_of(discretise(settings))
 
     def run(**changes: object) -> Solution:
         changed = settings.replace(**changes)
         problem = discretise(changed)
-        return solve(problem, method_of(changed), distance=distance_to(reference, problem))
+        return solve(
+            problem, method_of(changed), distance=distance_to(reference, problem)
+        )
 
     def ten(iterations: int, multiscale: bool) -> Solution:
         return run(tolerance=1e-30, max_iterations=iterations, multiscale=multiscale)
@@ -110,7 +118,11 @@ class PaperFigure:
     def verdict(self) -> str:
         """Whether the claim holds: "holds", "holds in part" or "does not hold"."""
         held = [finding.holds for finding in self.findings]
-        return "holds" if all(held) else "holds in part" if any(held) else "does not hold"
+        if all(held):
+            return "holds"
+        if any(held):
+            return "holds in part"
+        return "does not hold"
 
 
 def paper_figure(
@@ -119,14 +131,18 @@ def paper_figure(
     """A figure with its words, in which numbers are named."""
     texts = {name: text.format(**numbers) for name, text in WORDS[str(number)].items()}
     caption = f"{texts.pop('caption')} {LOAD}"
-    return PaperFigure(number, panels=panels, findings=findings, caption=caption, **texts)
+    return PaperFigure(
+        number, panels=panels, findings=findings, caption=caption, **texts
+    )
 
 
 def write_figures(figures: Sequence[PaperFigure], folder: Path) -> None:
     """Write `FILE` into a folder."""
     report: list[Section] = [INTRODUCTION]
     for figure in figures:
-        findings = bullets([f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings])
+        findings = bullets(
+            [f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings]
+        )
         claim = f"<b>The paper's claim:</b> {escape(figure.claim)} <b>Here it {figure.verdict}.</b>"
         report += [
             f"<h2>{escape(figure.heading)}</h2>",

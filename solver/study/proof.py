@@ -25,16 +25,26 @@ from solver.study.page import html_table, text_of, write_csv, write_page
 from solver.study.quantities.finished import FinishedRun
 from solver.study.trade_case import Case, all_cases
 
-PARTS = CLOSED_FORMS, PUBLISHED, TRADE = "Closed forms", "Published numbers", "Cases of the trade"
-"""Parts of the report, by where what is known is from; cases of the trade are solved by LATIN."""
+PARTS = CLOSED_FORMS, PUBLISHED, TRADE = (
+    "Closed forms",
+    "Published numbers",
+    "Cases of the trade",
+)
+"""Parts of the report, by where what is known is from; cases of the trade are solved by
+LATIN."""
 SHOWN = {
     **{"holds": ("", 5), "case": ("case", 56), "solver": ("solver", 12)},
-    **{"quantity": ("quantity", 52), "deviation": ("deviation", 9), "allowed": ("allowed", 8)},
+    **{
+        "quantity": ("quantity", 52),
+        "deviation": ("deviation", 9),
+        "allowed": ("allowed", 8),
+    },
 }
 """Columns of a console."""
 Row = dict[str, Any]
 """A number of a case by a solver, as it is written."""
-HOLDS, FAILS = "holds", "FAILS"
+HOLDS = "holds"
+FAILS = "FAILS"
 NUMBERS = "holds", "quantity", "unit", "known", "solver", "ours", "deviation", "allowed"
 """Columns of the page."""
 CASES = Path(__file__).with_name("known_numbers.toml")
@@ -55,7 +65,8 @@ WORDS = (
 class KnownCase:
     """A problem whose answer is known from a source, and the largest deviation that is allowed.
 
-    `numbers` are what is known of an answer, beside what it has; `part` is that of the report.
+    `numbers` are what is known of an answer, beside what it has; `part` is that of the
+    report.
     """
 
     title: str
@@ -69,7 +80,9 @@ class KnownCase:
     def address(self) -> str:
         """What follows the page's address to open this run there."""
         texts = {
-            name: value if isinstance(value, str) else json.dumps(value, separators=(",", ":"))
+            name: value
+            if isinstance(value, str)
+            else json.dumps(value, separators=(",", ":"))
             for name, value in self.settings.changed().items()
         }
         return f"?{urlencode({'scene': self.settings.scene, **texts})}"
@@ -84,7 +97,9 @@ def rows_of(case: KnownCase) -> Iterator[Row]:
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
     has_converged = solution.status.ending is Ending.CONVERGED
-    answers = {"LATIN": (has_converged, Answer(settings, problem, solution.iterate, solution))}
+    answers = {
+        "LATIN": (has_converged, Answer(settings, problem, solution.iterate, solution))
+    }
     if case.part != TRADE:
         reference = reference_of(problem)
         is_found = bool(reference.converged.all())
@@ -94,10 +109,27 @@ def rows_of(case: KnownCase) -> Iterator[Row]:
             deviation = float(abs(ours - known) / abs(known))
             holds = has_ended and deviation <= case.allowed
             yield {
-                **{"holds": HOLDS if holds else FAILS, "part": case.part, "case": case.title},
-                **{"solver": solver, "quantity": quantity, "unit": unit, "known": float(known)},
-                **{"ours": float(ours), "deviation": deviation, "allowed": case.allowed},
-                **{"mesh": size_of(settings), "source": case.source, "address": case.address},
+                **{
+                    "holds": HOLDS if holds else FAILS,
+                    "part": case.part,
+                    "case": case.title,
+                },
+                **{
+                    "solver": solver,
+                    "quantity": quantity,
+                    "unit": unit,
+                    "known": float(known),
+                },
+                **{
+                    "ours": float(ours),
+                    "deviation": deviation,
+                    "allowed": case.allowed,
+                },
+                **{
+                    "mesh": size_of(settings),
+                    "source": case.source,
+                    "address": case.address,
+                },
             }
 
 
@@ -150,10 +182,15 @@ def write_proof(rows: Sequence[Row], folder: Path) -> None:
     for part in PARTS:
         lines = [list(NUMBERS)]
         of_part = (row for row in rows if row["part"] == part)
-        for head, own in groupby(of_part, itemgetter("address", "case", "mesh", "source")):
+        for head, own in groupby(
+            of_part, itemgetter("address", "case", "mesh", "source")
+        ):
             address, title, mesh, source = map(escape, head)
             link = f'<a class="run" href="{escape(PAGE)}{address}"><b>{title}</b></a>'
             lines.append([f"{link} · {mesh}<br><small>{source}</small>"])
-            lines += [[text_of(row[name], digits.get(name, 2)) for name in NUMBERS] for row in own]
+            lines += [
+                [text_of(row[name], digits.get(name, 2)) for name in NUMBERS]
+                for row in own
+            ]
         sections += [f"<h2>{part}</h2>{html_table(lines)}"] * (len(lines) > 1)
     write_page(folder / FILES[1], TITLE, sections)

@@ -22,8 +22,21 @@ from solver.reference.distance import distance_to
 from solver.reference.laws_obeyed import LawResiduals, RowFields, law_residuals
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.study.page import aligned, bullets, html_table, line_of, text_of, write_csv, write_page
-from solver.study.quantities.finished import BROKEN, REFUSED, finished_run, known_reference
+from solver.study.page import (
+    aligned,
+    bullets,
+    html_table,
+    line_of,
+    text_of,
+    write_csv,
+    write_page,
+)
+from solver.study.quantities.finished import (
+    BROKEN,
+    REFUSED,
+    finished_run,
+    known_reference,
+)
 
 CASES = Path(__file__).with_name("stability_cases.toml")
 
@@ -75,7 +88,8 @@ PASSING = {
 PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 AT_ROUNDING = 1e-8
-"""Largest violation of any law that rounding may leave, as a share of what is in play."""
+"""Largest violation of any law that rounding may leave, as a share of what is in
+play."""
 APART = 1e-6
 """Distance from which on two fields that solve the equations are two solutions."""
 RIGHT_UP_TO = 1e-6
@@ -84,7 +98,16 @@ Row = dict[str, Any]
 METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
 FILES = "stability.csv", "stability.html"
 COLUMNS = (
-    *("scene", "case", "method", "expected", "verdict", "passed", "status", "certified"),
+    *(
+        "scene",
+        "case",
+        "method",
+        "expected",
+        "verdict",
+        "passed",
+        "status",
+        "certified",
+    ),
     *("judged_by", "laws", "worst_law", "reference_laws"),
     *("iterations", "estimated_error", "error_displacement", "error_force"),
     *("indicator", "behaviour", "seconds", "doubt", "advice", "settings"),
@@ -92,9 +115,22 @@ COLUMNS = (
 LONG = "doubt", "advice", "settings"
 """Columns of words: beside numbers there is no room for them on a screen."""
 SHOWN = {
-    **{"passed": ("", 5), "verdict": ("", 8), "scene": ("scene", 7), "case": ("run", 44)},
-    **{"method": ("method", 12), "status": ("status", 10), "certified": ("certified", 9)},
-    **{"iterations": ("iter.", 5), "estimated_error": ("estimate", 8), "seconds": ("s", 6)},
+    **{
+        "passed": ("", 5),
+        "verdict": ("", 8),
+        "scene": ("scene", 7),
+        "case": ("run", 44),
+    },
+    **{
+        "method": ("method", 12),
+        "status": ("status", 10),
+        "certified": ("certified", 9),
+    },
+    **{
+        "iterations": ("iter.", 5),
+        "estimated_error": ("estimate", 8),
+        "seconds": ("s", 6),
+    },
     **{"error_displacement": ("error W", 8), "error_force": ("error F", 8)},
     **{"judged_by": ("judged by", 9), "laws": ("laws", 8)},
 }
@@ -114,8 +150,8 @@ NOTES = (
 class StabilityCase:
     """A run that is to be made, by what is extreme about it, and what may come of it.
 
-    Its values are settings that differ from the scene's own; what is expected is a key of
-    `PASSING`, and errors are those up to which the answer is right.
+    Its values are settings that differ from the scene's own; what is expected is a key
+    of `PASSING`, and errors are those up to which the answer is right.
     """
 
     title: str
@@ -133,11 +169,15 @@ class StabilityCase:
             name: value if isinstance(value, str) else json.dumps(value)
             for name, value in self.values.items()
         }
-        changes = (f"--set {shlex.quote(f'{name}={text}')}" for name, text in texts.items())
+        changes = (
+            f"--set {shlex.quote(f'{name}={text}')}" for name, text in texts.items()
+        )
         return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
-def extreme_cases(scenes: Collection[str] = (), *, quick: bool = False) -> Iterator[StabilityCase]:
+def extreme_cases(
+    scenes: Collection[str] = (), *, quick: bool = False
+) -> Iterator[StabilityCase]:
     """Cases of some scenes, or of all, by each method; with `quick` only the few for a check."""
     for scene, groups in tomllib.loads(CASES.read_text(encoding="utf-8")).items():
         if scene not in (scenes or CATALOGUE):
@@ -192,7 +232,9 @@ def run(scene: str, values: Mapping[str, object]) -> Outcome:
         warnings.simplefilter("error")
         try:
             settings = CATALOGUE[scene].checked(values)
-            return _measured(finished_run(settings, errors=False, indicators=False).solution)
+            return _measured(
+                finished_run(settings, errors=False, indicators=False).solution
+            )
         except RefusedError as refusal:
             return Outcome(REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
@@ -201,16 +243,33 @@ def run(scene: str, values: Mapping[str, object]) -> Outcome:
 
 def _measured(solution: Solution) -> Outcome:
     """Compare a solution with the laws, and with the reference where there is one."""
-    iterate, status, problem = solution.iterate, solution.status, solution.iterate.problem
-    if not all(np.isfinite(field).all() for field in (iterate.displacement, iterate.contact_force)):
+    iterate = solution.iterate
+    status = solution.status
+    problem = solution.iterate.problem
+    if not all(
+        np.isfinite(field).all()
+        for field in (iterate.displacement, iterate.contact_force)
+    ):
         return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
     rows = RowFields(iterate.boundary_displacement, iterate.boundary_force)
     laws = law_residuals(iterate, problem, rows)
     reference, doubt, _ = known_reference(problem)
-    distance = None if reference is None else distance_to(reference, problem)
-    of_reference = None if reference is None else law_residuals(reference, problem)
-    error = distance.of_friction_force(iterate) if distance else math.nan
-    last = solution.records[-1] if solution.records else None
+    if reference is None:
+        distance = None
+    else:
+        distance = distance_to(reference, problem)
+    if reference is None:
+        of_reference = None
+    else:
+        of_reference = law_residuals(reference, problem)
+    if distance:
+        error = distance.of_friction_force(iterate)
+    else:
+        error = math.nan
+    if solution.records:
+        last = solution.records[-1]
+    else:
+        last = None
     return Outcome(
         status.ending,
         status.advice,
@@ -250,8 +309,8 @@ class Judgement(NamedTuple):
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Judgement:
     """Judge an outcome by its numbers and its status alone.
 
-    Laws come first, and of a certified answer they alone count. Otherwise it is right up to these
-    errors of contact force and displacement.
+    Laws come first, and of a certified answer they alone count. Otherwise it is right
+    up to these errors of contact force and displacement.
     """
     if outcome.ending == BROKEN or not outcome.advice:
         return Judgement(Verdict.WRONG, Judge.NOTHING)
@@ -262,14 +321,19 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Jud
     if outcome.certified:
         return Judgement(Verdict.WRONG, Judge.LAWS)
     has_reference = outcome.reference_laws <= AT_ROUNDING
-    is_near = outcome.error_force <= force and outcome.error_displacement <= displacement
+    is_near = (
+        outcome.error_force <= force and outcome.error_displacement <= displacement
+    )
     if has_reference and is_near:
         return Judgement(Verdict.RIGHT, Judge.REFERENCE)
     if outcome.ending != Ending.CONVERGED:
         return Judgement(Verdict.UNSOLVED, Judge.NOTHING)
     if outcome.doubt:
         return Judgement(Verdict.UNCLEAR, Judge.NOTHING)
-    by = Judge.REFERENCE if has_reference else Judge.NOTHING
+    if has_reference:
+        by = Judge.REFERENCE
+    else:
+        by = Judge.NOTHING
     return Judgement(Verdict.WRONG, by)
 
 
@@ -313,7 +377,9 @@ def judges(runs: Sequence[Row]) -> list[list[str]]:
     return _counted(runs, "judged_by", JUDGES)
 
 
-def _counted(runs: Sequence[Row], column: str, meaning: Mapping[str, str]) -> list[list[str]]:
+def _counted(
+    runs: Sequence[Row], column: str, meaning: Mapping[str, str]
+) -> list[list[str]]:
     numbers = Counter(run[column] for run in runs)
     rows = ([str(name), str(numbers[name]), text] for name, text in meaning.items())
     return [[column.replace("_", " "), "runs", "what it means"], *rows]
@@ -325,14 +391,20 @@ def last_lines(runs: Sequence[Row]) -> list[str]:
     lines = ["", summary(runs), *tables, "", *NOTES]
     for run in runs:
         if not passed(run):
-            lines += ["", line_of(run, SHOWN), f"      {run['advice']}", f"      {run['command']}"]
+            lines += [
+                "",
+                line_of(run, SHOWN),
+                f"      {run['advice']}",
+                f"      {run['command']}",
+            ]
     return lines
 
 
 def write_stability(runs: Sequence[Row], folder: Path) -> None:
     """Write `FILES` into an existing folder."""
     short = [column for column in COLUMNS if column not in LONG]
-    cells, every = [], [[column.replace("_", " ") for column in short]]
+    cells = []
+    every = [[column.replace("_", " ") for column in short]]
     for row in runs:
         cells.append([row[column] for column in COLUMNS])
         words = " · ".join(str(row[column]) for column in LONG if row[column])

@@ -55,14 +55,17 @@ BILLED = (
     "on the same mesh and instants, whose own error is therefore 0.",
 )
 SPAN = (1e-9, 2.0)
-"""Errors that are shown; smaller ones are drawn at SMALLEST, just above the lower edge."""
+"""Errors that are shown; smaller ones are drawn at SMALLEST, just above the lower
+edge."""
 SMALLEST = 2e-9
 
 
 def conditions(settings: Settings, repeats: int) -> list[str]:
     """Under which conditions a study was measured, in sentences."""
     changed = settings.changed()
-    values = ", ".join(f"{name} = {value}" for name, value in changed.items()) or "defaults"
+    values = (
+        ", ".join(f"{name} = {value}" for name, value in changed.items()) or "defaults"
+    )
     return [
         f"Scene: {settings.scene} ({values}).",
         f"Machine: {machine()}.",
@@ -78,18 +81,26 @@ def table(curves: Sequence[ErrorCurve]) -> list[Row]:
     """
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
     reached = {
-        curve.method: [curve.reached(level) or (math.inf, 0.0) for level in LEVELS.values()]
+        curve.method: [
+            curve.reached(level) or (math.inf, 0.0) for level in LEVELS.values()
+        ]
         for curve in curves
     }
     times = np.array([[seconds for seconds, _ in own] for own in reached.values()])
     for curve, is_first in zip(curves, times == times.min(axis=0), strict=True):
         cells = []
         for (seconds, step), star in zip(reached[curve.method], is_first, strict=True):
-            number = f" ({step:.0f})" if curve.is_latin else ""
+            if curve.is_latin:
+                number = f" ({step:.0f})"
+            else:
+                number = ""
             text = f"{1e3 * seconds:.3g} ms{number}{' *' * bool(star)}"
             cells.append(text if math.isfinite(seconds) else "not reached")
         each = curve.seconds_per_iteration
-        cost = f"{1e3 * each:.3f}" if each is not None else "-"
+        if each is not None:
+            cost = f"{1e3 * each:.3f}"
+        else:
+            cost = "-"
         rows.append([curve.method, *cells, cost, f"{curve.error_force.min():.1e}"])
     is_latin = np.array([curve.is_latin for curve in curves])
     ratios = times[is_latin].min(axis=0) / times[~is_latin].min(axis=0)
@@ -99,9 +110,13 @@ def table(curves: Sequence[ErrorCurve]) -> list[Row]:
 
 def sizes_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
     """Times of both solvers at every size, or why they have none."""
-    rows = [[_titles(settings)[0], "instants", "LATIN, s", f"{INCREMENTAL}, s", TIMES, ""]]
+    rows = [
+        [_titles(settings)[0], "instants", "LATIN, s", f"{INCREMENTAL}, s", TIMES, ""]
+    ]
     for times in measured:
-        numbers = (text_of(number) for number in (times.latin, times.incremental, times.ratio))
+        numbers = (
+            text_of(number) for number in (times.latin, times.incremental, times.ratio)
+        )
         rows.append([str(times.size), str(times.instants), *numbers, times.message])
     return rows
 
@@ -126,13 +141,20 @@ def _titles(settings: Settings) -> list[str]:
 def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
     """Errors of displacement and of friction force over time, a curve for each method."""
     panels = []
-    for name, title in (("error_displacement", "Displacement"), ("error_force", "Friction force")):
+    for name, title in (
+        ("error_displacement", "Displacement"),
+        ("error_force", "Friction force"),
+    ):
         *latin, other = (
-            PanelCurve(own.method, own.seconds, np.maximum(getattr(own, name), SMALLEST), hue)
+            PanelCurve(
+                own.method, own.seconds, np.maximum(getattr(own, name), SMALLEST), hue
+            )
             for hue, own in enumerate(curves, start=1)
         )
         # The solver that is the reference itself is a vertical line.
-        line = PanelCurve(other.label, np.repeat(other.x, 2), np.array(SPAN), 0, "dashed")
+        line = PanelCurve(
+            other.label, np.repeat(other.x, 2), np.array(SPAN), 0, "dashed"
+        )
         axes = (
             PanelAxis("Time", "s", logarithmic=True),
             PanelAxis("Relative error", logarithmic=True, limits=SPAN),
@@ -143,10 +165,16 @@ def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
 
 def write_curves(curves: Sequence[ErrorCurve], folder: Path) -> None:
     """Write `curves.csv` and `levels.csv` (s; errors as fractions)."""
-    points, levels = [], []
+    points = []
+    levels = []
     for curve in curves:
         which = curve.method, "latin" if curve.is_latin else "incremental"
-        columns = curve.steps, curve.seconds, curve.error_displacement, curve.error_force
+        columns = (
+            curve.steps,
+            curve.seconds,
+            curve.error_displacement,
+            curve.error_force,
+        )
         points += [(*which, *map(float, point)) for point in zip(*columns, strict=True)]
         for level in LEVELS.values():
             reached = curve.reached(level) or ("", "")

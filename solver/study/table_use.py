@@ -26,9 +26,10 @@ class Use(StrEnum):
 def use_of(table: Table, axes: Axes) -> Use:
     """What a table is by its head, beside a loop of these axes.
 
-    Results are over positions and times; without a time, or with a friction force, a table of
-    positions is of results that lack something. A position beside another force, however, is where
-    a machine stands, if no time comes twice: then it is a loop, as is all that has its columns.
+    Results are over positions and times; without a time, or with a friction force, a
+    table of positions is of results that lack something. A position beside another
+    force, however, is where a machine stands, if no time comes twice: then it is a
+    loop, as is all that has its columns.
     """
     named = [column.quantities[0] for column in table.columns]
     has_position = any("position" in kinds for kinds in named)
@@ -45,7 +46,9 @@ def use_of(table: Table, axes: Axes) -> Use:
     return Use.LOOP if is_loop else Use.PATH
 
 
-def brought_in(table: Table, settings: Settings, axes: Axes) -> OtherResults | MeasuredLoop:
+def brought_in(
+    table: Table, settings: Settings, axes: Axes
+) -> OtherResults | MeasuredLoop:
     """The results, or else the loop, in a table for a scene whose loop has these axes."""
     if use_of(table, axes) is Use.RESULTS:
         return results_in(table, settings)

@@ -53,13 +53,22 @@ def case_from_file(path: Path) -> Case:
         kind = scene_settings(values.pop("scene", None))
         entries = values.pop("case", None)
         if not isinstance(entries, dict):
-            raise SettingError("case", entries, "a table", "write [case] below the settings")
+            raise SettingError(
+                "case", entries, "a table", "write [case] below the settings"
+            )
         settings = kind.checked(values)
         with placed("case"):
             entries = {"picture": settings.icon._asdict(), **entries}
             fields = fields_in(Case, entries, quantity=str, picture=dict)
-            tolerance, can = fields["tolerance"], "a share above 0 and below 1"
-            require(0.0 < tolerance < 1.0, "tolerance", tolerance, can, "say what the mesh leaves")
+            tolerance = fields["tolerance"]
+            can = "a share above 0 and below 1"
+            require(
+                0.0 < tolerance < 1.0,
+                "tolerance",
+                tolerance,
+                can,
+                "say what the mesh leaves",
+            )
             check_controls(fields["controls"], settings)
             check_keys(fields["picture"], dict.fromkeys(Icon._fields, str))
             fields["quantity"] = reading(fields["quantity"])

@@ -1,26 +1,30 @@
 """How far settings may go from the nearest run before the misfit rises: the profile likelihood.
 
-The misfit is |r(z)|^2, r the differences to a measured loop, (n_rows,), and z the settings on their
-scales, (p,). Along a direction w, a setting alone or a combination, its profile is
+The misfit is |r(z)|^2, r the differences to a measured loop, (n_rows,), and z the
+settings on their scales, (p,). Along a direction w, a setting alone or a combination,
+its profile is
 
     m(c) = least misfit of all z with w . z = c,
 
-found from one c to the next by least squares over what is left free. With the least misfit m0 and
-the noise s^2 = m0 / (n - p), all c with
+found from one c to the next by least squares over what is left free. With the least
+misfit m0 and the noise s^2 = m0 / (n - p), all c with
 
     m(c) - m0 <= F s^2
 
-are within two standard errors (F is the quantile of the F distribution with 1 and n - p degrees of
-freedom that belongs to them: 4 of many rows). The slope of r at the nearest run, which is all that
-(J^T J)^-1 knows, tells that only where r is straight. Here it is not: a node of the mesh slips or
-it does not, and the floor of a valley has a dent for each.
+are within two standard errors (F is the quantile of the F distribution with 1 and n - p
+degrees of freedom that belongs to them: 4 of many rows). The slope of r at the nearest
+run, which is all that (J^T J)^-1 knows, tells that only where r is straight. Here it is
+not: a node of the mesh slips or it does not, and the floor of a valley has a dent for
+each.
 
-These dents tell of the mesh and not of the loop. So whether a setting is known at all is judged
-with the change d of the loop on elements of half the size as one more source of noise:
+These dents tell of the mesh and not of the loop. So whether a setting is known at all
+is judged with the change d of the loop on elements of half the size as one more source
+of noise:
 
     m(c) - m0 <= F (s^2 + |d|^2)
 
-must end on both sides before `FACTOR`. Once it is known its margins are those of the noise.
+must end on both sides before `FACTOR`. Once it is known its margins are those of the
+noise.
 """
 
 from __future__ import annotations
@@ -47,13 +51,16 @@ TWO = float(2.0 * norm.cdf(2.0) - 1.0)
 BROAD = 1e-2
 """Step, in z, of the differences that tell where a valley goes."""
 SILENT = 1e-6
-"""Noise, as a share of the measured range, below which runs have errors of their own."""
+"""Noise, as a share of the measured range, below which runs have errors of their
+own."""
 LOWER = 0.1
 """Share of F s^2 by which a place has to be lower to be another one."""
 GROWTH = 0.5, 2.0
 """Between which a step along a profile is, over the distance so far."""
-MARGIN, SMALL = 1.1, 1e-3
-"""How far beyond a level it aims, and the share of the level below which a rise is none."""
+MARGIN = 1.1
+SMALL = 1e-3
+"""How far beyond a level it aims, and the share of the level below which a rise is
+none."""
 PLACES = 16
 """Places on one side of a profile, at most."""
 
@@ -73,12 +80,13 @@ class Side:
     Attributes
     ----------
     distances, rises
-        How far its places are from the nearest run, and by how much the misfit is larger there;
-        shape (n_places,). The first is the nearest run.
+        How far its places are from the nearest run, and by how much the misfit is
+        larger there; shape (n_places,). The first is the nearest run.
     places
         The z of these, shape (n_places, p).
     is_at_bound
-        Whether there is nothing beyond the last place, as the setting has a bound there.
+        Whether there is nothing beyond the last place, as the setting has a bound
+        there.
     """
 
     distances: Array
@@ -93,7 +101,9 @@ class Side:
         """
         inside = int(np.flatnonzero(self.rises <= level)[-1])
         if inside == len(self.rises) - 1:
-            return float(self.distances[-1]) if self.is_at_bound else math.inf
+            if self.is_at_bound:
+                return float(self.distances[-1])
+            return math.inf
         ends = self.distances[inside : inside + 2]
         roots = np.sqrt(np.maximum(self.rises[inside : inside + 2], 0.0))
         if not np.isfinite(roots[1]):
@@ -142,13 +152,13 @@ class Valley:
     z, least
         The place that is looked from, (p,), and the least misfit, there or elsewhere.
     noise, doubt
-        Rises of the misfit that are within two standard errors: of the noise, and of noise and
-        mesh.
+        Rises of the misfit that are within two standard errors: of the noise, and of
+        noise and mesh.
     deviation
         Standard deviation of the noise, as a share of the measured range.
     mesh
-        Root of the mean square by which the loop changes on elements of half the size, as a share
-        of the measured range.
+        Root of the mean square by which the loop changes on elements of half the size,
+        as a share of the measured range.
     jacobian
         Derivatives of the differences over a broad step, shape (n_rows, p).
     """
@@ -220,7 +230,8 @@ class Valley:
         room = self._room(along)
         limit = min(room, limit)
         variance = float(along @ self._covariance @ along)
-        # By a distance of 1 along the direction the settings move so far, if all is straight.
+        # By a distance of 1 along the direction the settings move so far, if all is
+        # straight.
         course = self._covariance @ along / variance
         distances = [0.0]
         rises = [self.runs.misfit(self.z) - self.least]
@@ -261,8 +272,8 @@ class Valley:
     def _place(self, along: Array, distance: float, ahead: Array, last: Array) -> Array:
         """Lowest place so far along a direction, found from one that is about there.
 
-        Where that is out, and two or more are left free, it is tried from the last place, too: a
-        floor that bends leads astray.
+        Where that is out, and two or more are left free, it is tried from the last
+        place, too: a floor that bends leads astray.
         """
         found = self._lowest(along, distance, ahead)
         is_within = self.runs.misfit(found) - self.least <= self.noise

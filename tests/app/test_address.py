@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 
 from app.browser import Browser
-from app.files.link import LESSONS, LONGEST, Link, link_of, place_of, query_of, read, show
+from app.files.link import (
+    LESSONS,
+    LONGEST,
+    Link,
+    link_of,
+    place_of,
+    query_of,
+    read,
+    show,
+)
 from app.lessons.catalogue import CASES, settings_of
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
@@ -98,7 +107,9 @@ def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
         ("file=load", "open its file"),
     ],
 )
-def test_a_part_that_is_refused_is_told_and_the_rest_holds(query: str, told: str) -> None:
+def test_a_part_that_is_refused_is_told_and_the_rest_holds(
+    query: str, told: str
+) -> None:
     place, refusal = read(f"?peak=1100&{query}&view=present")
     assert told in refusal
     assert refusal.startswith("From the address: ")
@@ -119,7 +130,9 @@ def test_settings_that_hold_together_may_stand_in_any_order() -> None:
 
 
 def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -> None:
-    path = tuple((t, 900.0 * t * (1.0 - t)) for t in np.linspace(0.0, 1.0, 200).tolist())
+    path = tuple(
+        (t, 900.0 * t * (1.0 - t)) for t in np.linspace(0.0, 1.0, 200).tolist()
+    )
     state = PageState(default_settings("bar").replace(load=path))
     link, message = link_of(state)
     assert len(link) < LONGEST
@@ -173,7 +186,8 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
     while runner.status is None:
         runner.advance()
     assert runner.iterate is not None
-    law, problem = next(iter(runner.sampler.problem.rubbing.values())), runner.sampler.problem
+    law = next(iter(runner.sampler.problem.rubbing.values()))
+    problem = runner.sampler.problem
     force = runner.iterate.contact(next(iter(problem.rubbing))).tangential_force
     density = force / law.by_point(law.weights)[:, None]
     rows = [
@@ -181,7 +195,11 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
         for i, x in enumerate(law.positions.tolist())
         for j, t in enumerate(problem.instants.tolist())
     ]
-    table = "\n".join(["x,t,friction force", *rows]).replace("np.float64(", "").replace(")", "")
+    table = (
+        "\n".join(["x,t,friction force", *rows])
+        .replace("np.float64(", "")
+        .replace(")", "")
+    )
     brought = results_in(read_table(table, "other.csv", "the results", CAN), settings)
     frame = runner.frame(Needs(frozenset({"beside"}), brought=brought))
     beside = frame.extras["beside"]

@@ -47,8 +47,12 @@ def frame() -> Frame:
 
 
 @each
-def test_every_plot_that_a_case_brings_to_the_front_says_something_of_its_run(case: Case) -> None:
-    shown = {kind.name for card in CARDS for kind in card if kind.applies(case.settings)}
+def test_every_plot_that_a_case_brings_to_the_front_says_something_of_its_run(
+    case: Case,
+) -> None:
+    shown = {
+        kind.name for card in CARDS for kind in card if kind.applies(case.settings)
+    }
     assert set(case.views) <= shown
 
 

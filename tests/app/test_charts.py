@@ -16,7 +16,14 @@ from sweeps import tiny
 
 from app.charts import contours, in_units, keys, overlay, render
 from solver.study import page
-from solver.study.page import Chart, Panel, PanelAxis, PanelCurve, PlotSection, write_page
+from solver.study.page import (
+    Chart,
+    Panel,
+    PanelAxis,
+    PanelCurve,
+    PlotSection,
+    write_page,
+)
 from solver.study.sweep.plan import Row
 from solver.study.sweep.report import chart_of
 
@@ -25,12 +32,16 @@ PANEL = Panel(
     "Curves",
     PanelAxis("Place", "m"),
     PanelAxis("Force", "N", logarithmic=True),
-    (PanelCurve("one", X, 1e3 * X, 1), PanelCurve("two", X, np.array([1e3, 0.0, 2e3]), 2)),
+    (
+        PanelCurve("one", X, 1e3 * X, 1),
+        PanelCurve("two", X, np.array([1e3, 0.0, 2e3]), 2),
+    ),
 )
 LINES = tiny(["k_scale=0.1:10:3:log", "acceleration=none,anderson"], ["iterations"])
 AREA = tiny(["friction=0.1:0.7:7", "peak=300:1500:9"], ["peak_displacement"])
 CELLS = [
-    Row(n, "converged", "", (1e-3 * (1.0 + n % 9 * (n // 9 + 1.0)),)) for n in range(AREA.size)
+    Row(n, "converged", "", (1e-3 * (1.0 + n % 9 * (n // 9 + 1.0)),))
+    for n in range(AREA.size)
 ]
 ENDS = [
     Row(4, "converged", "", (3.0,)),
@@ -53,7 +64,11 @@ def data_of(figure: Any, column: str) -> list[dict[str, Any]]:
 
 def test_values_are_drawn_in_units_that_are_read_but_what_a_scale_cannot_hold() -> None:
     figure = draw(PANEL)
-    ys = [list(map(str, data["y"])) for data in data_of(figure, "y") if len(data["y"]) == 3]
+    ys = [
+        list(map(str, data["y"]))
+        for data in data_of(figure, "y")
+        if len(data["y"]) == 3
+    ]
     assert sorted(ys) == [["1.0", "2.0", "3.0"], ["1.0", "nan", "2.0"]]
     assert (figure.title.text, figure.yaxis.axis_label) == ("Curves", "Force (kN)")
     assert "> one<" in keys([PANEL])
@@ -63,7 +78,11 @@ def test_a_run_that_did_not_converge_is_hollow_and_says_why() -> None:
     figure = draw(chart_of(LINES, ENDS))
     (runs,) = data_of(figure, "said")
     looks = dict(
-        zip(runs["said"], zip(runs["fill_alpha"], runs["marker"], strict=True), strict=True)
+        zip(
+            runs["said"],
+            zip(runs["fill_alpha"], runs["marker"], strict=True),
+            strict=True,
+        )
     )
     (hollow,) = (said for said, look in looks.items() if look == (0.0, "circle"))
     (cross,) = (said for said, (_, marker) in looks.items() if marker == "x")
@@ -73,7 +92,9 @@ def test_a_run_that_did_not_converge_is_hollow_and_says_why() -> None:
 
 
 def test_a_map_has_a_cell_for_each_run_contours_their_values_and_a_scale() -> None:
-    rows = [replace(row, ending="exhausted") if row.number == 5 else row for row in CELLS]
+    rows = [
+        replace(row, ending="exhausted") if row.number == 5 else row for row in CELLS
+    ]
     figure = draw(chart_of(AREA, rows))
     values, runs = sorted(data_of(figure, "left"), key=lambda data: len(data["left"]))
     assert len(values["left"]) == AREA.size - 1
@@ -111,7 +132,9 @@ def test_lines_of_equal_value_are_of_round_numbers_and_lie_where_these_are(
         assert line["x"] * line["y"] == pytest.approx(line["z"], rel=0.05)
 
 
-def test_a_page_of_a_command_loads_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_of_a_command_loads_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(page, "renderer", lambda: render)
     write_page(tmp_path / "page.html", "Two", [PlotSection("Both", [PANEL])])
     text = (tmp_path / "page.html").read_text(encoding="utf-8")

@@ -44,11 +44,13 @@ class Worker:
     """What stands for a page's supervisor: whether its process is there, and its orders."""
 
     def __init__(self, state: PageState) -> None:
-        self.state, self.is_there = state, False
+        self.state = state
+        self.is_there = False
         self.orders: list[Order] = []
 
     def begin(self) -> None:
-        self.is_there, self.state.send = True, self.orders.append
+        self.is_there = True
+        self.state.send = self.orders.append
 
     def end(self) -> None:
         self.is_there = False
@@ -58,7 +60,8 @@ class Seat:
     """A page of a class without a browser."""
 
     def __init__(self, scene: str = "bar", address: str = "") -> None:
-        self.state, self.document = PageState(default_settings(scene)), Document()
+        self.state = PageState(default_settings(scene))
+        self.document = Document()
         self.worker: Any = Worker(self.state)
         self.member = ClassMember(self.state, self.worker, self.document)
         if not self.member.enter(address):
@@ -70,7 +73,8 @@ def tick(*seats: Seat) -> None:
     """Let all documents do what is due, until nothing is."""
     while any(seat.document.due for seat in seats):
         for seat in seats:
-            due, seat.document.due = seat.document.due, []
+            due = seat.document.due
+            seat.document.due = []
             for callback in due:
                 callback()
 
@@ -89,7 +93,9 @@ def frame() -> Frame:
     settings = default_settings("bar").replace(elements=10, instants=11)
     run = finished_run(settings)
     sampler = Sampler(discretise(settings), settings, 1)
-    return sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
+    return sampler.frame(
+        run.iterate, run.solution.records, run.solution.status, Needs()
+    )
 
 
 @pytest.fixture
@@ -106,7 +112,9 @@ def code_of(leader: Seat) -> str:
     return leader.member.room.code
 
 
-def test_a_follower_sees_what_the_leader_sees_and_has_no_worker(leader: Seat, frame: Frame) -> None:
+def test_a_follower_sees_what_the_leader_sees_and_has_no_worker(
+    leader: Seat, frame: Frame
+) -> None:
     follower = Seat("rope", code_of(leader))
     shown = show(leader, frame)
     leader.state.select(phase=0.3)
@@ -119,7 +127,9 @@ def test_a_follower_sees_what_the_leader_sees_and_has_no_worker(leader: Seat, fr
     assert leader.member.message == f"Class {code_of(leader)}: 1 follows."
 
 
-def test_a_followers_page_is_changed_as_its_own_document(leader: Seat, frame: Frame) -> None:
+def test_a_followers_page_is_changed_as_its_own_document(
+    leader: Seat, frame: Frame
+) -> None:
     follower = Seat("rope", code_of(leader))
     tick(leader, follower)
     changed: list[Any] = []
@@ -130,7 +140,9 @@ def test_a_followers_page_is_changed_as_its_own_document(leader: Seat, frame: Fr
     assert changed == [follower.document]
 
 
-def test_who_comes_late_has_the_present_frame_at_once(leader: Seat, frame: Frame) -> None:
+def test_who_comes_late_has_the_present_frame_at_once(
+    leader: Seat, frame: Frame
+) -> None:
     shown = show(leader, frame)
     assert Seat("rope", code_of(leader).lower()).state.frame is shown
 
@@ -261,7 +273,9 @@ def test_a_picture_that_moves_does_not_bring_the_poll_again(leader: Seat) -> Non
     assert not seen
 
 
-def test_a_class_keeps_nothing_of_its_leaders_page_but_what_followers_see(frame: Frame) -> None:
+def test_a_class_keeps_nothing_of_its_leaders_page_but_what_followers_see(
+    frame: Frame,
+) -> None:
     leader = Seat()
     leader.member.begin()
     code = code_of(leader)
@@ -282,7 +296,8 @@ def test_a_class_keeps_nothing_of_its_leaders_page_but_what_followers_see(frame:
 def test_a_class_that_is_over_is_forgotten_once_a_page_is_closed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    leader, other = Seat(), Seat()
+    leader = Seat()
+    other = Seat()
     leader.member.begin()
     code = code_of(leader)
     leader.member.close()

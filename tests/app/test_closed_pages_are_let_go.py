@@ -20,7 +20,10 @@ from app.state import PageState
 SMALL = f"elements=20&instants=11&{ANSWER}"
 QUERIES = SMALL, f"{SMALL}&view=present", "lesson=how-fast-how-big"
 LOOKS = 20
-QUICK = {"unused_session_lifetime_milliseconds": 1000, "check_unused_sessions_milliseconds": 50}
+QUICK = {
+    "unused_session_lifetime_milliseconds": 1000,
+    "check_unused_sessions_milliseconds": 50,
+}
 
 
 def alive() -> list[Any]:
@@ -37,7 +40,8 @@ async def until(condition: Any) -> None:
 
 async def open_and_close(address: str) -> None:
     """Open three pages one after the other, each until it has a picture, and close them."""
-    visitors, tasks = [], []
+    visitors = []
+    tasks = []
     for query in QUERIES:
         visitor = Visitor()
         visitors.append(visitor)

@@ -42,16 +42,19 @@ def holds(state: PageState, name: str, value: float) -> bool:
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
-def test_the_widget_of_every_setting_shows_its_value_and_takes_another(scene: str) -> None:
+def test_the_widget_of_every_setting_shows_its_value_and_takes_another(
+    scene: str,
+) -> None:
     for name in names(scene):
         state = of_scene(scene)
-        control, definition = SettingControl(name, state), state.settings.definitions()[name]
+        control = SettingControl(name, state)
+        definition = state.settings.definitions()[name]
         value = held(state, name)
         if control.slider is not None:
             unit = unit_of(definition)
-            assert typed(control.field.value, unit, definition.metadata["about"].unit) == (
-                pytest.approx(value, rel=1e-9)
-            )
+            assert typed(
+                control.field.value, unit, definition.metadata["about"].unit
+            ) == (pytest.approx(value, rel=1e-9))
             ends = *definition.softbounds[::-1], value
             another = next(end for end in ends if holds(state, name, end))
             control.field.value = f"{another / unit.factor:.12g}"
@@ -59,14 +62,18 @@ def test_the_widget_of_every_setting_shows_its_value_and_takes_another(scene: st
         elif isinstance(definition, param.Boolean):
             control.field.value = not value
             assert held(state, name) is not value
-        elif others := [one for one in control.field.options if one not in (value, POINTS)]:
+        elif others := [
+            one for one in control.field.options if one not in (value, POINTS)
+        ]:
             another = others[0]
             control.field.value = another
             assert held(state, name) == another or state.refusal, name
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
-def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(scene: str) -> None:
+def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(
+    scene: str,
+) -> None:
     for name in names(scene):
         for end in ("start", "end"):
             state = of_scene(scene)
@@ -77,15 +84,26 @@ def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(scene: str
             control.slider.value = place
             with param.edit_constant(control.slider):
                 control.slider.value_throttled = place
-            assert control.slider.value == pytest.approx(place) or control.field.error_state, name
-            assert control.field.helper_text == (state.refusal if control.field.error_state else "")
+            assert (
+                control.slider.value == pytest.approx(place)
+                or control.field.error_state
+            ), name
+            assert control.field.helper_text == (
+                state.refusal if control.field.error_state else ""
+            )
 
 
 def test_a_field_keeps_its_unit_whatever_is_typed() -> None:
     state = of_scene("incline")
     control = SettingControl("weight", state)
     assert control.field.label.endswith(", kN")
-    for text, newtons in (("-5", -5e3), ("900", 9e5), ("0,25", 250.0), ("3 MN", 3e6), ("7 N", 7.0)):
+    for text, newtons in (
+        ("-5", -5e3),
+        ("900", 9e5),
+        ("0,25", 250.0),
+        ("3 MN", 3e6),
+        ("7 N", 7.0),
+    ):
         control.field.value = text
         if newtons < 0.0:
             assert "−5 kN" in control.field.helper_text
@@ -98,7 +116,8 @@ def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_hol
     None
 ):
     state = of_scene("bar")
-    young, parts = SettingControl("young", state), SettingControl("substructures", state)
+    young = SettingControl("young", state)
+    parts = SettingControl("substructures", state)
     young.field.value = "-3"
     assert young.field.value == "210"
     assert young.field.error_state
@@ -114,7 +133,9 @@ def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_hol
     assert not state.refusal
 
 
-def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words() -> None:
+def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words() -> (
+    None
+):
     state = of_scene("bar")
     state.change(pressure_load=[[0.0, 1.0], [1.0, -1.0]])
     assert "pressures of at least 0 kN/m" in state.refusal
@@ -136,7 +157,9 @@ def test_an_empty_field_is_the_default() -> None:
     assert (held(state, "peak"), control.field.value) == (900.0, "900")
 
 
-def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_go() -> None:
+def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_go() -> (
+    None
+):
     state = of_scene("strand")
     told: list[str] = []
     state.param.watch(lambda event: told.append(event.new), "refusal")
@@ -155,8 +178,11 @@ def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_
     assert not state.is_dragged
 
 
-def test_a_key_on_a_slider_starts_one_run_and_a_hand_that_drags_one_for_each_move() -> None:
-    state, orders = of_scene("bar"), list[object]()
+def test_a_key_on_a_slider_starts_one_run_and_a_hand_that_drags_one_for_each_move() -> (
+    None
+):
+    state = of_scene("bar")
+    orders = list[object]()
     control = SettingControl("friction", state)
     state.send = orders.append
     with param.edit_constant(control.slider):
@@ -201,7 +227,9 @@ def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() 
         definitions = default_settings(scene).definitions()
         missing = set(definitions) - shown
         assert built < len(shown)
-        assert all(len(getattr(definitions[name], "objects", "any")) == 1 for name in missing)
+        assert all(
+            len(getattr(definitions[name], "objects", "any")) == 1 for name in missing
+        )
 
 
 def test_each_scene_keeps_its_settings() -> None:
@@ -214,7 +242,9 @@ def test_each_scene_keeps_its_settings() -> None:
     assert held(state, "peak") == 1100.0
 
 
-def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_do() -> None:
+def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_do() -> (
+    None
+):
     state = of_scene("bar")
     control = SettingControl("load", state)
     control.field.value = POINTS
@@ -288,10 +318,15 @@ def test_a_preset_of_a_path_is_described_where_it_is_chosen() -> None:
     state = of_scene("bar")
     control = SettingControl("load", state)
     assert control.field.helper_text.startswith("A wave of a sine: to the value")
-    assert "triangle: rises evenly to the value in the middle" in control.field.description
+    assert (
+        "triangle: rises evenly to the value in the middle" in control.field.description
+    )
     control.field.value = "ramp"
     control.update()
-    assert control.field.helper_text == "Rises evenly from 0 to the value, which it has at the end"
+    assert (
+        control.field.helper_text
+        == "Rises evenly from 0 to the value, which it has at the end"
+    )
     assert not control.field.error_state
     state.change(load=[[0.0, 0.0], [1.0, 500.0]])
     control.update()

@@ -110,7 +110,9 @@ def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
     assert orders == [Ready(), Ready()]
 
 
-def test_a_run_that_follows_a_slider_is_compared_once_its_picture_is_seen(answer: Frame) -> None:
+def test_a_run_that_follows_a_slider_is_compared_once_its_picture_is_seen(
+    answer: Frame,
+) -> None:
     state = PageState(answer.run.settings, is_dragged=True)
     orders: list[object] = []
     state.send = orders.append

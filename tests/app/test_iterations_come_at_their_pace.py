@@ -28,7 +28,8 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Watch:
 
 def played(watch: Watch, pace: float, count: int, takes: float = 0.0) -> list[float]:
     """When each of so many iterations begins, if each takes so long."""
-    times, paced = [], Pacing(pace)
+    times = []
+    paced = Pacing(pace)
     for done in range(1, count + 1):
         rest = paced.rest()
         assert rest is not None

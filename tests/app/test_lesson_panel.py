@@ -70,7 +70,9 @@ def frame() -> Frame:
 
 @each
 def test_every_plot_of_a_lesson_says_something_of_its_run(lesson: Lesson) -> None:
-    assert all(kind.applies(lesson.settings) for kind in kinds_of(lesson, is_answered=True))
+    assert all(
+        kind.applies(lesson.settings) for kind in kinds_of(lesson, is_answered=True)
+    )
 
 
 @each

@@ -71,7 +71,9 @@ def test_a_loop_without_units_is_doubted_beside_the_run_that_is_shown() -> None:
     state = PageState(settings)
     state.frame = runner.frame(Needs())
     loop = loop_of_a_run(settings)
-    rows = "".join(f"{1e3 * u},{f}\n" for u, f in zip(loop.displacement, loop.force, strict=True))
+    rows = "".join(
+        f"{1e3 * u},{f}\n" for u, f in zip(loop.displacement, loop.force, strict=True)
+    )
     made = opener(state, f"disp,force\n{rows}")
     assert "1000 times that of the run: if it is in mm" in made.message.object
     made.heads.value = "disp [mm], force"
@@ -116,8 +118,13 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
     found = runner.frame(Needs(frozenset({"beside"}), brought=off)).extras["beside"]
     assert found["distance"] == pytest.approx(0.1, rel=1e-6)
     assert found["brought"].force.tolist() == loop.force.tolist()
-    moment = MeasuredLoop(loop.displacement, loop.force, None, ("1/m", "N·m"), "rope.csv", "")
-    assert runner.frame(Needs(frozenset({"beside"}), brought=moment)).extras["beside"] is None
+    moment = MeasuredLoop(
+        loop.displacement, loop.force, None, ("1/m", "N·m"), "rope.csv", ""
+    )
+    assert (
+        runner.frame(Needs(frozenset({"beside"}), brought=moment)).extras["beside"]
+        is None
+    )
 
 
 def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:

@@ -51,7 +51,9 @@ def test_a_first_run_goes_on_once_its_first_picture_is_painted(
 
 
 @pytest.mark.usefixtures("document")
-def test_the_page_of_a_full_server_is_not_watched_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_of_a_full_server_is_not_watched_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def watchers() -> list[Any]:
         return pn.state.param.watchers.get("value", {}).get("busy", [])
 

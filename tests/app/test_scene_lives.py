@@ -26,7 +26,9 @@ class Document:
     def __init__(self) -> None:
         self.periodic: list[Callable[[], Any]] = []
 
-    def add_periodic_callback(self, callback: Callable[[], Any], period: int) -> Callable[[], Any]:
+    def add_periodic_callback(
+        self, callback: Callable[[], Any], period: int
+    ) -> Callable[[], Any]:
         self.periodic.append(callback)
         return callback
 
@@ -39,13 +41,18 @@ class Watched:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 0.0
-        monkeypatch.setattr(transport, "time", SimpleNamespace(monotonic=lambda: self.now))
+        monkeypatch.setattr(
+            transport, "time", SimpleNamespace(monotonic=lambda: self.now)
+        )
         settings = default_settings("bar").replace(elements=10, instants=11)
-        self.state, self.document = PageState(settings), Document()
+        self.state = PageState(settings)
+        self.document = Document()
         self.transport = Transport(self.state, self.document)
         run = finished_run(settings)
         sampler = Sampler(discretise(settings), settings, self.state.number)
-        frame = sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
+        frame = sampler.frame(
+            run.iterate, run.solution.records, run.solution.status, Needs()
+        )
         self.state.param.update(newest=frame, frame=frame)
         self.wait(1.0)
 
@@ -73,7 +80,9 @@ def test_pages_share_the_minute_of_playing(
     assert page.state.selection.phase == Selection.phase
 
 
-def test_it_plays_until_somebody_does_something(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_plays_until_somebody_does_something(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     page = Watched(monkeypatch)
     assert page.plays()
     page.state.settings = page.state.settings.replace(friction=0.2)
@@ -86,9 +95,17 @@ def test_the_range_of_iterations_moves_seldom_while_a_run_goes_on_and_is_exact_a
 ) -> None:
     page = Watched(monkeypatch)
     end = page.state.frame
-    slider = next(each for each in page.transport.view if isinstance(each, pmui.IntSlider))
+    slider = next(
+        each for each in page.transport.view if isinstance(each, pmui.IntSlider)
+    )
     starts = []
-    for number, status in ((100, None), (110, None), (190, None), (210, None), (220, end.status)):
+    for number, status in (
+        (100, None),
+        (110, None),
+        (190, None),
+        (210, None),
+        (220, end.status),
+    ):
         frame = replace(end, iteration=number, is_answer=False, status=status)
         page.state.param.update(newest=frame, frame=frame)
         page.wait(0.4)

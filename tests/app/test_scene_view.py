@@ -42,7 +42,9 @@ def frame_of(
 
 def small(scene: str) -> Settings:
     settings = default_settings(scene)
-    return settings.checked({n: v for n, v in SMALL.items() if n in settings.definitions()})
+    return settings.checked(
+        {n: v for n, v in SMALL.items() if n in settings.definitions()}
+    )
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -59,7 +61,9 @@ def shown(frame: Frame, phase: float = 0.75, kind: type[Scene] = Scene) -> Scene
 
 def flat(values: object) -> np.ndarray:
     lists = [np.ravel(one) for one in values]  # type: ignore[attr-defined]
-    return np.concatenate(lists) if lists else np.zeros(0)
+    if lists:
+        return np.concatenate(lists)
+    return np.zeros(0)
 
 
 def test_everything_lies_inside_the_figure_at_every_instant(frame: Frame) -> None:
@@ -67,8 +71,16 @@ def test_everything_lies_inside_the_figure_at_every_instant(frame: Frame) -> Non
     for phase in PHASES:
         view.update(frame, Selection(phase), None)
         for name, source in view.sources.items():
-            across, up = ("xs", "ys") if "xs" in source.data else ("x", "y")
-            for values, end in ((source.data[across], WIDTH), (source.data[up], HEIGHT)):
+            if "xs" in source.data:
+                across = "xs"
+                up = "ys"
+            else:
+                across = "x"
+                up = "y"
+            for values, end in (
+                (source.data[across], WIDTH),
+                (source.data[up], HEIGHT),
+            ):
                 known = flat(values).astype(float)
                 known = known[np.isfinite(known)]
                 assert np.all((known > -3.0) & (known < end + 3.0)), name
@@ -80,7 +92,9 @@ def test_words_beside_a_body_have_room_on_a_projector() -> None:
     view.magnify("22px")
     view.update(frame, Selection(0.25), None)
     words = view.sources["words"].data
-    (x,) = (x for x, text in zip(words["x"], words["text"], strict=True) if text[0] == "F")
+    (x,) = (
+        x for x, text in zip(words["x"], words["text"], strict=True) if text[0] == "F"
+    )
     end = view.picture.page(view.picture.nodes)[:, 0].max()  # type: ignore[union-attr]
     assert x > end
 
@@ -99,7 +113,9 @@ def test_words_are_whole(frame: Frame, size: str, width: float) -> None:
     view.figure.trigger("inner_width", WIDTH, width)
     view.update(frame, Selection(0.3), None)
     words = view.sources["words"].data
-    for x, text, align in zip(words["x"], words["text"], words["text_align"], strict=True):
+    for x, text, align in zip(
+        words["x"], words["text"], words["text_align"], strict=True
+    ):
         length = 0.5 * float(view.words.removesuffix("px")) * len(text)
         left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
         assert left >= -1.0
@@ -119,14 +135,23 @@ def test_words_leave_handles_free_in_a_picture_beside_plots(scene: str) -> None:
         for x, y, text, align in zip(
             words["x"], words["y"], words["text"], words["text_align"], strict=True
         ):
-            left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * 6.0 * len(text)
-            is_across = (marks["x"] > left - 5.0) & (marks["x"] < left + 6.0 * len(text) + 5.0)
-            assert not np.any(is_across & (np.abs(marks["y"] - y) < 12.0)), (phase, text)
+            left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * 6.0 * len(
+                text
+            )
+            is_across = (marks["x"] > left - 5.0) & (
+                marks["x"] < left + 6.0 * len(text) + 5.0
+            )
+            assert not np.any(is_across & (np.abs(marks["y"] - y) < 12.0)), (
+                phase,
+                text,
+            )
 
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_what_is_seen_first_of_a_scene_slips(scene: str) -> None:
-    frame = frame_of(default_settings(scene), ends=True, extras=frozenset({"axial force"}))
+    frame = frame_of(
+        default_settings(scene), ends=True, extras=frozenset({"axial force"})
+    )
     name = Selection().interface_of(frame.run)
     assert frame.contact[name].status.any()
     if scene == "rope":
@@ -147,7 +172,8 @@ def test_an_arrow_has_the_length_of_its_value() -> None:
         picture = shown(frame, phase).picture
         assert picture is not None
         arrows = next(each for each in picture.arrows if each.act.symbol == "F")
-        (line,), value = arrows.lines, arrows.act.values[round(phase * 20)]
+        (line,) = arrows.lines
+        value = arrows.act.values[round(phase * 20)]
         lengths.append((np.hypot(*(line[-1] - line[0])), value))
     (full, peak), (part, value) = lengths
     assert part / full == pytest.approx(value / peak, rel=1e-6)
@@ -183,7 +209,9 @@ def test_the_magnification_holds_while_motion_is_seen() -> None:
 
 def test_bands_meet_between_points_of_different_status() -> None:
     points = np.stack([np.arange(4.0), np.zeros(4)], axis=1)
-    lines = bands(points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8))
+    lines = bands(
+        points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8)
+    )
     assert np.allclose(lines[0][:3, 0], [0.0, 1.0, 1.5])
     assert np.allclose(lines[1][:3, 0], [1.5, 2.0, 3.0])
     assert all(np.isnan(line[3:]).all() for line in lines.values())
@@ -212,8 +240,11 @@ def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:
     # What goes behind within a step is cut off straight, which takes less than 1 %.
     geometry = frame_of(small("rope")).run.geometry
     corners = geometry.nodes[geometry.quads].astype(float)
-    x, y = corners[:, :, 0], corners[:, :, 1]
-    areas = 0.5 * np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1))
+    x = corners[:, :, 0]
+    y = corners[:, :, 1]
+    areas = 0.5 * np.abs(
+        np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
+    )
     described = geometry.description
     assert areas.sum() == pytest.approx(described.length * described.height, rel=1e-2)
 
@@ -229,7 +260,13 @@ def test_a_tap_selects_the_substructure_that_is_there() -> None:
 
 
 def wall(**changes: object) -> Settings:
-    small_wall = {"bricks": 3, "courses": 3, "elements": 4, "elements_up": 2, "instants": 21}
+    small_wall = {
+        "bricks": 3,
+        "courses": 3,
+        "elements": 4,
+        "elements_up": 2,
+        "instants": 21,
+    }
     return default_settings("wall").replace(**small_wall, **changes)
 
 
@@ -237,7 +274,8 @@ def test_lines_of_thrust_bring_what_presses_on_a_wall_to_the_ground() -> None:
     settings = wall(displacement=0.0, unit_weight=0.0)
     frame = frame_of(settings, extras=frozenset({"thrust"}), ends=True)
     shown_lines = frame.extras["thrust"]
-    lines, forces = shown_lines["lines"][..., -1], shown_lines["forces"][:, -1]
+    lines = shown_lines["lines"][..., -1]
+    forces = shown_lines["forces"][:, -1]
     on_ground = np.all(lines[:, 1] == lines[:, 2], axis=1)
     assert on_ground.sum() == 3
     assert forces[on_ground].sum() == pytest.approx(1e6 * 3 * 0.25, rel=0.01)
@@ -251,7 +289,9 @@ def test_lines_of_thrust_bring_what_presses_on_a_wall_to_the_ground() -> None:
 def test_a_wall_that_collapses_says_its_limit_and_shows_by_which_mechanism() -> None:
     frame = frame_of(wall(top="pulled", traction=2e6, unit_weight=0.0), ends=True)
     assert frame.status is not None
-    assert re.search(r"no equilibrium beyond traction = \d+ Pa \(0\.\d+ times", frame.status.advice)
+    assert re.search(
+        r"no equilibrium beyond traction = \d+ Pa \(0\.\d+ times", frame.status.advice
+    )
     state = PageState(frame.run.settings)
     state.frame = state.newest = frame
     assert re.search(r"beyond Traction [\d.]+ [kM]Pa", status_line(state))

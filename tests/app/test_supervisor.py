@@ -16,7 +16,9 @@ from app.supervisor import Supervisor
 class Document:
     """A document whose time goes on when it is told."""
 
-    def add_periodic_callback(self, callback: Callable[[], Any], milliseconds: int) -> None:
+    def add_periodic_callback(
+        self, callback: Callable[[], Any], milliseconds: int
+    ) -> None:
         assert milliseconds > 0
         self.look = callback
 
@@ -40,7 +42,9 @@ class Process:
         self.orders.clear()
 
 
-def test_a_worker_is_stuck_only_once_its_page_has_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_is_stuck_only_once_its_page_has_loaded(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     made: list[Process] = []
 
     def worker(hear: Callable[[Any, Any], None], others: int) -> Process:
@@ -49,7 +53,8 @@ def test_a_worker_is_stuck_only_once_its_page_has_loaded(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(app.supervisor, "Worker", worker)
     monkeypatch.setattr(app.supervisor, "STUCK", -1.0)
-    document, state = Document(), PageState(default_settings("bar"))
+    document = Document()
+    state = PageState(default_settings("bar"))
     supervisor = Supervisor(state, document)
     supervisor.begin()
     state.run()

@@ -76,7 +76,9 @@ def test_the_program_gives_the_records_of_the_run_again(
     *lines, ending = capsys.readouterr().out.splitlines()
     records = [line.split() for line in lines]
     assert ending == "converged"
-    assert [int(iteration) for iteration, _, _ in records] == [r.iteration for r in runner.history]
+    assert [int(iteration) for iteration, _, _ in records] == [
+        r.iteration for r in runner.history
+    ]
     for (_, indicator, error), record in zip(records, runner.history, strict=True):
         assert float(indicator) == record.indicator
         assert float(error) == pytest.approx(record.error_force, abs=1e-15)
@@ -109,7 +111,9 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     text = offline_page(frame, views, Selection(), None)
     assert "<script src" not in text
     assert "<link" not in text
-    match = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S)
+    match = re.search(
+        r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S
+    )
     assert match is not None
     kept = json.dumps(json.loads(match[1]))
     assert kept.count('"svg"') >= len(views)
@@ -123,9 +127,11 @@ def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
     state, views = page("bar")
     offered = offers(state, views)
     names = [getattr(offer, "filename", "") for offer in offered]
-    assert {"slipfront-bar.html", "slipfront-bar.py", "slipfront-bar-all-iterations.csv"} <= {
-        *names
-    }
+    assert {
+        "slipfront-bar.html",
+        "slipfront-bar.py",
+        "slipfront-bar-all-iterations.csv",
+    } <= {*names}
     assert sum(name.endswith(".csv") for name in names) == 1 + len(views)
     for offer in offered[1:4]:
         assert offer.callback().getvalue()

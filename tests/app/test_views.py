@@ -46,9 +46,24 @@ MORE = {
     "two points": (
         "block",
         {
-            **{"gap": "flat", "length": 0.1, "height": 0.1, "elements": 1, "elements_up": 1},
-            **{"substructures": 1, "substructures_up": 1, "friction": 0.7, "duration": 8.0},
-            **{"top_normal_slope": 0.5, "top_tangential_load": "cycles", "instants": 65},
+            **{
+                "gap": "flat",
+                "length": 0.1,
+                "height": 0.1,
+                "elements": 1,
+                "elements_up": 1,
+            },
+            **{
+                "substructures": 1,
+                "substructures_up": 1,
+                "friction": 0.7,
+                "duration": 8.0,
+            },
+            **{
+                "top_normal_slope": 0.5,
+                "top_tangential_load": "cycles",
+                "instants": 65,
+            },
         },
     ),
 }
@@ -64,7 +79,8 @@ def settings_of(case: str) -> Settings:
 @cache
 def frames_of(case: str) -> tuple[Frame, Frame, Frame]:
     """First iterate, before any reference; one on the way; and the answer."""
-    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=NEEDS)
+    start = Start(1, settings_of(case), math.inf)
+    needs = Needs(extras=NEEDS)
     runner = Runner(start, ReferenceCache(), lambda: False)
     runner.advance()
     frames = [runner.frame(needs)]
@@ -80,7 +96,9 @@ def other_run(frame: Frame) -> Frame:
     return replace(frame, run=replace(frame.run, number=2))
 
 
-def shown(view: View, frame: Frame, ghost: Frame | None = None, **chosen: object) -> View:
+def shown(
+    view: View, frame: Frame, ghost: Frame | None = None, **chosen: object
+) -> View:
     """Show a frame in a view."""
     view.state.newest = view.state.frame = frame
     view.update(frame, replace(Selection(), **chosen), ghost)
@@ -103,7 +121,13 @@ def test_each_view_that_applies_shows_each_frame(kind: type[View], case: str) ->
     view = kind(PageState(frames[0].run.settings))
     assert view.figure is not None
     first, last, answer = frames
-    pairs = [(first, None), (first, answer), (last, answer), (last, None), (answer, last)]
+    pairs = [
+        (first, None),
+        (first, answer),
+        (last, answer),
+        (last, None),
+        (answer, last),
+    ]
     for frame, ghost in pairs:
         shown(view, frame, ghost and other_run(ghost))
         for axes in (view.figure.x_range, view.figure.y_range):
@@ -118,7 +142,9 @@ def test_ranges_that_follow_data_have_some_before_a_view_is_updated() -> None:
     follow = [v for v in views if isinstance(v.figure.x_range, DataRange1d)]
     assert follow
     for view in follow:
-        assert any(np.isfinite(source.data["x"]).any() for source in view.sources.values())
+        assert any(
+            np.isfinite(source.data["x"]).any() for source in view.sources.values()
+        )
 
 
 @pytest.mark.parametrize("case", ["bar", "block"])
@@ -129,19 +155,28 @@ def test_logarithmic_axes_have_positive_finite_values_only(case: str) -> None:
                 continue
             view = view_of(kind, frame)
             is_log = "Log" in type(view.figure.y_scale).__name__
-            columns = [s.data.get(name, []) for s in view.sources.values() for name in ("y", "ys")]
+            columns = [
+                s.data.get(name, [])
+                for s in view.sources.values()
+                for name in ("y", "ys")
+            ]
             values = [np.ravel(each) for column in columns for each in column]
             shown_values = np.concatenate([*values, np.ones(1)])
-            assert not is_log or (np.isfinite(shown_values).all() and (shown_values > 0.0).all())
+            assert not is_log or (
+                np.isfinite(shown_values).all() and (shown_values > 0.0).all()
+            )
 
 
 @pytest.mark.parametrize("case", ["bar", "block", "strand"])
-def test_the_shaded_error_is_there_on_the_way_and_vanishes_at_the_answer(case: str) -> None:
+def test_the_shaded_error_is_there_on_the_way_and_vanishes_at_the_answer(
+    case: str,
+) -> None:
     _, last, answer = frames_of(case)
     sizes = []
     for frame in (last, answer):
         data = view_of(ContactForce, frame).sources["friction"].data
-        latin, reference = np.array(data["latin"]), np.array(data["reference"])
+        latin = np.array(data["latin"])
+        reference = np.array(data["reference"])
         sizes.append(np.abs(latin - reference).max() / np.abs(reference).max())
     assert sizes[0] > 0.02
     assert sizes[1] < 1e-3
@@ -153,14 +188,18 @@ def test_the_contact_force_is_shown_in_the_unit_that_its_axis_says() -> None:
     column = frame.run.column(Selection().phase)
     fields = next(iter(frame.contact.values()))
     assert view.figure.yaxis[0].axis_label == "force, kN/m"
-    assert np.allclose(view.sources["friction"].data["latin"], 1e-3 * fields.friction[:, column])
+    assert np.allclose(
+        view.sources["friction"].data["latin"], 1e-3 * fields.friction[:, column]
+    )
 
 
 def test_the_axis_of_the_contact_force_stays_while_a_run_iterates() -> None:
     _, last, _ = frames_of("bar")
     view = view_of(ContactForce, last)
     ends = view.figure.y_range.start, view.figure.y_range.end
-    smaller = {n: replace(f, friction=0.1 * f.friction) for n, f in last.contact.items()}
+    smaller = {
+        n: replace(f, friction=0.1 * f.friction) for n, f in last.contact.items()
+    }
     shown(view, replace(last, contact=smaller))
     assert (view.figure.y_range.start, view.figure.y_range.end) == ends
 
@@ -170,8 +209,14 @@ def test_the_reference_moves_neither_axis_nor_legend_of_a_run_like_the_last() ->
     view = view_of(ContactForce, answer)
 
     def look() -> tuple[Any, ...]:
-        names = [item.label.value for item in view.figure.legend[0].items if item.visible]
-        return round(view.figure.y_range.start, 9), round(view.figure.y_range.end, 9), names
+        names = [
+            item.label.value for item in view.figure.legend[0].items if item.visible
+        ]
+        return (
+            round(view.figure.y_range.start, 9),
+            round(view.figure.y_range.end, 9),
+            names,
+        )
 
     view.state.ghost = answer
     begun = other_run(first)
@@ -195,7 +240,9 @@ def test_legends_name_only_what_is_drawn() -> None:
 
     view = view_of(ContactForce, first)
     assert names(view) == {"LATIN", "±µp"}
-    assert {"reference", "error", "last run"} <= names(shown(view, last, other_run(answer)))
+    assert {"reference", "error", "last run"} <= names(
+        shown(view, last, other_run(answer))
+    )
     assert "pressure" not in names(view)
 
 
@@ -221,9 +268,12 @@ def test_of_curves_only_what_is_new_is_sent_and_not_each_by_itself() -> None:
         return replace(frame, extras={"spectra": count * [np.array([1.0, second])]})
 
     view = view_of(Spectra, of(0.1))
-    document, sent = Document(), []
+    document = Document()
+    sent = []
     document.add_root(view.figure)
-    document.on_change(lambda event: sent.append(event) if hasattr(event, "cols") else None)
+    document.on_change(
+        lambda event: sent.append(event) if hasattr(event, "cols") else None
+    )
     shown(view, of(0.2))
     (event,) = sent
     assert event.cols == ["ys"]
@@ -236,7 +286,9 @@ def test_the_ghosts_boundary_lies_where_its_status_changes() -> None:
     _, last, answer = frames_of("bar")
     view = shown(view_of(StatusMap, last), last, other_run(answer))
     status = next(iter(answer.contact.values())).status
-    changes = np.count_nonzero(np.diff(status, axis=0)) + np.count_nonzero(np.diff(status, axis=1))
+    changes = np.count_nonzero(np.diff(status, axis=0)) + np.count_nonzero(
+        np.diff(status, axis=1)
+    )
     assert len(view.sources["ghost"].data["x0"]) == changes
 
 
@@ -253,7 +305,10 @@ def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
     answer = frames_of("bar")[2]
     view = view_of(Convergence, answer)
     assert list(view.sources["answer"].data["x"]) == [answer.iteration]
-    assert len(view.sources["error_force"].data["x"]) == len(answer.history["iteration"]) - 1
+    assert (
+        len(view.sources["error_force"].data["x"])
+        == len(answer.history["iteration"]) - 1
+    )
 
 
 def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
@@ -266,9 +321,14 @@ def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
 
 def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:
     last = frames_of("bar")[1]
-    history = {**last.history, "indicator": np.full_like(last.history["indicator"], 1e-9)}
+    history = {
+        **last.history,
+        "indicator": np.full_like(last.history["indicator"], 1e-9),
+    }
     view = view_of(Convergence, replace(last, history=history))
-    assert (view.figure.y_range.start, view.figure.y_range.end) == pytest.approx((1e-4, 10.0))
+    assert (view.figure.y_range.start, view.figure.y_range.end) == pytest.approx(
+        (1e-4, 10.0)
+    )
 
 
 def test_singular_values_wait_for_the_worker_to_send_them() -> None:
@@ -276,14 +336,19 @@ def test_singular_values_wait_for_the_worker_to_send_them() -> None:
     view = view_of(Spectra, last)
     count = len(view.sources["values"].data["xs"])
     shown(view, replace(last, extras={}))
-    assert count == last.run.settings.n_substructures == len(view.sources["values"].data["xs"])
+    assert (
+        count
+        == last.run.settings.n_substructures
+        == len(view.sources["values"].data["xs"])
+    )
 
 
 def test_the_dot_of_the_instant_lies_on_the_loop() -> None:
     frame = frames_of("bar")[1]
     view = view_of(HysteresisLoop, frame)
     column = frame.run.column(Selection().phase)
-    now, loop = view.sources["now"].data, view.sources["LATIN"].data
+    now = view.sources["now"].data
+    loop = view.sources["LATIN"].data
     assert (now["x"][0], now["y"][0]) == (loop["x"][column], loop["y"][column])
 
 

@@ -111,7 +111,13 @@ def test_a_question_is_a_text_and_one_that_the_scene_does_not_have_is_energy() -
     settings = tiny()
     assert question_of(str(LOADS), settings) == LOADS
     energy = Question(("peak=240:2400:13:log",), "dissipation")
-    for text in ("", "friction=0:1:3", "no=1,2 dissipation", "friction=0.1 none", "friction=a of"):
+    for text in (
+        "",
+        "friction=0:1:3",
+        "no=1,2 dissipation",
+        "friction=0.1 none",
+        "friction=a of",
+    ):
         assert question_of(text, settings) == energy
 
 
@@ -133,7 +139,9 @@ def test_each_ready_question_can_be_asked_or_is_not_offered(scene: str) -> None:
         assert question_of(str(question), settings) == question
 
 
-def test_iterations_are_counted_of_the_search_and_all_else_is_taken_of_the_answer() -> None:
+def test_iterations_are_counted_of_the_search_and_all_else_is_taken_of_the_answer() -> (
+    None
+):
     settings = tiny()
     assert iterations_over_k(settings).asked(settings).finish == "accuracy"
     assert LOADS.asked(settings).finish == "at-once"
@@ -149,7 +157,9 @@ def test_iterations_are_counted_of_the_search_and_all_else_is_taken_of_the_answe
         ("processes:x", 2, "processes:x"),
     ],
 )
-def test_pages_share_the_processes_of_a_server(executor: str, users: int, share: str) -> None:
+def test_pages_share_the_processes_of_a_server(
+    executor: str, users: int, share: str
+) -> None:
     assert share_of(executor, users) == share
 
 
@@ -171,7 +181,9 @@ def wait_for(job: Job) -> None:
 def test_commands_run_in_turn_to_their_end_and_a_cancelled_one_leaves_nothing() -> None:
     short = ["mesh", "bar", "--of", "dissipation"]
     short += [f"--set={name}={value}" for name, value in TINY.items()]
-    first, second, wrong = Job(short), Job(["proof"]), Job(["study", "no"])
+    first = Job(short)
+    second = Job(["proof"])
+    wrong = Job(["study", "no"])
     assert second.progress.startswith("Waiting")
     second.cancel()
     wait_for(first)
@@ -189,11 +201,16 @@ def test_commands_run_in_turn_to_their_end_and_a_cancelled_one_leaves_nothing() 
 class Done:
     """A job that is over."""
 
-    is_over, failure, progress = True, "", ""
+    is_over = True
+    failure = ""
+    progress = ""
 
     def __init__(self, *arguments: Any) -> None:
         link = f'<a href="{reports.PAGE}?scene=bar">a run</a>'
-        self.files = {"proof.csv": b"a,b", "proof.html": f"<style></style>{link}".encode()}
+        self.files = {
+            "proof.csv": b"a,b",
+            "proof.html": f"<style></style>{link}".encode(),
+        }
 
     def close(self) -> None:
         """Nothing is left."""
@@ -206,7 +223,9 @@ def made(monkeypatch: pytest.MonkeyPatch) -> reports.Reports:
     return reports.Reports(PageState(tiny(), tab="Reports"))
 
 
-def test_a_report_is_read_with_its_files_and_its_links_lead_here(made: reports.Reports) -> None:
+def test_a_report_is_read_with_its_files_and_its_links_lead_here(
+    made: reports.Reports,
+) -> None:
     made.kind.value = "Proof"
     assert made.page.object == ""
     made.start()

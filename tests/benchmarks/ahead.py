@@ -1,6 +1,7 @@
 """LATIN beside the incremental solver on the same mesh: who is first, and how LATIN gets there.
 
-`python tests/benchmarks/ahead.py`, of one group `ahead.py strand`; `--large` for those of minutes
+`python tests/benchmarks/ahead.py`, of one group `ahead.py strand`; `--large` for those
+of minutes
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ from solver.study.sweep.executors import ONE_THREAD, machine
 GOAL = 0.01
 """Error of the contact force that LATIN's own way is to reach."""
 NEAR = 0.1
-"""Error of the iterate above which a solution that a status step finds is not LATIN's."""
+"""Error of the iterate above which a solution that a status step finds is not
+LATIN's."""
 MOST = 300
 """Iterations of LATIN's own way."""
 REPEATS = 3
@@ -55,7 +57,10 @@ Problem = tuple[str, dict[str, Any]]
 
 def _block(elements: int) -> Problem:
     sizes = {"elements": elements, "elements_up": elements // 2, "instants": 51}
-    cuts = {"substructures": elements // CELL, "substructures_up": elements // 2 // CELL}
+    cuts = {
+        "substructures": elements // CELL,
+        "substructures_up": elements // 2 // CELL,
+    }
     return "block", {**sizes, **cuts}
 
 
@@ -68,7 +73,9 @@ PROBLEMS: dict[str, list[Problem]] = {
     "strand": [_strand(wires) for wires in (3, 10, 20)],
     "block": [_block(elements) for elements in (48, 96, 192, 384)],
     "layers": [("layers", {"layers": layers}) for layers in (4, 10, 20)],
-    "thin": [("layers", {"length": 0.01 * n, "thickness": 0.01}) for n in (200, 500, 1000)],
+    "thin": [
+        ("layers", {"length": 0.01 * n, "thickness": 0.01}) for n in (200, 500, 1000)
+    ],
 }
 LARGE: dict[str, list[Problem]] = {
     "scenes": [("bar", {"elements": 1600, "instants": 1600})],
@@ -83,7 +90,8 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
     settings = CATALOGUE[scene].checked(changes)
     has_reference, own_at, known_at, known_by = _course(settings)
     solution = latin(settings)
-    number, found_at = len(solution.records), "-"
+    number = len(solution.records)
+    found_at = "-"
     if solution.is_certified and number > 1:
         error = solution.records[-2].estimated_error
         found_at = f"{100.0 * error:.2g} %{' *' if error > NEAR else ''}"
@@ -113,12 +121,18 @@ def _course(settings: Settings) -> tuple[bool, int, int, str]:
         distance = distance_to(reference_of(problem), problem)
     except NoReferenceError:
         distance = None
-    own_at, known_at, known_by = 0, 0, ""
+    own_at = 0
+    known_at = 0
+    known_by = ""
     method = method_of(settings.replace(finish="none"))
     for iterate, verdict in islice(judged(problem, method), MOST):
         if not own_at and distance and distance.of_friction_force(iterate) <= GOAL:
             own_at = iterate.number
-        if not known_at and verdict.status and verdict.status.ending is Ending.CONVERGED:
+        if (
+            not known_at
+            and verdict.status
+            and verdict.status.ending is Ending.CONVERGED
+        ):
             known_at = iterate.number
             known_by = "estimate" if verdict.certificate is None else "certified"
         if known_at and (own_at or distance is None):
@@ -126,7 +140,9 @@ def _course(settings: Settings) -> tuple[bool, int, int, str]:
     return distance is not None, own_at, known_at, known_by
 
 
-def _seconds(settings: Settings, way: Callable[..., Iterator[object]], number: int) -> float:
+def _seconds(
+    settings: Settings, way: Callable[..., Iterator[object]], number: int
+) -> float:
     """Seconds of so many iterations that no status step ends; NaN of none."""
     own = settings.replace(finish="none")
 
@@ -134,26 +150,39 @@ def _seconds(settings: Settings, way: Callable[..., Iterator[object]], number: i
         for _ in islice(way(discretise(own), method_of(own)), number):
             pass
 
-    return seconds_of(work) if number else math.nan
+    if number:
+        return seconds_of(work)
+    return math.nan
 
 
 def main() -> None:
     """Print a row of each problem as soon as it is there."""
     parser = argparse.ArgumentParser(description="LATIN beside the incremental solver.")
-    parser.add_argument("group", nargs="?", choices=PROBLEMS, help="these problems alone")
+    parser.add_argument(
+        "group", nargs="?", choices=PROBLEMS, help="these problems alone"
+    )
     parser.add_argument("--large", action="store_true", help="those of minutes too")
     chosen = parser.parse_args()
-    groups = [chosen.group] if chosen.group else list(PROBLEMS)
+    if chosen.group:
+        groups = [chosen.group]
+    else:
+        groups = list(PROBLEMS)
     problems = [one for group in groups for one in PROBLEMS[group]]
     if chosen.large:
         problems += [one for group in groups for one in LARGE.get(group, [])]
     os.environ.update(ONE_THREAD)
     print(machine())
-    options: dict[str, Any] = {"max_tasks_per_child": 1, "mp_context": get_context("spawn")}
+    options: dict[str, Any] = {
+        "max_tasks_per_child": 1,
+        "mp_context": get_context("spawn"),
+    }
     with ProcessPoolExecutor(1, **options) as pool:
         for row in (HEAD, *pool.map(measure, *zip(*problems, strict=True))):
             cells = zip(row, WIDTHS, strict=True)
-            print("  ".join(cell.ljust(width) for cell, width in cells).rstrip(), flush=True)
+            print(
+                "  ".join(cell.ljust(width) for cell, width in cells).rstrip(),
+                flush=True,
+            )
     print(*NOTES, sep="\n")
 
 

@@ -82,17 +82,23 @@ def by_increments(settings: Any) -> BlockFields:
     """The same by the incremental solver."""
     problem = discretise(settings)
     reference = reference_of(problem)
-    contact, inside = reference.contact("support"), problem.inside
+    contact = reference.contact("support")
+    inside = problem.inside
     assert contact.normal_force is not None
     assert inside is not None
-    displacement = inside.displacement(reference.displacement, slice(None)).transpose(1, 0, 2)
+    displacement = inside.displacement(reference.displacement, slice(None)).transpose(
+        1, 0, 2
+    )
     return BlockFields(contact.normal_force, contact.tangential_force, displacement)
 
 
 def differences(settings: Any, python: str) -> dict[str, float]:
     """Largest difference of the two at any node and instant, over the largest of the field."""
-    theirs, ours = by_getfem(settings, python), by_increments(settings)
-    force, moved = (float(np.abs(one).max()) for one in (ours.normal_force, ours.displacement))
+    theirs = by_getfem(settings, python)
+    ours = by_increments(settings)
+    force, moved = (
+        float(np.abs(one).max()) for one in (ours.normal_force, ours.displacement)
+    )
     return {
         name: float(np.abs(their - our).max()) / size
         for name, their, our, size in zip(
@@ -113,5 +119,7 @@ if __name__ == "__main__":
     python = interpreter()
     if python is None:
         sys.exit("GetFEM is not installed: apt-get install python3-getfem")
-    for name, difference in differences(CATALOGUE["block"].checked(SHEARED), python).items():
+    for name, difference in differences(
+        CATALOGUE["block"].checked(SHEARED), python
+    ).items():
         print(f"{name.replace('_', ' ')}, all nodes and instants: {difference:.1e}")

@@ -1,9 +1,9 @@
 """How small a rank the argument of a clip has in the plane, where the bound is mu N(x, t) as it is.
 
-A matrix of low rank is sought that is the friction where a point sticks, and beyond the bound where
-it slips: clipped at the bound it is the friction. Both factors are found at once by L-BFGS, from
-singular vectors and from the solution of the rank before, first for the distance to these sets,
-then for that of the clipped field.
+A matrix of low rank is sought that is the friction where a point sticks, and beyond the
+bound where it slips: clipped at the bound it is the friction. Both factors are found at
+once by L-BFGS, from singular vectors and from the solution of the rank before, first
+for the distance to these sets, then for that of the clipped field.
 """
 
 from __future__ import annotations
@@ -65,13 +65,16 @@ class Traction:
             argument = product(both, rank, self.friction.shape[0])
             left = np.clip(argument, -self.bound, self.bound) - self.friction
             value, _ = self._loss(both, rank, left)
-            return value, self._loss(both, rank, left * (np.abs(argument) < self.bound))[1]
+            return value, self._loss(
+                both, rank, left * (np.abs(argument) < self.bound)
+            )[1]
 
         return [to_sets, of_clipped]
 
     def _loss(self, both: Array, rank: int, left: Array) -> tuple[float, Array]:
         points = len(left)
-        space, time = both[: points * rank], both[points * rank :]
+        space = both[: points * rank]
+        time = both[points * rank :]
         gradient = left @ time.reshape(-1, rank), left.T @ space.reshape(-1, rank)
         whole = np.concatenate([one.ravel() for one in gradient]) / self.size**2
         return 0.5 * float(np.sum(left**2)) / self.size**2, whole
@@ -79,7 +82,8 @@ class Traction:
 
 def product(both: Array, rank: int, points: int) -> Array:
     """Multiply the factors, which lie one behind the other."""
-    space, time = both[: points * rank], both[points * rank :]
+    space = both[: points * rank]
+    time = both[points * rank :]
     return np.asarray(space.reshape(-1, rank) @ time.reshape(-1, rank).T)
 
 
@@ -87,9 +91,17 @@ def fitted(field: Traction, rank: int, start: Array) -> Array:
     """Seek an argument of a rank from the singular vectors of a start."""
     left, values, right = np.linalg.svd(start, full_matrices=False)
     root = np.sqrt(values[:rank])
-    both = np.concatenate([(left[:, :rank] * root).ravel(), (right[:rank].T * root).ravel()])
+    both = np.concatenate(
+        [(left[:, :rank] * root).ravel(), (right[:rank].T * root).ravel()]
+    )
     found = []
-    options = {"maxiter": STEPS, "maxfun": 10 * STEPS, "maxcor": 30, "ftol": 1e-15, "gtol": 1e-12}
+    options = {
+        "maxiter": STEPS,
+        "maxfun": 10 * STEPS,
+        "maxcor": 30,
+        "ftol": 1e-15,
+        "gtol": 1e-12,
+    }
     for loss in field.losses(rank):
         both = minimize(loss, both, jac=True, method="L-BFGS-B", options=options).x
         found.append(product(both, rank, len(start)))
@@ -113,8 +125,11 @@ def cattaneo() -> Traction:
 
 def solved(scene: str, **changes: str) -> Traction:
     """Give the friction on all interfaces of a scene, and mu N."""
-    run = finished_run(scene_settings(scene).checked(changes), errors=False, indicators=False)
-    friction, bounds = [], []
+    run = finished_run(
+        scene_settings(scene).checked(changes), errors=False, indicators=False
+    )
+    friction = []
+    bounds = []
     for name, law in run.problem.rubbing.items():
         shown = run.iterate.contact(name)
         assert shown.normal_force is not None
@@ -128,18 +143,24 @@ def solved(scene: str, **changes: str) -> Traction:
 
 def report(name: str, field: Traction) -> None:
     """Print errors over the rank, until they are small."""
-    products, bounds = best_products(field.friction), best_products(field.bound)
+    products = best_products(field.friction)
+    bounds = best_products(field.bound)
     needed = [int(np.argmax(one <= 0.01)) for one in (products, bounds)]
     print(f"{name}, {field.friction.shape}: 1 % takes {needed[0]} products,", end=" ")
     print(f"its bound {needed[1]}", flush=True)
     noise = np.random.default_rng(0)
     found = field.friction
     for rank in range(1, MOST + 1):
-        shaken = found + NOISE * np.abs(found).max() * noise.standard_normal(found.shape)
+        shaken = found + NOISE * np.abs(found).max() * noise.standard_normal(
+            found.shape
+        )
         tried = [fitted(field, rank, start) for start in (field.friction, shaken)]
         found = min(tried, key=field.error)
         error = field.error(found)
-        print(f"  rank {rank}: clip {error:.2%}, products {products[rank]:.2%}", flush=True)
+        print(
+            f"  rank {rank}: clip {error:.2%}, products {products[rank]:.2%}",
+            flush=True,
+        )
         if error < SMALL_ENOUGH:
             break
 

@@ -1,8 +1,8 @@
 """What many cycles of a load cost: LATIN and LATIN-PGD, at once and in slabs of a cycle.
 
-`python tests/benchmarks/cycles.py`, of one problem `cycles.py strand`; `--large` up to 100 cycles.
-Iterations to 1 % of the contact force are counted without the clock, then each way runs for so
-many, from the discrete problem on, in turns.
+`python tests/benchmarks/cycles.py`, of one problem `cycles.py strand`; `--large` up to
+100 cycles. Iterations to 1 % of the contact force are counted without the clock, then
+each way runs for so many, from the discrete problem on, in turns.
 """
 
 from __future__ import annotations
@@ -33,18 +33,23 @@ from solver.settings.scene import Settings
 from solver.study.measured_times import seconds_of
 from solver.study.sweep.executors import ONE_THREAD, machine
 
-GOAL, FIRST = 0.01, 0.5
-"""Error of the contact force, and the share of it in the first slab: that goes on into the next."""
-MOST, LONGEST = 300, 60.0
+GOAL = 0.01
+FIRST = 0.5
+"""Error of the contact force, and the share of it in the first slab: that goes on into
+the next."""
+MOST = 300
+LONGEST = 60.0
 """Iterations of a slab, and seconds of the processor, after which a way is given up."""
-REPEATS, SHORT = 3, 2.0
+REPEATS = 3
+SHORT = 2.0
 """Times that each is measured, and seconds of all from which on once is enough."""
 MODES = 40, 10
-"""Of LATIN-PGD, and a brick of a wall: with 20 the block of 192 x 96 elements stalls at 4 to 6 %;
-with 6 a wall under ten cycles at 1.2 % (measured)."""
+"""Of LATIN-PGD, and a brick of a wall: with 20 the block of 192 x 96 elements stalls at
+4 to 6 %; with 6 a wall under ten cycles at 1.2 % (measured)."""
 INSTANTS = 40
 """Of a cycle."""
-FEW, MANY = (1, 2, 5, 10), (1, 2, 5, 10, 20, 50, 100)
+FEW = (1, 2, 5, 10)
+MANY = (1, 2, 5, 10, 20, 50, 100)
 PGD = {"linear_stage": "pgd"}
 WAYS: dict[str, tuple[dict[str, Any], bool]] = {
     "LATIN": ({}, False),
@@ -61,7 +66,8 @@ PROBLEMS: dict[str, tuple[str, dict[str, Any], int]] = {
     "strand": ("strand", {"wires": 20, "elements": 100}, MANY[-1]),
     "wall": ("wall", WALL, 50),
 }
-"""Scene, settings but for the load, and most cycles that the limits on settings allow."""
+"""Scene, settings but for the load, and most cycles that the limits on settings
+allow."""
 NOTES = (
     f"Cycles of {INSTANTS} instants. Iterations and seconds of the processor until the contact "
     f"force is within {GOAL:.0%} of the incremental solver's over all instants; share of the local "
@@ -96,7 +102,10 @@ def settings_of(name: str, cycles: int) -> Settings:
         load = {"top_normal_load": pressed, "top_tangential_load": path}
     if scene == "wall":
         pressed = [[0.0, 0.0], [0.1, 1e6]]
-        load = {"pressure_load": pressed, "top_load": [[0.0, 0.0], [0.1, 0.0], *path[1:]]}
+        load = {
+            "pressure_load": pressed,
+            "top_load": [[0.0, 0.0], [0.1, 0.0], *path[1:]],
+        }
     modes = {"pgd_modes": MODES[scene == "wall"], **changes}
     times = {"instants": INSTANTS * cycles + 1, "duration": float(cycles)}
     return CATALOGUE[scene].checked({**modes, **times, **load})
@@ -120,16 +129,23 @@ def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], lis
     medians = {way: statistics.median(own) for way, own in seconds.items()}
     lines = [f"{cycles:>6}  {'incremental solver':<18}  {medians['']:.2g} s"]
     for way in counts:
-        ratios = (medians.get(other, math.nan) / medians[way] for other in ("", "LATIN"))
+        ratios = (
+            medians.get(other, math.nan) / medians[way] for other in ("", "LATIN")
+        )
         ups = ", ".join(f"{ratio:.2g}" for ratio in ratios)
-        lines.append(f"{cycles:>6}  {way:<18}  {medians[way]:.2g} s, {words[way]}; S {ups}")
+        lines.append(
+            f"{cycles:>6}  {way:<18}  {medians[way]:.2g} s, {words[way]}; S {ups}"
+        )
     lines += [f"{cycles:>6}  {way:<18}  -" for way in ways if way not in counts]
     return lines, list(counts)
 
 
 def _first(problem: Problem, settings: Settings, way: str) -> tuple[Slab, int]:
     changes, in_slabs = WAYS[way]
-    length = INSTANTS if in_slabs else problem.n_instants
+    if in_slabs:
+        length = INSTANTS
+    else:
+        length = problem.n_instants
     method = method_of(settings.replace(**changes, finish="none"))
     return first_slab(problem, method, length), length
 
@@ -141,7 +157,10 @@ def _course(
     began = time.process_time()
     slab: Slab | None
     slab, length = _first(problem, settings, way)
-    goal = FIRST * GOAL if WAYS[way][1] else GOAL
+    if WAYS[way][1]:
+        goal = FIRST * GOAL
+    else:
+        goal = GOAL
     counts = []
     while slab is not None:
         fields = (reference.displacement, reference.contact_force)
@@ -165,7 +184,8 @@ def _run(
     problem: Problem, settings: Settings, way: str, counts: Sequence[int]
 ) -> tuple[float, str]:
     """Seconds of so many iterations of every slab, and of what they consist."""
-    local, iterate = 0.0, None
+    local = 0.0
+    iterate = None
 
     def work() -> None:
         nonlocal local, iterate
@@ -190,7 +210,10 @@ def _run(
     assert iterate is not None
     modes, megabytes = _state(iterate)
     share = f"local {local / seconds:.0%}"
-    return seconds, f"{sum(counts)} iterations, {share}, {modes} modes, {megabytes:.2g} MB"
+    return (
+        seconds,
+        f"{sum(counts)} iterations, {share}, {modes} modes, {megabytes:.2g} MB",
+    )
 
 
 def _state(iterate: Iterate) -> tuple[int, float]:
@@ -198,7 +221,8 @@ def _state(iterate: Iterate) -> tuple[int, float]:
     if not iterate.bases:
         return 0, iterate.outgoing.nbytes / 1e6
     held = sum(
-        2 * own.incoming.nbytes + own.basis.time_functions.nbytes for own in set(iterate.bases)
+        2 * own.incoming.nbytes + own.basis.time_functions.nbytes
+        for own in set(iterate.bases)
     )
     return max(own.n_modes for own in iterate.bases), held / 1e6
 
@@ -207,7 +231,9 @@ def main() -> None:
     """Print each number of cycles as soon as it is there."""
     parser = argparse.ArgumentParser(description="What many cycles cost.")
     parser.add_argument("problem", nargs="?", choices=PROBLEMS, help="this alone")
-    parser.add_argument("--large", action="store_true", help="up to 100 cycles, some minutes")
+    parser.add_argument(
+        "--large", action="store_true", help="up to 100 cycles, some minutes"
+    )
     chosen = parser.parse_args()
     os.environ.update(ONE_THREAD)
     print(machine())

@@ -3,9 +3,10 @@
     python tests/benchmarks/fit_coverage.py 40            seeds 0 to 39 of all kinds
     python tests/benchmarks/fit_coverage.py 40 20 young   seeds 20 to 39 of kinds with young
 
-A loop is made by a run of a small bar, to whose displacement noise of 1 % of its range is added.
-What the seed draws: the settings that made the loop, where the fit begins, the peak of the load as
-a share of that which the whole bar takes, the number of elements, and the noise.
+A loop is made by a run of a small bar, to whose displacement noise of 1 % of its range
+is added. What the seed draws: the settings that made the loop, where the fit begins,
+the peak of the load as a share of that which the whole bar takes, the number of
+elements, and the noise.
 """
 
 from __future__ import annotations
@@ -77,7 +78,9 @@ def made_loop(names: tuple[str, ...], seed: int) -> MadeLoop:
         true[name] = float(np.exp(rng.uniform(low, high)))
         start[name] = true[name] * float(np.exp(rng.uniform(-OFF, OFF)))
     bar = BarSettings.checked({})
-    largest = true["friction"] * true.get("pressure", bar.values()["pressure"]) * bar.length
+    largest = (
+        true["friction"] * true.get("pressure", bar.values()["pressure"]) * bar.length
+    )
     settings = BarSettings.checked(
         {
             **KINDS[names],
@@ -136,9 +139,13 @@ def measure(names: tuple[str, ...], seeds: range) -> list[str]:
 
 def report(seed: int, found: Fit, true: dict[str, float]) -> None:
     """Print what is outside of its margins."""
-    rows = zip(true.items(), found.nearest.values, found.lower, found.upper, strict=True)
+    rows = zip(
+        true.items(), found.nearest.values, found.lower, found.upper, strict=True
+    )
     for (name, made), value, lower, upper in rows:
-        print(f"seed {seed}: {name} {value:.4g}, {lower:.4g} to {upper:.4g}, made {made:.4g}")
+        print(
+            f"seed {seed}: {name} {value:.4g}, {lower:.4g} to {upper:.4g}, made {made:.4g}"
+        )
     for one in found.together:
         product = math.prod(true[name] ** power for name, power in one.powers.items())
         print(f"  {one.powers} {one.lower:.4g} to {one.upper:.4g}, made {product:.4g}")

@@ -1,10 +1,11 @@
 """A block on a rough support, solved by GetFEM: a program for whichever Python has that.
 
-It reads JSON and writes JSON, and imports nothing of this project. The elements are those of
-`solver.discrete.elements`, told in GetFEM's own language: bilinear, with the bending modes of
-Taylor, Beresford and Wilson as unknowns of every element, two by two Gauss points. Contact and
-friction at the nodes are its basic contact brick, an augmented Lagrangian after Alart and Curnier;
-the unknowns are increments, so that friction is against what has moved since the instant before.
+It reads JSON and writes JSON, and imports nothing of this project. The elements are
+those of `solver.discrete.elements`, told in GetFEM's own language: bilinear, with the
+bending modes of Taylor, Beresford and Wilson as unknowns of every element, two by two
+Gauss points. Contact and friction at the nodes are its basic contact brick, an
+augmented Lagrangian after Alart and Curnier; the unknowns are increments, so that
+friction is against what has moved since the instant before.
 
 Lengths are over that of the block, stresses over Young's modulus.
 """
@@ -18,7 +19,8 @@ from typing import Any
 
 import numpy as np
 
-PRECISION, STEPS = 1e-12, 200
+PRECISION = 1e-12
+STEPS = 200
 UP = 0.01
 """Angle to the vertical within which a face looks upward."""
 
@@ -29,8 +31,9 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
     Parameters
     ----------
     asked
-        `elements` along and up, `height`, the matrix `elastic` from strains to stresses, `gap` at
-        the nodes of the support, `friction`, and what the top is moved by, `top`, (2, n_instants).
+        `elements` along and up, `height`, the matrix `elastic` from strains to
+        stresses, `gap` at the nodes of the support, `friction`, and what the top is
+        moved by, `top`, (2, n_instants).
 
     Returns
     -------
@@ -41,8 +44,10 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
     model, mesh, nodes = _elastic(asked)
     lowest = nodes[: asked["elements"][0] + 1]
     _touching(model, mesh, lowest, asked["friction"])
-    gap, before = np.array(asked["gap"]), np.zeros(2)
-    gone, deformed = model.variable("u0"), model.variable("a0")
+    gap = np.array(asked["gap"])
+    before = np.zeros(2)
+    gone = model.variable("u0")
+    deformed = model.variable("a0")
     found: dict[str, list[Any]] = {"normal": [], "tangential": [], "moved": []}
     for top in np.array(asked["top"]).T:
         model.set_variable("top", top - before)
@@ -50,7 +55,8 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
         model.set_variable("a0", deformed)
         model.set_variable("gap", gap + gone[lowest[:, 1]])
         model.solve("max_res", PRECISION, "max_iter", STEPS)
-        before, gone = top, gone + model.variable("u")
+        before = top
+        gone = gone + model.variable("u")
         deformed = deformed + model.variable("a")
         found["normal"].append((-model.variable("n")).tolist())
         found["tangential"].append(model.variable("t").tolist())
@@ -66,7 +72,9 @@ def _elastic(asked: dict[str, Any]) -> tuple[Any, Any, Any]:
     columns, rows = asked["elements"]
     up = np.linspace(0.0, asked["height"], rows + 1)
     mesh = gf.Mesh("cartesian", np.linspace(0.0, 1.0, columns + 1), up)
-    displaced, modes, middles = gf.MeshFem(mesh, 2), gf.MeshFem(mesh, 4), gf.MeshFem(mesh, 2)
+    displaced = gf.MeshFem(mesh, 2)
+    modes = gf.MeshFem(mesh, 4)
+    middles = gf.MeshFem(mesh, 2)
     displaced.set_fem(gf.Fem("FEM_QK(2,1)"))
     for one in (modes, middles):
         one.set_fem(gf.Fem("FEM_QK(2,0)"))
@@ -119,7 +127,8 @@ def _work(elastic: Sequence[Sequence[float]], u: str, a: str) -> str:
 
 
 def _strains(u: str, a: str) -> tuple[str, str, str]:
-    along, up = f"(Grad_{u}(1,1)+P*{a}(1))", f"(Grad_{u}(2,2)+Q*{a}(4))"
+    along = f"(Grad_{u}(1,1)+P*{a}(1))"
+    up = f"(Grad_{u}(2,2)+Q*{a}(4))"
     return along, up, f"(Grad_{u}(1,2)+Grad_{u}(2,1)+P*{a}(2)+Q*{a}(3))"
 
 

@@ -40,8 +40,8 @@ class Cost:
     local, coarse, linear
         Local stage; coarse problem; gathering, relaxation, elasticity and scattering.
     floor
-        The matrix product and the element-wise passes alone: a step of the friction law for every
-        point and instant, the reflections, the relaxation.
+        The matrix product and the element-wise passes alone: a step of the friction law
+        for every point and instant, the reflections, the relaxation.
     """
 
     nodes: int
@@ -67,7 +67,9 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     repeats
         Measurements of each, whose median is taken.
     """
-    settings = BarSettings.checked({"method": "paper", "elements": nodes - 1, "instants": instants})
+    settings = BarSettings.checked(
+        {"method": "paper", "elements": nodes - 1, "instants": instants}
+    )
     problem = discretise(settings)
     k = method_of(settings).direction.of(problem)
     blocks = Blocks(problem.n_rows, problem.n_instants)
@@ -105,7 +107,11 @@ def _floor(problem: Problem, stage: LinearStage) -> Callable[[], None]:
     rows = np.zeros((3, problem.n_instants, problem.n_rows))
     one, two, three = rows
     products = [
-        (np.eye(len(group.k)), group.target.reshape(len(group.k), -1, order="F"), group.field())
+        (
+            np.eye(len(group.k)),
+            group.target.reshape(len(group.k), -1, order="F"),
+            group.field(),
+        )
         for group in stage.groups
         if isinstance(group.response, DenseResponse)
     ]
@@ -138,7 +144,9 @@ def print_iteration_cost(repeats: int) -> None:
         parts = (cost.iteration, cost.local, cost.coarse, cost.linear, cost.floor)
         cells = " ".join(f"{1e3 * part:8.3f}" for part in parts)
         each = 1e9 * cost.iteration / (nodes * instants)
-        print(f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} {each:9.1f}")
+        print(
+            f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} {each:9.1f}"
+        )
 
 
 OVERHEADS: tuple[tuple[str, dict[str, object]], ...] = (
@@ -158,7 +166,8 @@ class Overhead:
     own
         Seconds of an iteration: both stages, the coarse problem, acceleration.
     snapshot, stop
-        Of making an iterate that can be kept, and of the stop rules without the status step.
+        Of making an iterate that can be kept, and of the stop rules without the status
+        step.
     """
 
     own: float
@@ -169,14 +178,17 @@ class Overhead:
 class _Unproven(ErrorEstimate):
     """Errors that are estimated without a status step."""
 
-    def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
+    def can_be_proven(
+        self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
+    ) -> bool:
         return False
 
 
 def overhead(settings: Settings, repeats: int) -> Overhead:
     """Measure a run up to its accuracy in three ways, interleaved: bare, with iterates, judged."""
     settings = settings.replace(finish="none")
-    problem, method = discretise(settings), method_of(settings)
+    problem = discretise(settings)
+    method = method_of(settings)
     number = len(solve(problem, method, watch=False).records)
 
     def bare() -> None:
@@ -199,14 +211,18 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
     times = zip(*samples_of(ways, repeats), strict=True)
     own, snapshot, stop = (
         statistics.median(found)
-        for found in zip(*((a, (b - a) / a, (c - b) / a) for a, b, c in times), strict=True)
+        for found in zip(
+            *((a, (b - a) / a, (c - b) / a) for a, b, c in times), strict=True
+        )
     )
     return Overhead(own / number, snapshot, stop)
 
 
 def print_overheads(repeats: int) -> None:
     """Print what runs pay for their snapshots and their stop rules."""
-    print(f"\nbeside the stages, as shares of an iteration's own work; medians of {repeats}")
+    print(
+        f"\nbeside the stages, as shares of an iteration's own work; medians of {repeats}"
+    )
     print(f"{'scene':<8} {'method':<8} {'own, ms':>8} {'snapshot':>9} {'stop test':>9}")
     for scene, changes in OVERHEADS:
         settings = CATALOGUE[scene].checked(changes)
@@ -218,6 +234,9 @@ def print_overheads(repeats: int) -> None:
 
 
 if __name__ == "__main__":
-    repeats = int(sys.argv[1]) if len(sys.argv) > 1 else 7
+    if len(sys.argv) > 1:
+        repeats = int(sys.argv[1])
+    else:
+        repeats = 7
     print_iteration_cost(repeats)
     print_overheads(repeats)

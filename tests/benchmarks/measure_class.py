@@ -1,13 +1,14 @@
 """Measure a server with many pages: `python tests/benchmarks/measure_class.py [PAGES] [--waves N]`.
 
-Serves the page and opens all pages, thirty without a number, at once: websockets that say *painted*
-at once, as browsers of thirty machines do, for which these two cores are too few. Prints when the
-first picture of the last page came, how many pictures a second each got at 20 iterations a second
-and of searches without an end in 3 s, the memory of a worker, and what is left once all are closed.
+Serves the page and opens all pages, thirty without a number, at once: websockets that
+say *painted* at once, as browsers of thirty machines do, for which these two cores are
+too few. Prints when the first picture of the last page came, how many pictures a second
+each got at 20 iterations a second and of searches without an end in 3 s, the memory of
+a worker, and what is left once all are closed.
 
-With waves all pages are opened and closed so many times, and the memory of the server after each is
-printed. What counts is how much each wave adds from the second on: memory that was once taken is
-kept for what comes next.
+With waves all pages are opened and closed so many times, and the memory of the server
+after each is printed. What counts is how much each wave adds from the second on: memory
+that was once taken is kept for what comes next.
 """
 
 from __future__ import annotations
@@ -94,7 +95,9 @@ class Visitor:
         if header["msgtype"] == "ACK":
             await self._send("PULL-DOC-REQ", {})
         elif header["msgtype"] == "PULL-DOC-REPLY":
-            found = re.search(r'"app.browser.Pulse","id":"(\w+)"', content.replace(" ", ""))
+            found = re.search(
+                r'"app.browser.Pulse","id":"(\w+)"', content.replace(" ", "")
+            )
             assert found is not None
             self._pulse = found[1]
             await self._send("PATCH-DOC", {"events": [READY]})
@@ -127,25 +130,31 @@ async def measure(server: Server, number: int) -> None:
         visitors, tasks = await opened(server, number, query)
         last = max(visitor.pictures[0] for visitor in visitors) - began
         print(f"{pace}: the last opens after {last:.1f} s")
-        before, began = [len(visitor.pictures) for visitor in visitors], time.perf_counter()
+        before = [len(visitor.pictures) for visitor in visitors]
+        began = time.perf_counter()
         await asyncio.sleep(SECONDS)
         got = [len(v.pictures) - old for v, old in zip(visitors, before, strict=True)]
         rate = sum(got) / number / (time.perf_counter() - began)
-        print(f"{pace}: {rate:.1f} pictures a second and page; {memory(server):.0f} MB a worker")
+        print(
+            f"{pace}: {rate:.1f} pictures a second and page; {memory(server):.0f} MB a worker"
+        )
         await close(visitors, tasks)
         print(f"{pace}: {len(server.processes()) - idle} processes left")
 
 
 async def measure_waves(server: Server, number: int, waves: int) -> None:
     """Print what the server keeps of pages that were opened and closed again and again."""
-    idle, before = len(server.processes()), resident(server)
+    idle = len(server.processes())
+    before = resident(server)
     print(f"at first: {before:.0f} MB")
     for wave in range(1, waves + 1):
         await close(*await opened(server, number, ANSWER))
         kept = resident(server)
         left = len(server.processes()) - idle
         each = (kept - before) / number
-        print(f"wave {wave}: {kept:.0f} MB, {each:.2f} MB more a page; {left} processes left")
+        print(
+            f"wave {wave}: {kept:.0f} MB, {each:.2f} MB more a page; {left} processes left"
+        )
         before = kept
 
 
@@ -176,7 +185,9 @@ async def close(visitors: list[Visitor], tasks: list[asyncio.Task[None]]) -> Non
 def resident(server: Server) -> float:
     """Memory that the server's own process holds, MB."""
     lines = Path(f"/proc/{server.pid}/status").read_text().splitlines()
-    return int(next(line for line in lines if line.startswith("VmRSS:")).split()[1]) / 1e3
+    return (
+        int(next(line for line in lines if line.startswith("VmRSS:")).split()[1]) / 1e3
+    )
 
 
 def memory(server: Server) -> float:
@@ -184,7 +195,9 @@ def memory(server: Server) -> float:
     shares = []
     for pid in server.processes()[1:]:
         lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
-        shares.append(int(next(line for line in lines if line.startswith("Pss:")).split()[1]))
+        shares.append(
+            int(next(line for line in lines if line.startswith("Pss:")).split()[1])
+        )
     return sorted(shares)[len(shares) // 2] / 1e3
 
 
@@ -194,7 +207,10 @@ if __name__ == "__main__":
     parser.add_argument("--waves", type=int, default=0)
     chosen = parser.parse_args()
     quick = ("--unused-session-lifetime", "30000", "--check-unused-sessions", "1000")
-    with tempfile.TemporaryDirectory() as folder, serving(Path(folder) / "log", 0, *quick) as made:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        serving(Path(folder) / "log", 0, *quick) as made,
+    ):
         if chosen.waves:
             asyncio.run(measure_waves(made, chosen.pages, chosen.waves))
         else:

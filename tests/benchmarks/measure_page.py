@@ -1,8 +1,9 @@
 """Measure a served page in headless Chromium: `python tests/benchmarks/measure_page.py http://localhost:5006/app`.
 
-Prints, of a first visit and three more, seconds until the first picture is painted and the bytes
-received; from a slider's move, by the mouse and by a key, to the picture that it changes; and by
-scene how many pictures a second are painted of a search without an end.
+Prints, of a first visit and three more, seconds until the first picture is painted and
+the bytes received; from a slider's move, by the mouse and by a key, to the picture that
+it changes; and by scene how many pictures a second are painted of a search without an
+end.
 """
 
 from __future__ import annotations
@@ -51,9 +52,14 @@ def measure(address: str) -> None:
             page.goto(f"{address}?scene={scene}&{ANSWER}")
             page.wait_for_function(PAINTED, arg=0, timeout=60_000)
             page.wait_for_timeout(2000.0)
-            for way, to_picture in (("slider", slider_to_picture), ("key", key_to_picture)):
+            for way, to_picture in (
+                ("slider", slider_to_picture),
+                ("key", key_to_picture),
+            ):
                 taken = to_picture(page)
-                print(f"{scene}: {way} to picture {median(taken):.0f} ms, {max(taken):.0f} at most")
+                print(
+                    f"{scene}: {way} to picture {median(taken):.0f} ms, {max(taken):.0f} at most"
+                )
                 page.wait_for_timeout(2000.0)
         for scene in ("bar", "block", "layers", "rope"):
             page.goto(f"{address}?scene={scene}&{ENDLESS}")
@@ -67,10 +73,14 @@ def measure(address: str) -> None:
 
 def opening(context: BrowserContext, address: str) -> tuple[float, float]:
     """Seconds until the first picture of a visit, and bytes received."""
-    page, received = context.new_page(), [0.0]
+    page = context.new_page()
+    received = [0.0]
     network = context.new_cdp_session(page)
     network.send("Network.enable")
-    network.on("Network.loadingFinished", lambda event: received.append(event["encodedDataLength"]))
+    network.on(
+        "Network.loadingFinished",
+        lambda event: received.append(event["encodedDataLength"]),
+    )
     began = time.perf_counter()
     page.goto(address)
     page.wait_for_function(PAINTED, arg=0, timeout=60_000)
@@ -83,7 +93,8 @@ def slider_to_picture(page: Page) -> list[float]:
     """Milliseconds from each move of the friction's slider to the picture of it."""
     box = _friction(page).locator("xpath=..").bounding_box()
     assert box is not None
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    x = box["x"] + box["width"] / 2
+    y = box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.wait_for_timeout(REST)
@@ -99,7 +110,8 @@ def slider_to_picture(page: Page) -> list[float]:
 
 def key_to_picture(page: Page) -> list[float]:
     """Milliseconds from each key on the friction's slider to the picture of the run of it."""
-    slider, taken = _friction(page), []
+    slider = _friction(page)
+    taken = []
     for move in range(MOVES):
         page.evaluate(NEXT, "keydown")
         slider.press("ArrowLeft" if move % 2 else "ArrowRight")
@@ -114,9 +126,12 @@ def _friction(page: Page) -> Locator:
 
 def pictures_a_second(page: Page) -> float:
     """How many pictures are painted in a second."""
-    before, began = page.evaluate(f"{PULSE}.painted"), time.perf_counter()
+    before = page.evaluate(f"{PULSE}.painted")
+    began = time.perf_counter()
     page.wait_for_timeout(1e3 * SECONDS)
-    return float(page.evaluate(f"{PULSE}.painted") - before) / (time.perf_counter() - began)
+    return float(page.evaluate(f"{PULSE}.painted") - before) / (
+        time.perf_counter() - began
+    )
 
 
 if __name__ == "__main__":

@@ -43,26 +43,49 @@ def rows(settings: Settings, repeats: int) -> Iterator[list[str]]:
             except PeerError as trouble:
                 yield [name, f"{tolerance:g}", str(trouble), "", ""]
                 continue
-            errors = distance.of_friction_force(fields), distance.of_displacement(fields)
+            errors = (
+                distance.of_friction_force(fields),
+                distance.of_displacement(fields),
+            )
             seconds = statistics.median(times)
-            yield [name, f"{tolerance:g}", f"{1e3 * seconds:.3g}", *(f"{e:.1e}" for e in errors)]
+            yield [
+                name,
+                f"{tolerance:g}",
+                f"{1e3 * seconds:.3g}",
+                *(f"{e:.1e}" for e in errors),
+            ]
 
 
 def main() -> int:
     """Print a study, and below it their times and errors."""
     asked = argparse.ArgumentParser(description="A study with public QP solvers.")
     asked.add_argument("scene", help="one of a known bound on a rigid support")
-    asked.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
-    asked.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
+    asked.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes"
+    )
+    asked.add_argument(
+        "--repeats", type=int, default=5, help="passes whose median is taken"
+    )
     chosen = asked.parse_args()
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
     print_tables(tables)
     if not rubs_on_supports(discretise(settings)):
-        print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
+        print(
+            "Unilateral contact with friction is no quadratic programme.",
+            file=sys.stderr,
+        )
         return 2
     curves = error_against_time(settings, chosen.repeats)
-    print(*conditions(settings, chosen.repeats), "", aligned(table(curves)), "", sep="\n")
-    head = ["solver", "tolerance", "ms", "error of the friction force", "of the displacement"]
+    print(
+        *conditions(settings, chosen.repeats), "", aligned(table(curves)), "", sep="\n"
+    )
+    head = [
+        "solver",
+        "tolerance",
+        "ms",
+        "error of the friction force",
+        "of the displacement",
+    ]
     print(aligned([head, *rows(settings, chosen.repeats)]))
     absent = [one.name for one in PUBLIC if not one.installed]
     print(f"Not installed: {', '.join(absent) or 'none'}.")

@@ -4,17 +4,19 @@ Over one instant the displacement increment w minimises
 
     1/2 w' K w    subject to    |g - K w| <= r,
 
-the dual of the problem that `solver.reference.incremental` solves: h = g - K w is minus the
-friction force, and w = K^-1 (g - h) its work. K is sparse on both sides, and from one instant to
-the next the bounds g - r and g + r alone change, so that each solver is set up once. The load g is
-what the displacement so far leaves unbalanced. Degrees of freedom that do not rub have r = 0 and
-are equalities. Forces are in units of the largest bound (of the load, without friction): an
-absolute tolerance then means the same for every bar.
+the dual of the problem that `solver.reference.incremental` solves: h = g - K w is minus
+the friction force, and w = K^-1 (g - h) its work. K is sparse on both sides, and from
+one instant to the next the bounds g - r and g + r alone change, so that each solver is
+set up once. The load g is what the displacement so far leaves unbalanced. Degrees of
+freedom that do not rub have r = 0 and are equalities. Forces are in units of the
+largest bound (of the load, without friction): an absolute tolerance then means the same
+for every bar.
 
-Tolerances: the friction force is K times what an interior point or splitting method computes, and
-so less precise; with the usual 1e-8 its error may be 1e-3. Each such method runs at several
-tolerances, down to one that is tight enough. PIQP and Clarabel test the duality gap too; a solver
-that does not (the default of ProxQP) may stop early with a wrong force.
+Tolerances: the friction force is K times what an interior point or splitting method
+computes, and so less precise; with the usual 1e-8 its error may be 1e-3. Each such
+method runs at several tolerances, down to one that is tight enough. PIQP and Clarabel
+test the duality gap too; a solver that does not (the default of ProxQP) may stop early
+with a wrong force.
 """
 
 from __future__ import annotations
@@ -54,9 +56,11 @@ class Public:
     name, module
         What it is called, and what is imported.
     tolerances
-        Those at which it runs; one alone for a method that ends exactly, in finitely many steps.
+        Those at which it runs; one alone for a method that ends exactly, in finitely
+        many steps.
     prepare
-        Sets it up, from K of shape (n, n), the rows that are equalities, and a tolerance.
+        Sets it up, from K of shape (n, n), the rows that are equalities, and a
+        tolerance.
     """
 
     name: str
@@ -105,7 +109,8 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
         np.add.at(bound, problem.row_dofs[law.tangent.above], law.tangential.bound)
     fixed, prescribed = problem.prescribed
     free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
-    stiffness, force = assembled_stiffness(problem), external_force(problem)
+    stiffness = assembled_stiffness(problem)
+    force = external_force(problem)
     unit = float(bound[free].max(initial=0.0)) or float(np.abs(force).max()) or 1.0
     reach = bound[free] / unit
     never = np.asarray(~reach.any(axis=1))
@@ -114,22 +119,31 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
     pull = space_time(problem.n_dofs, problem.n_instants)
     before = np.zeros(problem.n_dofs)
     for instant, after in enumerate(displacement.T):
-        after[free], after[fixed] = before[free], prescribed[:, instant]
+        after[free] = before[free]
+        after[fixed] = prescribed[:, instant]
         left = (force[:, instant] - stiffness @ after)[free] / unit
         try:
-            after[free] += solve(left - reach[:, instant], left + reach[:, instant]) * unit
+            after[free] += (
+                solve(left - reach[:, instant], left + reach[:, instant]) * unit
+            )
         except PeerError as trouble:
             raise PeerError(f"gave up at instant {instant + 1}: {trouble}") from None
         pull[:, instant] = force[:, instant] - stiffness @ after
-        pull[fixed, instant] = bound[fixed, instant] * np.sign(after[fixed] - before[fixed])
+        pull[fixed, instant] = bound[fixed, instant] * np.sign(
+            after[fixed] - before[fixed]
+        )
         before = after
         if time.perf_counter() - start > TIME_LIMIT:
             raise PeerError(f"stopped after {TIME_LIMIT:g} s, at instant {instant + 1}")
     friction = -pull[points_dofs(problem)]
-    return PublicFields(displacement * problem.scales.displacement, friction * problem.scales.force)
+    return PublicFields(
+        displacement * problem.scales.displacement, friction * problem.scales.force
+    )
 
 
-def _piqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float) -> Solve:
+def _piqp(
+    stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float
+) -> Solve:
     import piqp
 
     solver = piqp.SparseSolver()
@@ -138,8 +152,10 @@ def _piqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: floa
     settings.eps_rel = settings.eps_duality_gap_rel = 0.1 * tolerance
     settings.check_duality_gap = True
     settings.preconditioner_reuse_on_update = True
-    matrix, rows = sparse.csc_matrix(stiffness), sparse.csr_matrix(stiffness)
-    ones, some = np.ones(int((~equal).sum())), bool(equal.any())
+    matrix = sparse.csc_matrix(stiffness)
+    rows = sparse.csr_matrix(stiffness)
+    ones = np.ones(int((~equal).sum()))
+    some = bool(equal.any())
     solver.setup(
         matrix,
         np.zeros(len(equal)),
@@ -151,7 +167,11 @@ def _piqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: floa
     )
 
     def solve(lower: Array, upper: Array) -> Array:
-        given: dict[str, Any] = {"b": lower[equal]} if some else {}
+        given: dict[str, Any]
+        if some:
+            given = {"b": lower[equal]}
+        else:
+            given = {}
         solver.update(h_l=lower[~equal], h_u=upper[~equal], **given)
         status = solver.solve()
         if status != piqp.PIQP_SOLVED:
@@ -161,10 +181,13 @@ def _piqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: floa
     return solve
 
 
-def _osqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float) -> Solve:
+def _osqp(
+    stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float
+) -> Solve:
     import osqp
 
-    solver, ones = osqp.OSQP(), np.ones(len(equal))
+    solver = osqp.OSQP()
+    ones = np.ones(len(equal))
     solver.setup(
         sparse.csc_matrix(sparse.triu(stiffness)),
         np.zeros(len(equal)),
@@ -187,10 +210,13 @@ def _osqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: floa
     return solve
 
 
-def _daqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float) -> Solve:
+def _daqp(
+    stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float
+) -> Solve:
     import daqp
 
-    solver, ones = daqp.Model(), np.ones(len(equal))
+    solver = daqp.Model()
+    ones = np.ones(len(equal))
     dense = np.ascontiguousarray(stiffness.toarray())
     sense = np.where(equal, 5, 0).astype(np.int32)
     solver.setup(dense, 0.0 * ones, dense, ones * ~equal, -ones * ~equal, sense)
@@ -206,7 +232,9 @@ def _daqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: floa
     return solve
 
 
-def _clarabel(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float) -> Solve:
+def _clarabel(
+    stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float
+) -> Solve:
     import clarabel
 
     settings = clarabel.DefaultSettings()
@@ -214,9 +242,15 @@ def _clarabel(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: 
     settings.tol_feas = settings.tol_gap_abs = settings.tol_gap_rel = tolerance
     settings.presolve_enable = False  # as updates of the bounds ask
     rows = sparse.csr_matrix(stiffness)
-    matrix = sparse.csc_matrix(sparse.vstack([rows[equal], rows[~equal], -rows[~equal]]))
-    n_equal, n_rest = int(equal.sum()), int((~equal).sum())
-    cones = [clarabel.ZeroConeT(n_equal)] if n_equal else []
+    matrix = sparse.csc_matrix(
+        sparse.vstack([rows[equal], rows[~equal], -rows[~equal]])
+    )
+    n_equal = int(equal.sum())
+    n_rest = int((~equal).sum())
+    if n_equal:
+        cones = [clarabel.ZeroConeT(n_equal)]
+    else:
+        cones = []
     if n_rest:
         cones.append(clarabel.NonnegativeConeT(2 * n_rest))
     start = np.concatenate([np.zeros(n_equal), np.ones(2 * n_rest)])
@@ -232,7 +266,8 @@ def _clarabel(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: 
     def solve(lower: Array, upper: Array) -> Array:
         solver.update(b=np.concatenate([lower[equal], upper[~equal], -lower[~equal]]))
         found = solver.solve()
-        # Almost solved: a tolerance below what rounding allows; the error is measured anyway.
+        # Almost solved: a tolerance below what rounding allows; the error is measured
+        # anyway.
         if str(found.status) not in ("Solved", "AlmostSolved"):
             raise PeerError(str(found.status))
         return np.array(found.x)

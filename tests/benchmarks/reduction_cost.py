@@ -62,7 +62,9 @@ class ReductionCost:
     @property
     def pays_up_to(self) -> int:
         """Most of the measured modes with which projecting is cheaper than the full stage."""
-        return max((n for n, seconds in self.reduced.items() if seconds < self.full), default=0)
+        return max(
+            (n for n, seconds in self.reduced.items() if seconds < self.full), default=0
+        )
 
 
 def samples_of(
@@ -79,7 +81,9 @@ def samples_of(
     return samples
 
 
-def medians_of(parts: Sequence[Callable[[], object]], repeats: int, calls: int) -> list[float]:
+def medians_of(
+    parts: Sequence[Callable[[], object]], repeats: int, calls: int
+) -> list[float]:
     """Median of `samples_of` for each part."""
     return [statistics.median(own) for own in samples_of(parts, repeats, calls)]
 
@@ -87,9 +91,9 @@ def medians_of(parts: Sequence[Callable[[], object]], repeats: int, calls: int) 
 def half_plane(points: int, instants: int) -> Problem:
     """Make a body whose boundary response is dense: the surface of an elastic half plane.
 
-    Its surface stiffness is the root of the negative second derivative (Johnson, Contact
-    Mechanics, 1985, chapter 2), here with a spring to rest so that it cannot fly off. All points
-    rub; there is no cut.
+    Its surface stiffness is the root of the negative second derivative (Johnson,
+    Contact Mechanics, 1985, chapter 2), here with a spring to rest so that it cannot
+    fly off. All points rub; there is no cut.
     """
     shapes = idct(np.eye(points), axis=0, norm="ortho")
     dense = shapes.T * (1.0 + np.pi * np.arange(points)) @ shapes
@@ -97,13 +101,17 @@ def half_plane(points: int, instants: int) -> Problem:
     positions = (rows + 0.5) / points
     law = Contact(
         tangential=Friction(
-            component=Component(rows), bound=np.full((points, 1), 1e-3), friction=np.zeros(points)
+            component=Component(rows),
+            bound=np.full((points, 1), 1e-3),
+            friction=np.zeros(points),
         ),
         points=rows,
         positions=positions,
         weights=np.full(points, 1.0 / points),
     )
-    elasticity = Elasticity(sparse.csr_array(dense), rows, np.full(points, float(points)))
+    elasticity = Elasticity(
+        sparse.csr_array(dense), rows, np.full(points, float(points))
+    )
     return Problem(
         substructures=(Substructure(elasticity, rows, rows, None),),
         interfaces={"surface": law},
@@ -118,7 +126,8 @@ def reduction_cost(
 ) -> ReductionCost:
     """Measure the linear stage in full and on bases of given sizes, in turns.
 
-    The fields are random numbers of full rank, so that bases are as large as they may be.
+    The fields are random numbers of full rank, so that bases are as large as they may
+    be.
 
     Parameters
     ----------
@@ -143,7 +152,11 @@ def reduction_cost(
     loose, tight = (
         [
             LinearStage(
-                problem, k, PGD(size, tolerance, pairs=1, sharing=0.0), blocks, multiscale=True
+                problem,
+                k,
+                PGD(size, tolerance, pairs=1, sharing=0.0),
+                blocks,
+                multiscale=True,
             )
             for size in sizes
         ]
@@ -151,7 +164,8 @@ def reduction_cost(
     )
     for stage in (whole, *tight):
         stage.go_to(start)
-    # All begin from bases that are full, also where no residual is enough for another mode.
+    # All begin from bases that are full, also where no residual is enough for another
+    # mode.
     for stage, full_bases in zip(loose, tight, strict=True):
         stage.go_to(replace(start, bases=full_bases.bases()))
     steps = [_step(stage, target) for stage in (whole, *loose, *tight)]
@@ -166,7 +180,8 @@ def reduction_cost(
         int(np.prod(shape)),
         {
             size: sum(
-                size * (len(part.rows) + problem.n_instants) for part in problem.substructures
+                size * (len(part.rows) + problem.n_instants)
+                for part in problem.substructures
             )
             for size in sizes
         },
@@ -178,12 +193,15 @@ FORMS: dict[str, dict[str, object]] = {
     "full": {"linear_stage": "full"},
     "pgd": {},
 }
-FIRST, LAST = 20, 60
+FIRST = 20
+LAST = 60
 TIGHT = 1e-14
 """Share of a field that is all but nothing."""
 
 
-def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple[float, float]]:
+def whole_iterations(
+    nodes: int, instants: int, repeats: int
+) -> dict[str, tuple[float, float]]:
     """Measure whole iterations of the bar with 5 substructures, in full and in reduced forms.
 
     Returns
@@ -206,7 +224,9 @@ def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple
                 }
             )
             clock = []
-            for iterate in islice(iterations(discretise(settings), method_of(settings)), LAST):
+            for iterate in islice(
+                iterations(discretise(settings), method_of(settings)), LAST
+            ):
                 clock.append(iterate.seconds)
                 fields[form] = iterate.boundary_displacement
             seconds[form].append((clock[-1] - clock[FIRST - 1]) / (LAST - FIRST))
@@ -231,9 +251,14 @@ def _step(stage: LinearStage, target: Array) -> Callable[[], None]:
 
 def print_reduction_cost(repeats: int) -> None:
     """Print the table of all sizes."""
-    print(f"one linear stage, ms; medians of {repeats}; bars have 5 substructures, multiscale")
+    print(
+        f"one linear stage, ms; medians of {repeats}; bars have 5 substructures, multiscale"
+    )
     print("in brackets: with a pair added and one dropped in every substructure")
-    print(f"{'operator':<11} {'rows x instants':>15} {'full':>9}", *(f"{n:>15}" for n in MODES))
+    print(
+        f"{'operator':<11} {'rows x instants':>15} {'full':>9}",
+        *(f"{n:>15}" for n in MODES),
+    )
     for nodes, instants in BARS:
         bar = BarSettings.checked(
             {
@@ -248,7 +273,9 @@ def print_reduction_cost(repeats: int) -> None:
         problem = half_plane(HALF_PLANE_POINTS, instants)
         _print(reduction_cost("half plane", problem, MODES, repeats))
 
-    print("\nwhole iterations, ms, of the bar with 5 substructures; in brackets: distance of the")
+    print(
+        "\nwhole iterations, ms, of the bar with 5 substructures; in brackets: distance of the"
+    )
     print(f"displacement from the full form's, iteration {LAST}")
     print(f"{'nodes x instants':>17}", *(f"{form:>17}" for form in FORMS))
     for nodes, instants in WHOLE:
@@ -270,7 +297,8 @@ def _print(cost: ReductionCost) -> None:
         f" pays up to {cost.pays_up_to} modes",
     )
     values = " ".join(
-        f"{size}: {100.0 * n / cost.values:.0f} %" for size, n in cost.reduced_values.items()
+        f"{size}: {100.0 * n / cost.values:.0f} %"
+        for size, n in cost.reduced_values.items()
     )
     print(f"{'':<11} state against the full field: {values}")
 

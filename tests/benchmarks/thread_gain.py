@@ -13,7 +13,8 @@ from solver.scenes.method import method_of
 
 SIZES = (96, 192, 384, 768)
 WARM = 10
-"""Iterations before the first that is timed: until then the memory of the acceleration fills."""
+"""Iterations before the first that is timed: until then the memory of the acceleration
+fills."""
 INSTANTS = 51
 
 
@@ -41,7 +42,8 @@ def thread_gain(elements: int, threads: int, repeats: int) -> tuple[float, float
     )
     problem = discretise(chosen)
     runs = [
-        iterations(problem, method_of(chosen.replace(threads=number))) for number in (1, threads)
+        iterations(problem, method_of(chosen.replace(threads=number)))
+        for number in (1, threads)
     ]
     seconds: list[list[float]] = [[], []]
     for _ in range(WARM + repeats):
@@ -62,7 +64,9 @@ def print_thread_gain(threads: int, repeats: int) -> None:
     for elements in SIZES:
         one, several = thread_gain(elements, threads, repeats)
         size = f"{elements} x {elements // 2}"
-        print(f"{size:>10} {1e3 * one:10.2f} {1e3 * several:10.2f} {one / several:6.2f}")
+        print(
+            f"{size:>10} {1e3 * one:10.2f} {1e3 * several:10.2f} {one / several:6.2f}"
+        )
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 """Walls of more and more bricks: LATIN beside two incremental solvers on the same mesh.
 
-`python tests/benchmarks/wall_race.py`, of walls of so many courses `wall_race.py 3 5 8`. Each has
-as many bricks a course, and halves. Every way has a process of its own, and is measured from the
-discrete problem on: what prepares it (operators, condensation, factors) is billed on all sides.
+`python tests/benchmarks/wall_race.py`, of walls of so many courses `wall_race.py 3 5
+8`. Each has as many bricks a course, and halves. Every way has a process of its own,
+and is measured from the discrete problem on: what prepares it (operators, condensation,
+factors) is billed on all sides.
 """
 
 from __future__ import annotations
@@ -38,12 +39,23 @@ from solver.study.sweep.executors import ONE_THREAD, machine
 COURSES = (3, 5, 8, 12, 16, 32)
 """10, 27, 68, 150, 264, 1040 bricks."""
 ALONE = 20
-"""Courses from which on LATIN runs alone, beside one run of the sparse solver for its errors."""
-GOAL, MOST, SAME = 0.01, 400, 1e-8
-"""Error of the contact force; iterations at most; difference up to which answers are the same."""
-REPEATS, LONG = 3, 20.0
+"""Courses from which on LATIN runs alone, beside one run of the sparse solver for its
+errors."""
+GOAL = 0.01
+MOST = 400
+SAME = 1e-8
+"""Error of the contact force; iterations at most; difference up to which answers are
+the same."""
+REPEATS = 3
+LONG = 20.0
 """Times that each is measured, and seconds from which on once is enough."""
-WALL = {"displacement": 5e-5, "elements": 6, "elements_up": 3, "instants": 41, "finish": "none"}
+WALL = {
+    "displacement": 5e-5,
+    "elements": 6,
+    "elements_up": 3,
+    "instants": 41,
+    "finish": "none",
+}
 """A tenth of the contact slips, 2 % of it are open."""
 PAPER = {"method": "paper", "finish": "none"}
 LATIN: dict[str, dict[str, Any]] = {
@@ -54,7 +66,9 @@ LATIN: dict[str, dict[str, Any]] = {
     "paper's method": PAPER,
     "paper's, monoscale": {**PAPER, "multiscale": False},
 }
-KNOWN, INCREMENTAL, SPARSE = "LATIN, until known", "incremental", "sparse incremental"
+KNOWN = "LATIN, until known"
+INCREMENTAL = "incremental"
+SPARSE = "sparse incremental"
 NOTES = (
     f"Until the contact force is within {GOAL:.0%} of the incremental solvers'; - is not after "
     f"{MOST} iterations. Medians of {REPEATS} (of one from {LONG:.0f} s on), s: of the processor, "
@@ -97,7 +111,9 @@ def counts_of(courses: int) -> tuple[int, dict[str, int]]:
             if distance.of_friction_force(iterate) <= GOAL:
                 counts[way] = iterate.number
                 break
-    for iterate, decision in islice(judged(replace(problem), method_of(settings)), MOST):
+    for iterate, decision in islice(
+        judged(replace(problem), method_of(settings)), MOST
+    ):
         if decision.status and decision.status.ending is Ending.CONVERGED:
             counts[KNOWN] = iterate.number
             assert distance.of_friction_force(iterate) <= GOAL
@@ -110,9 +126,11 @@ def measured(courses: int, way: str, count: int) -> tuple[float, float, float]:
     settle()
     settings = settings_of(courses, LATIN.get(way, {}))
     problem = discretise(settings)
-    before, samples = resident("VmRSS"), list[tuple[float, float]]()
+    before = resident("VmRSS")
+    samples = list[tuple[float, float]]()
     while len(samples) < REPEATS and sum(own for own, _ in samples) < LONG:
-        fresh, clocks = replace(problem), [time.perf_counter()]
+        fresh = replace(problem)
+        clocks = [time.perf_counter()]
         seconds = seconds_of(lambda: run(fresh, settings, way, count))  # noqa: B023
         samples.append((seconds, time.perf_counter() - clocks[0]))
         if len(samples) == 1:
@@ -149,7 +167,10 @@ def lines_of(pool: ProcessPoolExecutor, courses: int) -> Iterator[str]:
     yield f"{bricks} bricks; first: {min(rows, key=lambda way: rows[way][0])}"
     for way, count in ways.items():
         own, wall, memory = rows.get(way, (math.nan,) * 3)
-        cells = f"{own:8.2g} {wall:8.2g} {memory:8.0f} {own / best:8.2g}" if way in rows else "-"
+        if way in rows:
+            cells = f"{own:8.2g} {wall:8.2g} {memory:8.0f} {own / best:8.2g}"
+        else:
+            cells = "-"
         yield f"  {way:<20} {count or '':>5} {cells}"
 
 
@@ -161,7 +182,10 @@ def main() -> None:
     os.environ.update(ONE_THREAD)
     print(machine())
     print(f"  {'':<20} {'iter.':>5} {'s':>8} {'s, wall':>8} {'MB':>8} {'ratio':>8}")
-    options: dict[str, Any] = {"max_tasks_per_child": 1, "mp_context": get_context("spawn")}
+    options: dict[str, Any] = {
+        "max_tasks_per_child": 1,
+        "mp_context": get_context("spawn"),
+    }
     with ProcessPoolExecutor(1, **options) as pool:
         for courses in chosen.courses:
             print(*lines_of(pool, courses), sep="\n", flush=True)

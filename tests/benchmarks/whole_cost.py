@@ -38,14 +38,17 @@ def print_whole_cost() -> None:
     print(f"{'run':<40} {'s':>13} {'MB':>13} {'reference, s':>13}")
     for scene, changes in SIZES:
         settings = CATALOGUE[scene].checked(changes)
-        label = " ".join([scene, *(f"{name}={value}" for name, value in changes.items())])
+        label = " ".join(
+            [scene, *(f"{name}={value}" for name, value in changes.items())]
+        )
         pairs = zip(expected(settings), measured(settings), strict=True)
         print(f"{label:<40}", *(f"{one:>6.2g} {other:>6.2g}" for one, other in pairs))
 
 
 def expected(settings: Settings) -> tuple[float, float, float]:
     """Estimate seconds and MB of a run, and seconds of its reference."""
-    problem, method = discretise(settings), method_of(settings)
+    problem = discretise(settings)
+    method = method_of(settings)
     most = settings.max_iterations
     alone = run_cost(problem, method, most, with_reference=False)
     beside = run_cost(problem, method, most, with_reference=True)

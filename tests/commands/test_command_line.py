@@ -18,7 +18,13 @@ from solver.commands.cli import main
 from solver.files.saved import settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.settings.definitions import CurveParameter, SettingError, about, allowed, help_of
+from solver.settings.definitions import (
+    CurveParameter,
+    SettingError,
+    about,
+    allowed,
+    help_of,
+)
 from solver.settings.load_paths import DECAY, PRESETS, PULLS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -90,10 +96,12 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
     assert main(["settings", scene]) == 0
     lines = capsys.readouterr().out.splitlines()
     kind = CATALOGUE[scene]
-    definitions, paper = kind.definitions(), kind.of_method("paper")
+    definitions = kind.definitions()
+    paper = kind.of_method("paper")
     rest = iter(lines)
     for name, definition in definitions.items():
-        head, text = next(rest), next(rest)
+        head = next(rest)
+        text = next(rest)
         assert head.split()[0] == name
         assert head.split()[1] == (about(definition).unit or "-")
         assert f"default {json.dumps(definition.default)}" in head
@@ -130,14 +138,17 @@ def test_every_preset_of_a_path_or_a_table_has_a_line_of_its_own(scene):
     ],
 )
 def test_numbers_in_the_line_on_a_preset_are_those_of_its_path(presets, name, numbers):
-    said = [float(number) for number in re.findall(r"-?\d\.?\d*", presets[name].description)]
+    said = [
+        float(number) for number in re.findall(r"-?\d\.?\d*", presets[name].description)
+    ]
     assert said[: len(numbers)] == pytest.approx(numbers)
     assert presets[name].points(0)[0][-1] == 1.0
 
 
 @pytest.mark.parametrize("kind", ["table", "settings", "lesson"])
 def test_a_long_file_is_read_no_further_than_any_may_be_long(kind, capsys, tmp_path):
-    long, endless = tmp_path / "long.toml", tmp_path / "endless.toml"
+    long = tmp_path / "long.toml"
+    endless = tmp_path / "endless.toml"
     with long.open("wb") as file:
         file.truncate(2_000_000_000)
     endless.symlink_to("/dev/zero")
@@ -153,7 +164,9 @@ def test_a_long_file_is_read_no_further_than_any_may_be_long(kind, capsys, tmp_p
         settings_from_toml("#" * 5_000_000)
 
 
-def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys, monkeypatch, tmp_path):
+def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(
+    capsys, monkeypatch, tmp_path
+):
     assert main(["run", "bar", *SMALL, "--no-reference", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["error_force"] is None
     monkeypatch.setattr("solver.reference.contact.MOST_JUMPS", 100)
@@ -190,9 +203,13 @@ def test_what_ends_a_command_from_outside_takes_a_line_and_has_its_code(
 
 def test_a_closed_output_is_told_in_a_line():
     command = f"{sys.executable} -m solver run bar --set peak=0 >&-"
-    done = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True)
+    done = subprocess.run(
+        ["sh", "-c", command], cwd=ROOT, capture_output=True, text=True
+    )
     assert done.returncode == 2
-    assert done.stderr == "slipfront: nothing can be printed: standard output is closed\n"
+    assert (
+        done.stderr == "slipfront: nothing can be printed: standard output is closed\n"
+    )
 
 
 def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
@@ -211,13 +228,19 @@ def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
             ["bar", "--set", "friktion=0.3"],
             ["friktion", "0.3", "did you mean friction (Coefficient"],
         ),
-        (["bar", "--set", "peak=much"], ["peak", "much", "any number (at most 1e15 N in size)"]),
+        (
+            ["bar", "--set", "peak=much"],
+            ["peak", "much", "any number (at most 1e15 N in size)"],
+        ),
         (["bar", "--set", "elements=3"], ["substructures", "10", "1 to elements (3)"]),
         (["bar", "--set", "load=bad.csv"], ["load", "bad.csv", "line 2"]),
         (["bar", "--set", "peak"], ["--set", "NAME=VALUE"]),
         (["bridge"], ["scene", "bridge", "bar"]),
         (["none.toml"], ["settings file", "none.toml"]),
-        (["bar", "--out", "nowhere/x.npz"], ["--out", "nowhere/x.npz", "existing folder"]),
+        (
+            ["bar", "--out", "nowhere/x.npz"],
+            ["--out", "nowhere/x.npz", "existing folder"],
+        ),
         (["bar", "--out", "."], ["--out", "existing folder"]),
     ],
     ids=lambda case: " ".join(case),
@@ -228,7 +251,10 @@ def test_refused_input_prints_one_line_exits_2_and_writes_nothing(
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bad.csv").write_text("0,0\n1,much\n", encoding="utf-8")
     before = sorted(tmp_path.iterdir())
-    out = [] if "--out" in arguments else ["--out", "result.npz"]
+    if "--out" in arguments:
+        out = []
+    else:
+        out = ["--out", "result.npz"]
     assert main(["run", *arguments, *out]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
@@ -275,7 +301,8 @@ def test_the_result_file_holds_what_the_contract_names(tmp_path, capsys):
     printed = json.loads(capsys.readouterr().out)
     with np.load(file, allow_pickle=False) as found:
         arrays = dict(found)
-    points, iterations = 13, printed["iterations"]
+    points = 13
+    iterations = printed["iterations"]
     instants = BarSettings.checked(printed["settings"]).n_instants
     assert instants >= 11
     shapes = {name: array.shape for name, array in arrays.items()}
@@ -300,7 +327,13 @@ def test_the_result_file_holds_what_the_contract_names(tmp_path, capsys):
     np.testing.assert_allclose(arrays["t"], np.linspace(0.0, 1.0, instants))
     assert set(np.unique(arrays["status"])) == {-1, 0, 1}
     assert np.all(np.diff(arrays["seconds"]) > 0.0)
-    for name in ("indicator", "estimated_error", "error_displacement", "error_force", "seconds"):
+    for name in (
+        "indicator",
+        "estimated_error",
+        "error_displacement",
+        "error_force",
+        "seconds",
+    ):
         assert arrays[name][-1] == printed[name]
     assert arrays["determinate"].dtype == bool
     assert arrays["certified"] == printed["certified"]
@@ -315,7 +348,9 @@ def test_the_same_command_twice_gives_the_same_fields(tmp_path):
     for name in ("one.npz", "two.npz"):
         main(["run", "bar", *SMALL, "--out", str(tmp_path / name)])
         with np.load(tmp_path / name) as found:
-            fields.append([found[key] for key in ("displacement", "friction_force", "indicator")])
+            fields.append(
+                [found[key] for key in ("displacement", "friction_force", "indicator")]
+            )
     assert all(np.array_equal(one, two) for one, two in zip(*fields, strict=True))
 
 
@@ -349,14 +384,26 @@ def test_a_result_is_written_whole_or_not_at_all_before_anything_is_said(
     assert printed.out == ""
     assert "No space left" in printed.err
     assert len(printed.err.splitlines()) == 1
-    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(file.name, b"old")]
+    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [
+        (file.name, b"old")
+    ]
 
 
 def test_whoever_reads_no_further_loses_no_file(tmp_path):
     file = tmp_path / "bar.npz"
     reader, writer = os.pipe()
     os.close(reader)
-    command = [sys.executable, "-m", "solver", "run", "bar", *SMALL, "--json", "--out", file]
+    command = [
+        sys.executable,
+        "-m",
+        "solver",
+        "run",
+        "bar",
+        *SMALL,
+        "--json",
+        "--out",
+        file,
+    ]
     few = ["--set", "max_iterations=1", "--set", "finish=none"]
     done = subprocess.run(
         [*command, *few], cwd=ROOT, stdout=writer, stderr=subprocess.PIPE, check=False

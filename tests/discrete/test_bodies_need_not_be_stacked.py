@@ -11,7 +11,8 @@ from solver.discrete.plane.bricks import Brick
 from solver.latin import Ending
 from solver.reference.incremental import reference_of
 
-SIZE, TIMES = 0.25, np.linspace(0.0, 1.0, 5)
+SIZE = 0.25
+TIMES = np.linspace(0.0, 1.0, 5)
 WEIGHT = 1e-4
 """On the lintel, scaled."""
 
@@ -30,7 +31,10 @@ def lintel_on_two_piers() -> Problem:
         poisson=0.2,
         state="stress",
         friction=0.5,
-        sides={"bottom": Side(still, still), "top": Side(Given(False, 0.0 * TIMES), pressed)},
+        sides={
+            "bottom": Side(still, still),
+            "top": Side(Given(False, 0.0 * TIMES), pressed),
+        },
         instants=TIMES,
         duration=1.0,
     )
@@ -54,7 +58,9 @@ def test_two_piers_carry_half_of_a_lintel_each() -> None:
 def test_the_lintel_sags_between_its_piers() -> None:
     problem = lintel_on_two_piers()
     assert problem.inside is not None
-    moved = problem.inside.displacement(reference_of(problem).displacement, [4])[:, 1, 0]
+    moved = problem.inside.displacement(reference_of(problem).displacement, [4])[
+        :, 1, 0
+    ]
     lintel = problem.inside.bodies
     nodes = np.unique(problem.inside.elements[lintel == 2])
     x = problem.inside.nodes[nodes, 0]

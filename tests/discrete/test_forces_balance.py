@@ -76,7 +76,10 @@ def assert_rods_balance(rods: Rods, problem: Problem, fields: LoopFields) -> Non
     """Along rods: both ends, body forces and what supports rub."""
     shares = np.full(rods.elements + 1, rods.length / rods.elements)
     shares[[0, -1]] *= 0.5
-    terms = [rods.wires * rods.end_force(problem, side).of(fields) for side in ("left", "right")]
+    terms = [
+        rods.wires * rods.end_force(problem, side).of(fields)
+        for side in ("left", "right")
+    ]
     if rods.body_force is not None:
         along = np.broadcast_to(rods.body_force, (len(shares), problem.n_instants))
         terms.append(rods.wires * shares @ along)
@@ -89,7 +92,8 @@ def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
     """Resultants of all loads, N, and their moment about the origin, N m, (n_instants,) each."""
     assert problem.inside is not None
     force = external_force(problem) * problem.scales.force
-    (x, y), is_along = problem.positions.T, problem.inside.components == 0
+    (x, y) = problem.positions.T
+    is_along = problem.inside.components == 0
     return is_along @ force, ~is_along @ force, np.where(is_along, -y, x) @ force
 
 
@@ -97,7 +101,9 @@ def on_supports(
     problem: Problem, fields: LoopFields
 ) -> tuple[list[Array], list[Array], list[Array]]:
     """Forces along x and y of supports and springs, and their moments about the origin."""
-    x, y, moments = [], [], []
+    x = []
+    y = []
+    moments = []
     for name, law in problem.rubbing.items():
         if not law.is_on_support:
             continue
@@ -119,7 +125,10 @@ def on_supports(
 def assert_bodies_balance(problem: Problem, fields: LoopFields) -> None:
     """In the plane: sides, loads, supports and springs, along x and y, and about the origin."""
     loads = loads_of(problem)
-    every = [[load, *more] for load, more in zip(loads, on_supports(problem, fields), strict=True)]
+    every = [
+        [load, *more]
+        for load, more in zip(loads, on_supports(problem, fields), strict=True)
+    ]
     for side in problem.held_dofs:
         for component in (0, 1):
             every[component].append(reaction(problem, side, component).of(fields))
@@ -138,11 +147,16 @@ def assert_balance(settings: Settings, fields: LoopFields, problem: Problem) -> 
     elif settings.kind == "plane":
         assert_bodies_balance(problem, fields)
     else:
-        friction = [fields.contact(name).tangential_force.sum(axis=0) for name in problem.rubbing]
+        friction = [
+            fields.contact(name).tangential_force.sum(axis=0)
+            for name in problem.rubbing
+        ]
         loads = external_force(problem).sum(axis=0) * problem.scales.force
         ends = [reaction(problem, end).of(fields) for end in ("support", "load")]
         terms = [*friction, *ends, loads]
-        assert_vanish(np.sum(terms, axis=0), [*terms, np.abs(external_force(problem)).sum(axis=0)])
+        assert_vanish(
+            np.sum(terms, axis=0), [*terms, np.abs(external_force(problem)).sum(axis=0)]
+        )
 
 
 def small(scene: str, law: str) -> Settings:
@@ -176,7 +190,9 @@ LAW = st.sampled_from([*LAWS, "general"])
 
 
 @examples(max_examples=20)
-@given(left=END, right=END, law=LAW, seed=st.integers(0, 10**6), parts=st.integers(1, 3))
+@given(
+    left=END, right=END, law=LAW, seed=st.integers(0, 10**6), parts=st.integers(1, 3)
+)
 def test_a_rod_balances_whatever_is_at_its_ends(
     left: str, right: str, law: str, seed: int, parts: int
 ) -> None:
@@ -251,7 +267,12 @@ def test_a_block_balances_whatever_is_at_its_sides(
     assert_balance(settings, reference, problem)
 
 
-MOVED_END = {"left_end": "free", "right_end": "held", "right_displacement": 1e-4, "friction": 0.3}
+MOVED_END = {
+    "left_end": "free",
+    "right_end": "held",
+    "right_displacement": 1e-4,
+    "friction": 0.3,
+}
 PUSHED = {
     "left": "pushed",
     "left_normal_displacement": -1e-4,
@@ -278,7 +299,9 @@ ON_SPRING = {
 
 
 def run_of(scene: str, **values: Any) -> FinishedRun:
-    return finished_run(CATALOGUE[scene].checked(values), errors=False, indicators=False)
+    return finished_run(
+        CATALOGUE[scene].checked(values), errors=False, indicators=False
+    )
 
 
 def largest(name: str, run: FinishedRun) -> float:
@@ -286,11 +309,20 @@ def largest(name: str, run: FinishedRun) -> float:
 
 
 @pytest.mark.parametrize("elements", [10, 25, 60])
-def test_the_force_of_an_end_is_that_of_its_closed_form_on_every_mesh(elements: int) -> None:
+def test_the_force_of_an_end_is_that_of_its_closed_form_on_every_mesh(
+    elements: int,
+) -> None:
     """900 N move the end of Table 1's bar by 0.409 mm, and whatever moves it so far needs 900 N."""
     path = [[0.0, 0.0], [1.0, 900.0**2 / (2.0 * 659_400.0 * 1500.0)]]
-    held = {"right_end": "held", "right_load": path, "instants": 5, "elements": elements}
-    assert largest("right_force", run_of("bar", **held)) == pytest.approx(900.0, rel=1e-12)
+    held = {
+        "right_end": "held",
+        "right_load": path,
+        "instants": 5,
+        "elements": elements,
+    }
+    assert largest("right_force", run_of("bar", **held)) == pytest.approx(
+        900.0, rel=1e-12
+    )
 
 
 def test_a_moved_end_needs_what_a_stiff_spring_that_moves_it_carries() -> None:
@@ -298,13 +330,18 @@ def test_a_moved_end_needs_what_a_stiff_spring_that_moves_it_carries() -> None:
     stiff = {**MOVED_END, "right_end": "spring", "right_spring": 1e12}
     sprung = run_of("bar", **stiff, instants=5)
     assert largest("right_force", moved) == pytest.approx(444.7696, rel=1e-4)
-    assert largest("right_force", moved) == pytest.approx(largest("right_force", sprung), rel=1e-5)
+    assert largest("right_force", moved) == pytest.approx(
+        largest("right_force", sprung), rel=1e-5
+    )
     np.testing.assert_allclose(moved.force, sprung.force, rtol=1e-5)
 
 
 def test_the_largest_axial_force_of_a_bar_is_what_pulls_its_end() -> None:
     """The last element has lost half an element of friction in its middle."""
-    assert largest("axial_force", run_of("bar", load=[[0, 0], [1, 900]], instants=3)) == 900.0
+    assert (
+        largest("axial_force", run_of("bar", load=[[0, 0], [1, 900]], instants=3))
+        == 900.0
+    )
     moved = largest("axial_force", run_of("bar", **MOVED_END, instants=5))
     assert moved == pytest.approx(444.7696, rel=1e-4)
 
@@ -317,7 +354,9 @@ def test_a_pushed_side_carries_all_friction() -> None:
 
 
 @pytest.mark.parametrize("elements", [10, 50])
-def test_a_clamp_carries_what_friction_leaves_of_a_pull_on_every_mesh(elements: int) -> None:
+def test_a_clamp_carries_what_friction_leaves_of_a_pull_on_every_mesh(
+    elements: int,
+) -> None:
     """1800 N pull Table 1's bar, of which friction holds 1500 N up to the clamp itself."""
     pulled = {"load": [[0.0, 0.0], [1.0, 1800.0]], "instants": 5, "elements": elements}
     run = run_of("bar", **pulled)
@@ -346,12 +385,16 @@ DRIVEN: dict[str, tuple[str, dict[str, Any]]] = {
 @pytest.mark.parametrize("name", DRIVEN)
 def test_an_iterate_shares_friction_and_reaction_as_the_reference(name: str) -> None:
     scene, values = DRIVEN[name]
-    settings = CATALOGUE[scene].checked({"elements": 10, "instants": 9, **values, "finish": "none"})
+    settings = CATALOGUE[scene].checked(
+        {"elements": 10, "instants": 9, **values, "finish": "none"}
+    )
     problem = discretise(settings)
     reference = reference_of(problem)
     iterate = next(islice(iterations(problem, method_of(settings)), 200, None))
     size = np.abs(reference.contact_force).max()
-    np.testing.assert_allclose(iterate.contact_force, reference.contact_force, atol=1e-5 * size)
+    np.testing.assert_allclose(
+        iterate.contact_force, reference.contact_force, atol=1e-5 * size
+    )
     assert kkt_residual(iterate, problem) < 1e-4
     held = [*problem.held_dofs]
     found = [reaction(problem, side).of(iterate) for side in held]
@@ -367,7 +410,8 @@ SPRUNG: dict[str, tuple[str, dict[str, Any]]] = {
 
 def test_a_spring_carries_what_friction_leaves() -> None:
     run = run_of("block", **ON_SPRING)
-    weight, push = 1837.5 * 0.08, 3400.0 * 0.08
+    weight = 1837.5 * 0.08
+    push = 3400.0 * 0.08
     assert largest("spring_force", run) == pytest.approx(push - 0.9 * weight, rel=1e-6)
     assert largest("peak_friction", run) == pytest.approx(0.9 * weight, rel=1e-6)
 
@@ -388,19 +432,31 @@ def test_a_spring_presses_on_no_surface_and_its_point_does_not_slip(
 def test_key_figures_of_the_page_leave_the_point_of_a_spring_out() -> None:
     run = run_of("incline", **SMALL["incline"])
     sampler = Sampler(run.problem, run.settings, 1)
-    frame = sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
+    frame = sampler.frame(
+        run.iterate, run.solution.records, run.solution.status, Needs()
+    )
     slips = np.abs(run.iterate.contact("support").status[:, 6]) == 1
-    assert f"Slips <b>{percent(slips.mean())}</b>" in figures_line(frame, Selection(phase=0.5))
+    assert f"Slips <b>{percent(slips.mean())}</b>" in figures_line(
+        frame, Selection(phase=0.5)
+    )
 
 
-def test_friction_fitted_to_the_closed_form_of_a_moved_end_is_that_of_the_form() -> None:
+def test_friction_fitted_to_the_closed_form_of_a_moved_end_is_that_of_the_form() -> (
+    None
+):
     """On a coarse mesh half an element of friction was taken for 6 % of mu."""
     moved = np.linspace(0.0, 3e-4, 21)
     needed = np.sqrt(2.0 * 659_400.0 * 0.1 * 5000.0 * moved)
     measured = MeasuredLoop(moved, needed, None, ("m", "N"), "closed form", "")
     path = [[0.0, 0.0], [1.0, 3e-4]]
     settings = CATALOGUE["bar"].checked(
-        {"right_end": "held", "right_load": path, "elements": 25, "instants": 21, "friction": 0.2}
+        {
+            "right_end": "held",
+            "right_load": path,
+            "elements": 25,
+            "instants": 21,
+            "friction": 0.2,
+        }
     )
     found = fit(settings, measured, ["friction"])
     assert found.nearest.values[0] == pytest.approx(0.1, rel=2e-3)
@@ -410,7 +466,9 @@ def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> N
     """Their ends move alike in the end: what rounding leaves of that is no slip."""
     times = np.linspace(0.0, 1.0, 9)
     free = Given(False, 0.0 * times)
-    turned = Given(True, 1e-5 * np.sin(6.0 * times), 1e-5 * np.minimum(3.0 * times, 1.0))
+    turned = Given(
+        True, 1e-5 * np.sin(6.0 * times), 1e-5 * np.minimum(3.0 * times, 1.0)
+    )
     stack = Stack(
         length=0.2,
         height=0.1,
@@ -433,7 +491,8 @@ def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> N
     iterate = next(islice(iterations(problem, Latin()), 200, None))
     for fields in (reference, iterate):
         between = fields.contact("contact 1-2")
-        friction, bound = between.tangential_force[0], 0.3 * between.normal_force[0]
+        friction = between.tangential_force[0]
+        bound = 0.3 * between.normal_force[0]
         np.testing.assert_allclose(friction[1:3], bound[1:3], rtol=1e-6)
         assert (np.abs(friction) <= (1.0 + 1e-9) * bound).all()
         # Where both stand, as much per area as beside, where the share is whole.

@@ -7,7 +7,13 @@ import pytest
 from plane import solved as driven
 from scipy.sparse.linalg import spsolve
 
-from solver.discrete.elements import EDGE_MASS, Rectangle, SchurComplement, dofs_of, elastic_matrix
+from solver.discrete.elements import (
+    EDGE_MASS,
+    Rectangle,
+    SchurComplement,
+    dofs_of,
+    elastic_matrix,
+)
 
 STATES = ["strain", "stress"]
 
@@ -27,7 +33,9 @@ def solved(mesh, held, values, force):
     free = np.setdiff1d(np.arange(whole.shape[0]), held)
     found = np.zeros(whole.shape[0])
     found[held] = values
-    found[free] = spsolve(whole[free][:, free], force[free] - whole[free][:, held] @ values)
+    found[free] = spsolve(
+        whole[free][:, free], force[free] - whole[free][:, held] @ values
+    )
     return found
 
 
@@ -44,16 +52,23 @@ def test_uniform_strain_has_no_forces_inside_and_its_own_stress(state):
     np.testing.assert_allclose(mesh.stress(displacement), expected, atol=1e-14)
 
 
-@pytest.mark.parametrize(("state", "factor"), [("stress", 1.0), ("strain", 1.0 / (1.0 - 0.09))])
+@pytest.mark.parametrize(
+    ("state", "factor"), [("stress", 1.0), ("strain", 1.0 / (1.0 - 0.09))]
+)
 def test_one_thin_row_of_elements_bends_as_a_beam(state, factor):
-    length, height, columns = 10.0, 0.1, 20
+    length = 10.0
+    height = 0.1
+    columns = 20
     mesh = rectangle(state, 0.3, columns, 1, length / columns, height)
-    left, right = mesh.edge("left"), mesh.edge("right")
+    left = mesh.edge("left")
+    right = mesh.edge("right")
     force = np.zeros((mesh.n_nodes, 2))
     moment = 1e-3
     stress = np.array([6.0, -6.0]) * moment / height**2
     force[right, 0] = height * EDGE_MASS @ stress
-    found = solved(mesh, dofs_of(left), np.zeros(2 * len(left)), force.ravel()).reshape(-1, 2)
+    found = solved(mesh, dofs_of(left), np.zeros(2 * len(left)), force.ravel()).reshape(
+        -1, 2
+    )
     inertia = height**3 / 12.0
     assert found[right, 1].mean() == pytest.approx(
         moment * length**2 / (2.0 * factor * inertia), rel=2e-3
@@ -64,13 +79,15 @@ def test_a_nearly_incompressible_bent_beam_does_not_lock():
     ends = []
     for poisson in (0.3, 0.4999):
         mesh = rectangle("strain", poisson, 20, 2, 0.5, 0.05)
-        left, right = mesh.edge("left"), mesh.edge("right")
+        left = mesh.edge("left")
+        right = mesh.edge("right")
         force = np.zeros((mesh.n_nodes, 2))
         force[right[[0, -1]], 0] = [1.0, -1.0]
         held = dofs_of(left)
         found = solved(mesh, held, np.zeros(len(held)), force.ravel()).reshape(-1, 2)
         ends.append(found[right, 1].mean() / (1.0 - poisson**2))
-    # The clamp holds the width, which stiffens a little; locking would cost more than half.
+    # The clamp holds the width, which stiffens a little; locking would cost more than
+    # half.
     assert ends[1] == pytest.approx(ends[0], rel=0.05)
 
 
@@ -101,7 +118,10 @@ STEPS = 8
 def cycles(size):
     """Two cycles of a path, at rest until 0.2 s, over 1 s."""
     times = np.linspace(0.2, 1.0, len(TURNS))
-    return [[0.0, 0.0], *([float(t), size * turn] for t, turn in zip(times, TURNS, strict=True))]
+    return [
+        [0.0, 0.0],
+        *([float(t), size * turn] for t, turn in zip(times, TURNS, strict=True)),
+    ]
 
 
 def at_once(size):
@@ -144,7 +164,9 @@ def stored(problem, displacement):
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_work_on_a_closed_cycle_is_stored_or_dissipated(scene):
-    iterate = driven(scene, instants=10 * STEPS + 1, violation=1e-9, most=3000, **SCENES[scene])
+    iterate = driven(
+        scene, instants=10 * STEPS + 1, violation=1e-9, most=3000, **SCENES[scene]
+    )
     problem = iterate.problem
     scale = problem.scales.force * problem.scales.displacement
     first = 6 * STEPS

@@ -12,7 +12,8 @@ from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
 
-PRESSURE, SHEAR = 1e6, 4e5
+PRESSURE = 1e6
+SHEAR = 4e5
 DECOMPOSITIONS = [(1, 1), (10, 7)]
 PATCH = {
     "gap": "flat",
@@ -59,7 +60,9 @@ def test_a_stuck_block_without_lateral_strain_is_sheared_uniformly(decomposition
     np.testing.assert_allclose(friction, -SHEAR, rtol=1e-6)
     found = stress(iterate)
     np.testing.assert_allclose(
-        found, np.broadcast_to([0.0, -PRESSURE, SHEAR], found.shape), atol=1e-6 * PRESSURE
+        found,
+        np.broadcast_to([0.0, -PRESSURE, SHEAR], found.shape),
+        atol=1e-6 * PRESSURE,
     )
     assert not fields.status[:, -1].any()
 
@@ -77,7 +80,8 @@ def test_a_block_dragged_far_enough_slides_everywhere_and_its_reaction_balances_
         violation=1e-10,
     )
     fields = iterate.contact("support")
-    pressing, friction = fields.normal_force[:, -1], fields.tangential_force[:, -1]
+    pressing = fields.normal_force[:, -1]
+    friction = fields.tangential_force[:, -1]
     assert np.all(fields.status[:, -1] == 1)
     np.testing.assert_allclose(friction, -0.3 * pressing, atol=1e-8 * pressing.max())
     along, up = reaction(iterate, "top")
@@ -106,7 +110,8 @@ def test_pressure_under_a_tilting_block_balances_force_and_moment(elements):
     fields = iterate.contact("support")
     x = iterate.problem.rubbing["support"].positions
     pressing = fields.normal_force[:, -1]
-    # 1e5 N at the middle plus slope * length / 6, and 1e4 N along x at a height of 0.1 m.
+    # 1e5 N at the middle plus slope * length / 6, and 1e4 N along x at a height of 0.1
+    # m.
     moment = 1e5 * (0.05 + 2.0 * 0.1 / 6.0) + 1e4 * 0.1
     np.testing.assert_allclose(pressing.sum(), 1e5, rtol=1e-8)
     np.testing.assert_allclose(pressing @ x, moment, rtol=1e-8)
@@ -119,7 +124,11 @@ def test_pressure_under_a_tilting_block_balances_force_and_moment(elements):
 @pytest.mark.parametrize("depth", [0.0, 4e-5])
 def test_a_body_that_never_touches_moves_as_a_whole_and_the_run_converges(depth):
     settings = BlockSettings.checked(
-        {"gap": ((0.0, 1e-3), (0.1, 1e-3)), "top_normal_displacement": -depth, "elements": 16}
+        {
+            "gap": ((0.0, 1e-3), (0.1, 1e-3)),
+            "top_normal_displacement": -depth,
+            "elements": 16,
+        }
     )
     solution = solve(discretise(settings), method_of(settings))
     assert solution.status.ending is Ending.CONVERGED
@@ -139,12 +148,15 @@ def test_a_body_that_never_touches_moves_as_a_whole_and_the_run_converges(depth)
 def test_a_body_falls_on_its_support_and_stands_there_as_if_it_had_been_there(gap):
     values = {"top": "traction", "top_normal_traction": -PRESSURE, "elements": 16}
     flat, fallen = (
-        BlockSettings.checked({**values, "instants": 21, "gap": one}) for one in ("flat", gap)
+        BlockSettings.checked({**values, "instants": 21, "gap": one})
+        for one in ("flat", gap)
     )
     solution = solve(discretise(fallen), method_of(fallen))
     assert solution.status.ending is Ending.CONVERGED
     assert len(solution.records) < 40
-    wanted = solve(discretise(flat), method_of(flat)).iterate.contact("support").normal_force
+    wanted = (
+        solve(discretise(flat), method_of(flat)).iterate.contact("support").normal_force
+    )
     found = solution.iterate.contact("support").normal_force
     np.testing.assert_allclose(found, wanted, atol=1e-3 * wanted.max())
 
@@ -153,14 +165,21 @@ def test_a_rigid_body_rests_under_its_load_and_a_roller_keeps_it_upright():
     values = {"gap": "parabola", "top": "traction", "top_normal_traction": -PRESSURE}
     level, tilted, held = (
         rigid_rest(BlockSettings.checked(values | change).structure())
-        for change in ({}, {"top_normal_slope": 0.6}, {"top_normal_slope": 0.6, "left": "roller"})
+        for change in (
+            {},
+            {"top_normal_slope": 0.6},
+            {"top_normal_slope": 0.6, "left": "roller"},
+        )
     )
     assert abs(level[1, -1]) < 1e-9
-    # The resultant acts a tenth of the length beside the middle, where the parabola has this slope.
+    # The resultant acts a tenth of the length beside the middle, where the parabola has
+    # this slope.
     assert tilted[1, -1] == pytest.approx(-0.01 / 5.0, rel=0.05)
     assert held[0, -1] < 0.0
     assert not held[1].any()
-    assert rigid_rest(BlockSettings.checked({"gap": ((0.0, 1e-3),)}).structure()) is None
+    assert (
+        rigid_rest(BlockSettings.checked({"gap": ((0.0, 1e-3),)}).structure()) is None
+    )
 
 
 @pytest.mark.parametrize("scene", ["block", "layers"])
@@ -170,8 +189,12 @@ def test_the_number_of_substructures_does_not_change_the_answer(scene):
         size = {"elements": 20, "elements_up": 4, "instants": 21}
         iterate = solved(scene, violation=1e-7, **size, **cut(decomposition))
         inside = iterate.problem.inside
-        found.append((inside.displacement(iterate.displacement, slice(None)), inside.nodes))
-        forces = [iterate.contact(name).normal_force for name in iterate.problem.rubbing]
+        found.append(
+            (inside.displacement(iterate.displacement, slice(None)), inside.nodes)
+        )
+        forces = [
+            iterate.contact(name).normal_force for name in iterate.problem.rubbing
+        ]
         found[-1] += (np.stack(forces),)
     (one, nodes, pressing), (other, same_nodes, same_pressing) = found
     np.testing.assert_array_equal(nodes, same_nodes)
@@ -183,7 +206,10 @@ SMALL = {"elements": 16, "elements_up": 8, "instants": 11}
 
 
 def test_a_contact_ends_before_a_side_that_holds_its_normal_displacement():
-    for left, right, first, last in (("free", "roller", 0, 16), ("clamped", "dragged", 1, 15)):
+    for left, right, first, last in (
+        ("free", "roller", 0, 16),
+        ("clamped", "dragged", 1, 15),
+    ):
         iterate = solved("block", left=left, right=right, violation=1e-4, **SMALL)
         x = iterate.problem.rubbing["support"].positions / 0.1 * 16
         np.testing.assert_allclose(x, np.arange(first, last + 1), atol=1e-9)

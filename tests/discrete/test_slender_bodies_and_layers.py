@@ -25,7 +25,11 @@ def problem_of(scene, **values):
 
 def layers_of(ratio, **values):
     """Layers so many times as long as thick, pressed so that they slide a part of the time."""
-    own = {"thickness": 0.5 / ratio, "pressure": 2e6 * (50 / ratio) ** 2, "instants": 33}
+    own = {
+        "thickness": 0.5 / ratio,
+        "pressure": 2e6 * (50 / ratio) ** 2,
+        "instants": 33,
+    }
     return problem_of("layers", **{**own, **values})
 
 
@@ -38,9 +42,13 @@ def error_after(most, settings, problem):
 
 @pytest.mark.parametrize("ratio", [50, 1000])
 @pytest.mark.parametrize(
-    "cuts", [{}, {"substructures": 1}, {"substructures_up": 2}], ids=["four", "uncut", "two up"]
+    "cuts",
+    [{}, {"substructures": 1}, {"substructures_up": 2}],
+    ids=["four", "uncut", "two up"],
 )
-def test_layers_of_any_slenderness_come_within_one_percent_in_fifty_iterations(ratio, cuts):
+def test_layers_of_any_slenderness_come_within_one_percent_in_fifty_iterations(
+    ratio, cuts
+):
     assert error_after(50, *layers_of(ratio, **cuts)) <= 0.01
 
 
@@ -59,7 +67,12 @@ def test_a_column_cut_into_parts_twenty_times_as_high_as_wide_takes_twenty_itera
 def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(elements_up):
     """A fault of 40 m below 1600 m: 24 elements up are 80 times as high as wide, one 1920 times."""
     uncut = {"substructures": 1, "substructures_up": 1, "elements_up": elements_up}
-    column = {"length": 40.0, "height": 1600.0, "shear_stress": 5.5e6, "diffusivity": 0.003}
+    column = {
+        "length": 40.0,
+        "height": 1600.0,
+        "shear_stress": 5.5e6,
+        "diffusivity": 0.003,
+    }
     settings, problem = problem_of("fault", **column, **uncut)
     found = reference_of(problem)
     slips = found.status != 0
@@ -72,12 +85,20 @@ def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(element
     assert solve(problem, method_of(settings)).is_certified
 
 
-THIN = {"length": 2.0, "thickness": 0.01, "elements": 24, "instants": 13, "finish": "none"}
+THIN = {
+    "length": 2.0,
+    "thickness": 0.01,
+    "elements": 24,
+    "instants": 13,
+    "finish": "none",
+}
 
 
 @pytest.mark.parametrize("ratio", [200, 1000])
 @pytest.mark.parametrize("layers", [4, 10])
-def test_thin_layers_that_stick_come_within_one_percent_in_thirty_iterations(ratio, layers):
+def test_thin_layers_that_stick_come_within_one_percent_in_thirty_iterations(
+    ratio, layers
+):
     thin = settings_of("layers", **{**THIN, "length": 0.01 * ratio, "layers": layers})
     assert max(errors(thin, 33)[-4:]) <= 0.01
 
@@ -94,7 +115,11 @@ def test_what_nowhere_slips_is_solved_by_a_status_step_at_once():
     assert solution.iterate.number <= LOOK
 
 
-YOUNG, POISSON, LENGTH, THICKNESS, DEFLECTION = 210e9, 0.3, 0.5, 0.01, 1e-4
+YOUNG = 210e9
+POISSON = 0.3
+LENGTH = 0.5
+THICKNESS = 0.01
+DEFLECTION = 1e-4
 
 
 alone = functools.partial(cantilever, LENGTH, young=YOUNG, poisson=POISSON)

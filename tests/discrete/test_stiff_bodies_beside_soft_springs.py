@@ -26,16 +26,22 @@ class Slope:
 
     def __init__(self, found, values):
         self.angle = np.radians(values.path("slope_load"))
-        self.weight, self.mu = values.weight, values.friction
-        ground, spring = found.contact("support"), found.contact("spring")
-        self.pressing, self.rubbing = ground.normal_force, ground.tangential_force
-        self.spring, self.status = spring.normal_force[0], ground.status
+        self.weight = values.weight
+        self.mu = values.friction
+        ground = found.contact("support")
+        spring = found.contact("spring")
+        self.pressing = ground.normal_force
+        self.rubbing = ground.tangential_force
+        self.spring = spring.normal_force[0]
+        self.status = ground.status
         self.down = values.weight * (np.sin(self.angle) - self.mu * np.cos(self.angle))
         self.up = values.weight * (np.sin(self.angle) + self.mu * np.cos(self.angle))
 
     def unbalanced(self, values):
         """Forces and the moment about the foot that are left over, over the weight."""
-        along = self.rubbing.sum(axis=0) + self.spring - self.weight * np.sin(self.angle)
+        along = (
+            self.rubbing.sum(axis=0) + self.spring - self.weight * np.sin(self.angle)
+        )
         across = self.pressing.sum(axis=0) - self.weight * np.cos(self.angle)
         lever = np.linspace(0.0, values.length, len(self.pressing))
         turning = lever @ self.pressing + 0.5 * self.weight * (

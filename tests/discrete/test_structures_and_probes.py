@@ -22,12 +22,18 @@ from solver.scenes.method import method_of
 from solver.settings.scene import Settings
 
 SMALL = {"elements": 12, "elements_up": 4, "instants": 9}
-PULLED = {"top": "traction", "top_normal_traction": -2e7, "top_tangential_traction": 4e6}
+PULLED = {
+    "top": "traction",
+    "top_normal_traction": -2e7,
+    "top_tangential_traction": 4e6,
+}
 HEAVY = {"body_force_y": -1e8, "body_force_x": 3e7}
 LAYERS = {**SMALL, "elements_up": 2, "layers": 3}
 
 
-def iterate_of(scene: str, values: dict[str, Any], number: int) -> tuple[Settings, Iterate]:
+def iterate_of(
+    scene: str, values: dict[str, Any], number: int
+) -> tuple[Settings, Iterate]:
     settings = CATALOGUE[scene].checked(values)
     run = iterations(discretise(settings), method_of(settings))
     return settings, next(islice(run, number - 1, None))
@@ -36,14 +42,17 @@ def iterate_of(scene: str, values: dict[str, Any], number: int) -> tuple[Setting
 def trapezoid(along: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Mean over a line of places, in any order; values (n_places, n)."""
     order = np.argsort(along)
-    along, values = along[order], values[order]
+    along = along[order]
+    values = values[order]
     pieces = np.diff(along)[:, None] * 0.5 * (values[1:] + values[:-1])
     return np.asarray(pieces.sum(axis=0) / (along[-1] - along[0]))
 
 
 def whole(problem: Problem, iterate: Iterate) -> tuple[np.ndarray, np.ndarray]:
     assert problem.inside is not None
-    return problem.inside.nodes, problem.inside.displacement(iterate.displacement, slice(None))
+    return problem.inside.nodes, problem.inside.displacement(
+        iterate.displacement, slice(None)
+    )
 
 
 @pytest.mark.parametrize("side", ["top", "left", "right"])
@@ -55,7 +64,10 @@ def test_mean_displacement_of_a_side_is_that_of_the_recovered_nodes(
     _, iterate = iterate_of("block", {**SMALL, **PULLED, **HEAVY}, 4)
     nodes, found = whole(iterate.problem, iterate)
     axis = 1 if side == "top" else 0
-    outermost = nodes[:, axis].min() if side == "left" else nodes[:, axis].max()
+    if side == "left":
+        outermost = nodes[:, axis].min()
+    else:
+        outermost = nodes[:, axis].max()
     on = nodes[:, axis] == outermost
     expected = trapezoid(nodes[on, 1 - axis], found[on, component])
     probe = side_mean(iterate.problem, side, component)
@@ -76,7 +88,9 @@ def test_shear_force_on_the_support_is_the_traction_on_the_top() -> None:
     settings, iterate = iterate_of("block", {**SMALL, **PULLED}, 200)
     loop = settings.structure().loop(iterate.problem)
     expected = settings.path("top_tangential_load") * settings.values()["length"]
-    assert loop.force(iterate) == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+    assert loop.force(iterate) == pytest.approx(
+        expected, abs=1e-3 * np.abs(expected).max()
+    )
 
 
 def test_equivalent_stress_of_pure_shear_and_of_even_pressure() -> None:
@@ -115,7 +129,9 @@ BEAMS = replace(
 
 def test_a_side_that_is_not_named_is_free() -> None:
     free = Side(Given(False, 0.0 * T), Given(False, 0.0 * T))
-    named = replace(BODY, sides={**dict.fromkeys(("left", "right", "bottom"), free), **BODY.sides})
+    named = replace(
+        BODY, sides={**dict.fromkeys(("left", "right", "bottom"), free), **BODY.sides}
+    )
     assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
     assert {act.where for act in BODY.described().acts} == {"top x", "top y"}
     assert [hold.kind for hold in BODY.described().holds] == ["support"]
@@ -126,11 +142,17 @@ def test_a_side_that_is_not_named_is_free() -> None:
     [
         ("Stack.sides", BODY, {"sides": {"Top": BODY.sides["top"]}}),
         ("Stack.young", BODY, {"young": -210e9}),
-        ("Rods.stiffness", CATALOGUE["bar"].checked({}).structure(), {"stiffness": 0.0}),
+        (
+            "Rods.stiffness",
+            CATALOGUE["bar"].checked({}).structure(),
+            {"stiffness": 0.0},
+        ),
         ("Rods.length", CATALOGUE["bar"].checked({}).structure(), {"length": np.nan}),
     ],
 )
-def test_bodies_that_cannot_be_are_refused(name: str, part: Any, change: dict[str, Any]) -> None:
+def test_bodies_that_cannot_be_are_refused(
+    name: str, part: Any, change: dict[str, Any]
+) -> None:
     with pytest.raises(RefusedError, match=name):
         replace(part, **change)
 

@@ -40,7 +40,9 @@ KINDS: dict[str, str | bytes] = {
     "separators at the ends": (
         "t [s];u [mm];F [N];\n0;0;0;\n0.5;1.5;1234.5;\n1;2.25;2000;\n1.5;-1;-500.25;\n"
     ),
-    "accents of Windows": ("Prüfzeit (s);Weg (mm);Prüfkraft (N)\n" + GERMAN).encode("cp1252"),
+    "accents of Windows": ("Prüfzeit (s);Weg (mm);Prüfkraft (N)\n" + GERMAN).encode(
+        "cp1252"
+    ),
     "quoted, with decimal commas": (
         '"Zeit in s","Weg in mm","Kraft in N"\n"0","0","0"\n'
         '"0,5","1,5","1234,5"\n"1","2,25","2000"\n'
@@ -56,7 +58,8 @@ KINDS: dict[str, str | bytes] = {
         "TIME,DISP,LOAD\nSEC,MM,KN\n0,0,0\n0.5,1.5,1.2345\n1,2.25,2\n1.5,-1,-0.50025\n"
     ),
     "units in words": (
-        "Time in seconds,Displacement in millimetres,Force in newtons\n" + PLAIN.partition("\n")[2]
+        "Time in seconds,Displacement in millimetres,Force in newtons\n"
+        + PLAIN.partition("\n")[2]
     ),
     "inches and pounds": (
         "t,stroke (in),load (lbf)\n0,0,0\n0.5,0.059055118110,277.526640257\n"
@@ -69,7 +72,8 @@ KINDS: dict[str, str | bytes] = {
     ),
     "names as variables": "t_s,u_mm,F_N\n" + PLAIN.partition("\n")[2],
     "names of a finite element program": (
-        "               TIME          UX [mm]         FX [N]\n\n" + ROWS.replace(" ", "        ")
+        "               TIME          UX [mm]         FX [N]\n\n"
+        + ROWS.replace(" ", "        ")
     ),
     "a comment at the end of lines": (
         "# t u[mm] F[N]\n0 0 0 # start\n0.5 1.5 1234.5 ! slips\n1 2.25 2000 // peak\n"
@@ -91,7 +95,8 @@ KINDS: dict[str, str | bytes] = {
         "t;u [mm];F [N]\n0;0;0\n0,5;1,5;1 234,5\n1;2,25;2 000\n1,5;-1;-500,25\n"
     ),
     "narrow blanks between thousands, and blanks between columns": (
-        "t u[mm] F[N]\n" + ROWS.replace("1234.5", "1\u202f234.5").replace("2000", "2\u00a0000")
+        "t u[mm] F[N]\n"
+        + ROWS.replace("1234.5", "1\u202f234.5").replace("2000", "2\u00a0000")
     ),
     "blanks between thousands in a printout": (
         "t [s]   u [mm]   F [N]\n0   0   0\n0.5   1.5   1 234.5\n1   2.25   2 000\n"
@@ -106,12 +111,16 @@ KINDS: dict[str, str | bytes] = {
     "points between thousands": (
         "t;u [mm];F [N]\n0;0;0\n0,5;1,5;1.234,5\n1;2,25;2.000\n1,5;-1;-500,25\n"
     ),
-    "apostrophes between thousands": PLAIN.replace("1234.5", "1'234.5").replace("2000", "2'000"),
-    "results before the data": "Test report\nMax force: 2000 N\nMax disp: 2.25\n\n" + PLAIN,
+    "apostrophes between thousands": PLAIN.replace("1234.5", "1'234.5").replace(
+        "2000", "2'000"
+    ),
+    "results before the data": "Test report\nMax force: 2000 N\nMax disp: 2.25\n\n"
+    + PLAIN,
     "results in columns before the data": (
         "Specimen,Max force,Max displacement\n1,2000,2.25\n\n" + PLAIN
     ),
-    "settings of the machine before the data": "Rate,100\nOperator,Meier\nRange,0,100\n" + PLAIN,
+    "settings of the machine before the data": "Rate,100\nOperator,Meier\nRange,0,100\n"
+    + PLAIN,
     "sums before the data": "4 2000 2.25 -500.25\nt u[mm] F[N]\n" + ROWS,
     "a head that comes again": (
         "t u[mm] F[N]\n0 0 0\n0.5 1.5 1234.5\n\fSlip rig   Page 2\nt u[mm] F[N]\n-----------\n"
@@ -130,7 +139,8 @@ KINDS: dict[str, str | bytes] = {
         "t,u [mm],F [N],remark\n0,0,0,\n0.5,1.5,1234.5,slips, loudly\n1,2.25,2000,\n"
         "1.5,-1,-500.25,back\n"
     ),
-    "remarks without a name": "t u[mm] F[N]\n" + ROWS.replace("1234.5\n", "1234.5 slips here\n"),
+    "remarks without a name": "t u[mm] F[N]\n"
+    + ROWS.replace("1234.5\n", "1234.5 slips here\n"),
     "a column of names in front": (
         "point,t,u [mm],F [N]\nA,0,0,0\nB,0.5,1.5,1234.5\nC,1,2.25,2000\nD,1.5,-1,-500.25\n"
     ),
@@ -144,7 +154,9 @@ KINDS: dict[str, str | bytes] = {
     ),
     "a last line that was cut off": "t u[mm] F[N]\n" + ROWS + "2.0 -3\n",
     "a line that names the separator": "sep=;\nt;u [mm];F [N]\n" + GERMAN,
-    "lines of a Mac of before 2001, and the end of a file of DOS": PLAIN.replace("\n", "\r")
+    "lines of a Mac of before 2001, and the end of a file of DOS": PLAIN.replace(
+        "\n", "\r"
+    )
     + "\x1a",
 }
 
@@ -155,7 +167,9 @@ def table_of(data: str | bytes) -> Table:
 
 def assert_is_the_loop(loop: MeasuredLoop) -> None:
     """Check it in SI, with its times where the file has them."""
-    np.testing.assert_allclose(1e3 * loop.displacement, DISPLACEMENTS, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        1e3 * loop.displacement, DISPLACEMENTS, rtol=1e-9, atol=1e-9
+    )
     np.testing.assert_allclose(loop.force, FORCES, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(loop.times, TIMES, rtol=1e-9, atol=1e-9)
 
@@ -170,14 +184,20 @@ def test_a_loop_is_the_same_however_it_is_written(kind: str) -> None:
 @pytest.mark.parametrize(
     ("kind", "said"),
     [
-        ("rows without a number", "4 points, .*left out 5 rows without a number .lines 3, 4, 5, 7"),
+        (
+            "rows without a number",
+            "4 points, .*left out 5 rows without a number .lines 3, 4, 5, 7",
+        ),
         ("a last line that was cut off", "left out 1 row without a number .line 6"),
         ("a head that comes again", "its head comes again once; passed over line 4"),
         ("results in columns before the data", "another table passed over .line 2"),
         ("a column of remarks", "passed over: 'remark'"),
         ("commas between thousands", "thousands with commas"),
         ("points between thousands", "thousands with points"),
-        ("units in capitals", "Zeit in SEC, Weg in MM, Kraft in N, 4 points, from -500.25 to 2000"),
+        (
+            "units in capitals",
+            "Zeit in SEC, Weg in MM, Kraft in N, 4 points, from -500.25 to 2000",
+        ),
         ("inches and pounds", "t in s .no unit given., stroke in in, load in lbf"),
     ],
 )
@@ -190,27 +210,50 @@ def test_what_was_understood_is_said(kind: str, said: str) -> None:
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        ("t\tu\tF\n0\t0\t0\n1\t1,234\t2\n", "line 3 has '1,234', which may be 1.234 or 1234"),
-        ("u;F\n0;0\n0,5;1\n0.7;2\n1,5;3\n", "line 4 has '0.7', with a decimal point where others"),
-        ("u;F\n0;0\n1,5;1.234.567,5\n1;12,345.5\n", "line 4 has '12,345.5', with a decimal point"),
+        (
+            "t\tu\tF\n0\t0\t0\n1\t1,234\t2\n",
+            "line 3 has '1,234', which may be 1.234 or 1234",
+        ),
+        (
+            "u;F\n0;0\n0,5;1\n0.7;2\n1,5;3\n",
+            "line 4 has '0.7', with a decimal point where others",
+        ),
+        (
+            "u;F\n0;0\n1,5;1.234.567,5\n1;12,345.5\n",
+            "line 4 has '12,345.5', with a decimal point",
+        ),
         ("u,F\n0,0\n1,1\n2,2\n3,inf\n", "line 5 has 'inf' as F: leave such rows out"),
         ("u,F\n0,0\n1,l2\n2,2\n3,4\n", "line 3 has 'l2' as F: give a number"),
         ("u,F\n0,0\n1,2,3\n2,3\n", "line 3 has 3 cells for 2 columns"),
-        ("u,F\n0,0\n1,2\n\nu,F,t\n0,0,0\n1,2,3\n", "tables of 2 rows begin at lines 2 and 6"),
+        (
+            "u,F\n0,0\n1,2\n\nu,F,t\n0,0,0\n1,2,3\n",
+            "tables of 2 rows begin at lines 2 and 6",
+        ),
         ("u [mm],F [kg]\n0,0\n1,2\n", "line 1 says kg: give it in N, kN, MN"),
         ("u,F,load\n0,0,1\n1,2,3\n", "'F' and 'load' may both be meant: rename"),
-        ("u,F\n0,-\nNaN,2\n,\n", "none of its rows has a number in each of these columns"),
+        (
+            "u,F\n0,-\nNaN,2\n,\n",
+            "none of its rows has a number in each of these columns",
+        ),
         ("Max force: 3 N\nRate: 7\n", "it has no points: give lines of numbers"),
         ("", "it has no points"),
-        (b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", "it is no text: save the table as CSV"),
+        (
+            b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR",
+            "it is no text: save the table as CSV",
+        ),
         (bytes(range(1, 200)), "it is no text: save the table as CSV"),
         (b"PK\x03\x04 of something else", "it is no workbook .*save the table as CSV"),
-        (b"\xd0\xcf\x11\xe0 of before 2007", "it is no workbook .*save the table as CSV"),
+        (
+            b"\xd0\xcf\x11\xe0 of before 2007",
+            "it is no workbook .*save the table as CSV",
+        ),
         (b"1,2\n" * 1_000_001, "it has more than 4 MB"),
     ],
     ids=lambda value: str(value)[:40],
 )
-def test_what_cannot_be_told_is_refused_with_its_place(data: str | bytes, why: str) -> None:
+def test_what_cannot_be_told_is_refused_with_its_place(
+    data: str | bytes, why: str
+) -> None:
     with pytest.raises(SettingError, match=why) as caught:
         loop_in(table_of(data), AXES)
     assert "rig.csv" in str(caught.value)
@@ -244,9 +287,13 @@ def test_a_cell_of_a_workbook_is_refused_with_its_row() -> None:
         loop_in(table_of(workbook(rows)), AXES)
 
 
-def test_without_openpyxl_a_workbook_is_refused_with_what_to_do(monkeypatch: Any) -> None:
+def test_without_openpyxl_a_workbook_is_refused_with_what_to_do(
+    monkeypatch: Any,
+) -> None:
     monkeypatch.setitem(sys.modules, "openpyxl", None)
-    with pytest.raises(SettingError, match=r"save the table as CSV, or .*slipfront\[excel\]"):
+    with pytest.raises(
+        SettingError, match=r"save the table as CSV, or .*slipfront\[excel\]"
+    ):
         table_of(workbook([["u", "F"], [0, 1]]))
 
 
@@ -265,7 +312,9 @@ def test_without_openpyxl_a_workbook_is_refused_with_what_to_do(monkeypatch: Any
         ("time,displacement", "0,1\n1,2\n", Use.PATH),
     ],
 )
-def test_a_table_is_a_loop_or_results_or_a_path_by_its_head(head: str, rows: str, use: Use) -> None:
+def test_a_table_is_a_loop_or_results_or_a_path_by_its_head(
+    head: str, rows: str, use: Use
+) -> None:
     assert use_of(table_of(f"{head}\n{rows}"), AXES) is use
 
 
@@ -279,7 +328,10 @@ def test_what_is_a_thousand_times_off_the_run_is_doubted() -> None:
     bare = loop_in(table_of(PLAIN.replace(" [mm]", "").replace(" [N]", "")), AXES)
     run = np.array(DISPLACEMENTS) * 1e-3, 2.0 * np.array(FORCES)
     (doubt,) = bare.unit_doubts(*run)
-    assert "displacement has no unit, and taken in m it is 1000 times that of the run" in doubt
+    assert (
+        "displacement has no unit, and taken in m it is 1000 times that of the run"
+        in doubt
+    )
     assert "if it is in mm, name that in the head, as in displacement [mm]" in doubt
     kilo = run[0] * 1e3, 1e3 * run[1]
     (doubt,) = bare.unit_doubts(*kilo)
@@ -290,7 +342,9 @@ def test_what_is_a_thousand_times_off_the_run_is_doubted() -> None:
 SIZES = ["--set=elements=10", "--set=substructures=2", "--set=instants=11"]
 
 
-def test_the_command_doubts_loops_and_paths_without_a_unit(tmp_path: Path, capsys: Any) -> None:
+def test_the_command_doubts_loops_and_paths_without_a_unit(
+    tmp_path: Path, capsys: Any
+) -> None:
     loop = tmp_path / "loop.csv"
     loop.write_text("u,F\n0,0\n0.3,500\n0.5,900\n0.2,-100\n")
     load = "--set=load=[[0,0],[0.6,900],[1,-100]]"
@@ -303,13 +357,18 @@ def test_the_command_doubts_loops_and_paths_without_a_unit(tmp_path: Path, capsy
     path.write_text("position,friction factor\n0,1\n1000,2\n")
     assert main(["run", "bar", *SIZES, f"--set=friction_profile={path}"]) == 0
     said = capsys.readouterr().err
-    assert "position has no unit, and taken in m it is 1000 times that of the scene" in said
+    assert (
+        "position has no unit, and taken in m it is 1000 times that of the scene"
+        in said
+    )
     assert "if it is in mm" in said
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
 @pytest.mark.parametrize("command", ["compare", "run", "saved"])
-def test_a_pipe_or_a_device_is_refused_at_once(command: str, tmp_path: Path, capsys: Any) -> None:
+def test_a_pipe_or_a_device_is_refused_at_once(
+    command: str, tmp_path: Path, capsys: Any
+) -> None:
     pipe = tmp_path / "pipe.toml"
     os.mkfifo(pipe)
     arguments = {
@@ -318,7 +377,10 @@ def test_a_pipe_or_a_device_is_refused_at_once(command: str, tmp_path: Path, cap
         "saved": ["run", str(pipe)],
     }
     assert main(arguments[command]) == 2
-    assert "it is a pipe or a device: save what it gives to a file" in capsys.readouterr().err
+    assert (
+        "it is a pipe or a device: save what it gives to a file"
+        in capsys.readouterr().err
+    )
     arguments["compare"][-1] = os.devnull
     if command == "compare":
         assert main(arguments[command]) == 2
@@ -339,9 +401,15 @@ def test_opening_a_file_reads_it_once_and_makes_no_problem(monkeypatch: Any) -> 
     monkeypatch.setattr(tables, "read_table", counted)
     settings = default_settings("block")
     problem = type(discretise(settings))
-    monkeypatch.setattr(problem, "__init__", lambda *given: pytest.fail("it made a problem"))
+    monkeypatch.setattr(
+        problem, "__init__", lambda *given: pytest.fail("it made a problem")
+    )
     state = PageState(settings)
-    for text in (PLAIN, "x,t,friction force\n" + "0.1,0.1,1\n" * 4, "time,force\n0,0\n1,2\n"):
+    for text in (
+        PLAIN,
+        "x,t,friction force\n" + "0.1,0.1,1\n" * 4,
+        "time,force\n0,0\n1,2\n",
+    ):
         calls.clear()
         made = opener.TableOpener(state, "Open", tables.TABLES, 200)
         made.file.filename = "rig.csv"

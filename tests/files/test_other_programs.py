@@ -48,7 +48,9 @@ def table(quantity: str, x: Any, t: Any, values: Any) -> str:
     """Write a field, (n_points, n_instants), as another program would."""
     rows = [
         f"{place!r},{time!r},{value!r}"
-        for place, line in zip(np.asarray(x).tolist(), np.asarray(values).tolist(), strict=True)
+        for place, line in zip(
+            np.asarray(x).tolist(), np.asarray(values).tolist(), strict=True
+        )
         for time, value in zip(np.asarray(t).tolist(), line, strict=True)
     ]
     return "\n".join([f"x,t,{quantity}", *rows])
@@ -57,7 +59,8 @@ def table(quantity: str, x: Any, t: Any, values: Any) -> str:
 def own_friction(scene: str) -> tuple[Any, Any, Any]:
     """Give our force per length or area where it is determinate, with its points and instants."""
     _, problem, reference = solved(scene)
-    (name, *_), law = problem.rubbing, next(iter(problem.rubbing.values()))
+    (name, *_) = problem.rubbing
+    law = next(iter(problem.rubbing.values()))
     places = problem.contact_places[name][-1]
     sizes = law.by_point(law.weights)[:, None]
     known = determinate_forces(problem)[places].all(axis=1)
@@ -84,13 +87,16 @@ def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
     rng = np.random.default_rng(1)
     distances = []
     for elements in (20, 40, 80):
-        settings = settings_of(load="ramp", elements=elements, instants=2 * elements + 1)
+        settings = settings_of(
+            load="ramp", elements=elements, instants=2 * elements + 1
+        )
         fine = settings_of(load="ramp", elements=400, instants=401)
         grid = discretise(fine)
         friction, _ = fine.exact(grid)
         where = np.sort(rng.choice(np.arange(1, 400), 150, replace=False))
         when = np.sort(rng.choice(np.arange(1, 401), 60, replace=False))
-        x, t = grid.friction.positions[where], grid.instants[when]
+        x = grid.friction.positions[where]
+        t = grid.instants[when]
         text = table(
             "friction force",
             x,
@@ -107,7 +113,8 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
     settings, problem, reference = solved("bar")
     x, t, values = own_friction("bar")
     text = table("friction force", x, t, values)
-    # The clamped node shares its friction with the clamp, and the run is over after a second.
+    # The clamped node shares its friction with the clamp, and the run is over after a
+    # second.
     text += "\n0.0,0.5,1e9\n0.1,1.5,1e9\n0.1,-0.5,1e9"
     brought = results(text, "a.csv", settings)
     beside = Comparison(brought, problem)
@@ -127,14 +134,25 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
             r"says N: give it in N/m, kN/m, N/mm; divide nodal forces",
         ),
         ("x [s],t,friction force\n" + ROWS, "says s: give it in m"),
-        (HEAD + ROWS + "0.5,1,inf\n", "line 6 has 'inf' as friction force: leave such rows out"),
+        (
+            HEAD + ROWS + "0.5,1,inf\n",
+            "line 6 has 'inf' as friction force: leave such rows out",
+        ),
         (HEAD + ROWS + "0.5,much,1\n", "line 6 has 'much' as t: give a number"),
-        (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*: name its unit"),
-        (HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n", r"2 of its 3 rows lie in the run.*at least 4"),
+        (
+            HEAD + ROWS + "7,1,1\n",
+            r"line 6 has x = 7 m, outside of the body.*: name its unit",
+        ),
+        (
+            HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n",
+            r"2 of its 3 rows lie in the run.*at least 4",
+        ),
         (HEAD + "0.1,0,1\n" * 20_001, "has 20001 rows, and may have 20000"),
     ],
 )
-def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str) -> None:
+def test_what_cannot_be_compared_is_refused_with_what_to_do(
+    text: str, why: str
+) -> None:
     with pytest.raises(SettingError, match=why) as caught:
         results(text, "theirs.csv", settings_of())
     assert "theirs.csv" in str(caught.value)
@@ -163,7 +181,9 @@ def test_the_command_tells_the_distance_in_one_line(tmp_path: Any, capsys: Any) 
         (["--with", "{}", "--interface", "ceiling"], "allowed: friction"),
     ],
 )
-def test_the_command_refuses_in_words(options: Any, why: str, tmp_path: Any, capsys: Any) -> None:
+def test_the_command_refuses_in_words(
+    options: Any, why: str, tmp_path: Any, capsys: Any
+) -> None:
     path = tmp_path / "theirs.csv"
     path.write_text(HEAD + ROWS)
     assert main(["compare", "bar", *(one.format(path) for one in options)]) == 2

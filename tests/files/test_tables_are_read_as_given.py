@@ -34,7 +34,17 @@ FORCES = {
     "lbf": POUND,
     "kips": 1e3 * POUND,
 }
-STYLES = ["{} [{}]", "{} ({})", "{}/{}", "{} / {}", "{} in {}", "{}, {}", "{} {}", "{}_{}", "row"]
+STYLES = [
+    "{} [{}]",
+    "{} ({})",
+    "{}/{}",
+    "{} / {}",
+    "{} in {}",
+    "{}, {}",
+    "{} {}",
+    "{}_{}",
+    "row",
+]
 BETWEEN = {",": ",", ";": ";", "tab": "\t", "blank": " ", "blanks": "   "}
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False)
 
@@ -60,8 +70,16 @@ class Dialect:
 
     def write(self, value: float) -> str:
         """Write a number in all its digits."""
-        text = format(value, ",") if self.thousands else repr(value)
-        signs = {".": self.decimal, ",": self.thousands, "-": self.minus, "e": self.exponent}
+        if self.thousands:
+            text = format(value, ",")
+        else:
+            text = repr(value)
+        signs = {
+            ".": self.decimal,
+            ",": self.thousands,
+            "-": self.minus,
+            "e": self.exponent,
+        }
         return "".join(signs.get(char, char) for char in text)
 
 
@@ -84,22 +102,38 @@ def files(draw: st.DrawFn) -> Written:
     count = draw(st.integers(2, 8))
     steps = draw(st.lists(st.floats(1e-3, 1e3), min_size=count, max_size=count))
     forces = draw(st.lists(NUMBERS, min_size=count, max_size=count))
-    columns = {"time": np.cumsum(steps), "force": np.array(forces), "extra": np.arange(count) * 0.5}
-    units = {"time": draw(st.sampled_from(list(TIMES))), "force": draw(st.sampled_from([*FORCES]))}
+    columns = {
+        "time": np.cumsum(steps),
+        "force": np.array(forces),
+        "extra": np.arange(count) * 0.5,
+    }
+    units = {
+        "time": draw(st.sampled_from(list(TIMES))),
+        "force": draw(st.sampled_from([*FORCES])),
+    }
     names = {
         "time": draw(st.sampled_from(["time", "Zeit", "t", "Prüfzeit", "TIME"])),
-        "force": draw(st.sampled_from(["force", "Kraft", "F", "load", "Last", "Standardkraft"])),
+        "force": draw(
+            st.sampled_from(["force", "Kraft", "F", "load", "Last", "Standardkraft"])
+        ),
         "extra": draw(st.sampled_from(["Weg", "displacement", "Kanal"])),
     }
-    order = draw(st.permutations(["time", "force", *draw(st.sampled_from([[], ["extra"]]))]))
+    order = draw(
+        st.permutations(["time", "force", *draw(st.sampled_from([[], ["extra"]]))])
+    )
     separator = BETWEEN[draw(st.sampled_from(list(BETWEEN)))]
-    style = draw(st.sampled_from([s for s in STYLES if separator != " " or " " not in s]))
+    style = draw(
+        st.sampled_from([s for s in STYLES if separator != " " or " " not in s])
+    )
     dialect = draw(dialects(separator))
     units["extra"] = "mm"
     heads = [
-        names[key] if style == "row" else style.format(names[key], units[key]) for key in order
+        names[key] if style == "row" else style.format(names[key], units[key])
+        for key in order
     ]
-    names_and_units = [heads] + ([[units[key] for key in order]] if style == "row" else [])
+    names_and_units = [heads] + (
+        [[units[key] for key in order]] if style == "row" else []
+    )
     rows = [
         [dialect.write(cell) for cell in row]
         for row in zip(*(columns[key].tolist() for key in order), strict=True)
@@ -110,11 +144,16 @@ def files(draw: st.DrawFn) -> Written:
     page = draw(st.sampled_from([[], names_and_units]))
     ends = draw(st.sampled_from(["", separator]))
     lines = [
-        separator.join(f'"{cell}"' if separator in cell else cell for cell in row) + ends
+        separator.join(f'"{cell}"' if separator in cell else cell for cell in row)
+        + ends
         for row in [*names_and_units, *rows[:-1], *page, rows[-1]]
     ]
     lines[-1] += dialect.remark
-    above = draw(st.lists(st.sampled_from(["Rate (Hz),100", "Prüfung 3", "", "# 7 N"]), max_size=2))
+    above = draw(
+        st.lists(
+            st.sampled_from(["Rate (Hz),100", "Prüfung 3", "", "# 7 N"]), max_size=2
+        )
+    )
     text = draw(st.sampled_from(["\n", "\r\n"])).join([*above, *lines, ""])
     encodings = ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "cp1252"]
     if {"\u202f", "\N{MINUS SIGN}"} & set(text):
@@ -139,7 +178,8 @@ def test_points_are_those_that_were_given(file: Written) -> None:
     read_points, message = read(file.data)
     points = np.array(read_points)
     np.testing.assert_allclose(points, file.points, rtol=1e-12)
-    (times, forces), (wanted_times, wanted) = points.T, file.points.T
+    (times, forces) = points.T
+    (wanted_times, wanted) = file.points.T
     assert (forces.argmax(), forces.argmin()) == (wanted.argmax(), wanted.argmin())
     turns = np.sign(np.diff(forces)), np.sign(np.diff(wanted))
     np.testing.assert_array_equal(*turns)
@@ -147,7 +187,11 @@ def test_points_are_those_that_were_given(file: Written) -> None:
     difference = np.trapezoid(forces, times) - np.trapezoid(wanted, wanted_times)
     assert abs(difference) <= 1e-11 * work
     time, force = file.units
-    for part in (f" in {time}, ", f" in {force}, {len(points)} points, from ", f" {force}"):
+    for part in (
+        f" in {time}, ",
+        f" in {force}, {len(points)} points, from ",
+        f" {force}",
+    ):
         assert part in message
 
 
@@ -176,7 +220,10 @@ def test_columns_are_chosen_by_name(text: str, points: list[list[float]]) -> Non
 @pytest.mark.parametrize(
     ("text", "remedy"),
     [
-        ("displacement,force\n0,0\n1,1\n", "no time .*a loop, as force over displacement"),
+        (
+            "displacement,force\n0,0\n1,1\n",
+            "no time .*a loop, as force over displacement",
+        ),
         ("0,0\n1,1\n0.5,0\n", "line 3: time must increase.*of a loop"),
         ("time,velocity\n0,0\n1,1\n", "no force in N, kN, MN .*'velocity'"),
         ("time,force [mm]\n0,0\n1,1\n", "line 1 says mm: give it in N, kN, MN"),
@@ -190,7 +237,10 @@ def test_columns_are_chosen_by_name(text: str, points: list[list[float]]) -> Non
         ("0,0,0\n1,1,1\n", "3 columns: name time and force in its first line"),
         ("0;0\n0,5;1,5\n1;2.5\n1,5;3,5\n", "line 3 has '2.5', with a decimal point"),
         ("0;0\n0.5;1.234,5\n1.5;2.5\n", "line 2 has '1.234,5', with a decimal comma"),
-        ("Rate (Hz),100\n0,0\n1,1\n", "line 1 is 'Rate .Hz.,100', not 2 finite numbers"),
+        (
+            "Rate (Hz),100\n0,0\n1,1\n",
+            "line 1 is 'Rate .Hz.,100', not 2 finite numbers",
+        ),
         ("time,force\n0,0\nmuch,1\n", "line 3 has 'much' as time"),
         ("time;force\ns;kg\n0;0\n", "line 2 says kg: give it in N, kN, MN"),
         ("", "no points"),
@@ -200,13 +250,16 @@ def test_columns_are_chosen_by_name(text: str, points: list[list[float]]) -> Non
     ],
     ids=repr,
 )
-def test_what_may_be_read_otherwise_is_refused_with_its_reason(text: str, remedy: str) -> None:
+def test_what_may_be_read_otherwise_is_refused_with_its_reason(
+    text: str, remedy: str
+) -> None:
     with pytest.raises(SettingError, match=remedy):
         read(text)
 
 
 def test_a_path_of_a_side_is_in_the_unit_of_what_is_given_there() -> None:
-    name, text = "top_normal_load", "time,displacement [mm]\n0,0\n1,-2\n"
+    name = "top_normal_load"
+    text = "time,displacement [mm]\n0,0\n1,-2\n"
     given, _ = read(text, name, "block", top="displacement")
     assert given == [[0.0, 0.0], [1.0, -2e-3]]
     with pytest.raises(SettingError, match="no pressure in Pa, kPa"):
@@ -217,7 +270,9 @@ def test_a_path_of_a_side_is_in_the_unit_of_what_is_given_there() -> None:
 
 def test_the_command_says_what_it_understood(tmp_path: Path, capsys: Any) -> None:
     file = tmp_path / "load.csv"
-    file.write_bytes("Prüfung\nZeit;Weg (mm);Kraft (kN)\n0;0;0\n1;2;0,9\n".encode("cp1252"))
+    file.write_bytes(
+        "Prüfung\nZeit;Weg (mm);Kraft (kN)\n0;0;0\n1;2;0,9\n".encode("cp1252")
+    )
     said = "Zeit in s (no unit given), Kraft in kN, 2 points, from 0 to 0.9 kN; passed over: 'Weg'"
     sizes = ["--set=elements=10", "--set=substructures=2", "--set=instants=11"]
     command = ["run", "bar", *sizes, f"--set=load={file}", "--json"]
@@ -241,12 +296,18 @@ def test_anything_else_is_read_or_refused_in_words(data: bytes | str) -> None:
     assert np.isfinite(points).all()
 
 
-def test_a_csv_is_found_beside_the_settings_file_or_in_the_working_folder(tmp_path, monkeypatch):
+def test_a_csv_is_found_beside_the_settings_file_or_in_the_working_folder(
+    tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "deep"
     folder.mkdir()
-    (folder / "path.csv").write_text("time,force\n0,0\n0.5, 100\n1,-1e2\n", encoding="utf-8-sig")
-    (folder / "run.toml").write_text('scene = "bar"\nload = "path.csv"\n', encoding="utf-8")
+    (folder / "path.csv").write_text(
+        "time,force\n0,0\n0.5, 100\n1,-1e2\n", encoding="utf-8-sig"
+    )
+    (folder / "run.toml").write_text(
+        'scene = "bar"\nload = "path.csv"\n', encoding="utf-8"
+    )
     expected = ((0.0, 0.0), (0.5, 100.0), (1.0, -100.0))
     assert settings_from_command("deep/run.toml", [])[0].load == expected
     assert settings_from_command("bar", ["load=deep/path.csv"])[0].load == expected
@@ -266,7 +327,9 @@ def test_a_csv_that_is_missing_binary_or_a_folder_is_refused(tmp_path):
         assert text.startswith("load = ")
         assert "allowed: ramp, triangle" in text
         assert remedy in text
-    assert "no readable CSV file" in refusal(lambda: settings_from_command(str(nul), []))
+    assert "no readable CSV file" in refusal(
+        lambda: settings_from_command(str(nul), [])
+    )
 
 
 @pytest.mark.parametrize(
@@ -289,7 +352,9 @@ def test_an_address_never_reads_a_file(tmp_path, monkeypatch, path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "load.csv").write_text("0,0\n1,100\n", encoding="utf-8")
     opened = []
-    monkeypatch.setattr(Path, "read_text", lambda self, *rest, **more: opened.append(self))
+    monkeypatch.setattr(
+        Path, "read_text", lambda self, *rest, **more: opened.append(self)
+    )
     for text in (path, f'"{path}"'):
         place, complaint = read_address(f"?load={text}")
         assert place["settings"].load == "sine"

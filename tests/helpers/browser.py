@@ -53,12 +53,14 @@ def chromium() -> str:
 class Chrome:
     """A browser whose windows are used again, each by one page at a time.
 
-    A window that has shown a page opens the next in half of the processor's time: the programs of
-    the page are compiled there. What pages store themselves goes with them.
+    A window that has shown a page opens the next in half of the processor's time: the
+    programs of the page are compiled there. What pages store themselves goes with them.
     """
 
     def __init__(self, playwright: Playwright) -> None:
-        self._browser = playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
+        self._browser = playwright.chromium.launch(
+            executable_path=chromium(), args=FLAGS
+        )
         self._free: dict[tuple[tuple[str, Any], ...], list[Page]] = {}
         self._used: dict[Page, list[Page]] = {}
         expect.set_options(timeout=1e3 * PATIENCE)
@@ -66,7 +68,10 @@ class Chrome:
     def new_page(self, width: int = 1280, height: int = 720, **device: Any) -> Page:
         """An empty page of a size, on a device of a kind."""
         free = self._free.setdefault(tuple(sorted(device.items())), [])
-        page = free.pop() if free else self._browser.new_page(**device)
+        if free:
+            page = free.pop()
+        else:
+            page = self._browser.new_page(**device)
         self._used[page] = free
         page.set_default_timeout(1e3 * PATIENCE)
         page.set_viewport_size({"width": width, "height": height})
@@ -101,7 +106,8 @@ class Server:
         self.address = f"{self.root}/app"
         self.health = f"{self.root}/liveness"
         self._log = log
-        # The script, as a user calls it: `python -m panel` finds modules that it does not.
+        # The script, as a user calls it: `python -m panel` finds modules that it does
+        # not.
         panel = str(Path(sys.executable).with_name("panel"))
         serves = serves or (panel, "serve", "app")
         with log.open("w") as output:

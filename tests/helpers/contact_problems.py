@@ -21,7 +21,9 @@ def course(rng, name, size, instants):
     """Loads, shape (size, instants), that make the contacts change their states."""
     steps = rng.normal(size=(size, instants))
     if name == "reversal":
-        return np.outer(rng.normal(size=size), np.where(np.arange(instants) % 2, 1.0, -1.0))
+        return np.outer(
+            rng.normal(size=size), np.where(np.arange(instants) % 2, 1.0, -1.0)
+        )
     if name == "open and close":
         normal = np.arange(size) % 2 == 1
         steps[normal] += np.where(np.arange(instants) % 2, 2.0, -2.0)
@@ -34,8 +36,11 @@ def substructure(matrix, first, force, rows_of_each=1):
     """A body whose every degree of freedom has a row, or several."""
     size = len(matrix)
     trace = np.tile(np.arange(size), rows_of_each)
-    dofs, rows = first[0] + np.arange(size), first[1] + np.arange(len(trace))
-    return Substructure(Elasticity(matrix, trace, np.ones(len(trace))), dofs, rows, force)
+    dofs = first[0] + np.arange(size)
+    rows = first[1] + np.arange(len(trace))
+    return Substructure(
+        Elasticity(matrix, trace, np.ones(len(trace))), dofs, rows, force
+    )
 
 
 def problem(parts, interfaces, instants):
@@ -53,13 +58,16 @@ def problem(parts, interfaces, instants):
 def friction_of(component, *, bound=0.0, friction=0.0):
     """Coulomb's friction of a known bound, or of mu."""
     none = np.zeros(len(component.above))
-    return Friction(component=component, bound=(none + bound)[:, None], friction=none + friction)
+    return Friction(
+        component=component, bound=(none + bound)[:, None], friction=none + friction
+    )
 
 
 def contact(normal, tangent, below, gap, friction):
     """A contact of as many points as there are normal rows."""
     count = len(normal)
-    points, ones = np.arange(count), np.ones(count)
+    points = np.arange(count)
+    ones = np.ones(count)
     below = below or (None, None)
     return Contact(
         normal=Unilateral(component=Component(normal, below[0]), gap=gap),
@@ -73,7 +81,8 @@ def contact(normal, tangent, below, gap, friction):
 
 def rubbing_points(seed, *, opens, two):
     """Random numbers, sliders, and what else a contact of them needs: a normal law or none."""
-    random, pairs = np.random.default_rng(seed), 4
+    random = np.random.default_rng(seed)
+    pairs = 4
     rows = random.permutation(4 * pairs).reshape(4, pairs)
     across, along = (Component(rows[n], rows[n + 2] if two else None) for n in (0, 1))
     if opens:
@@ -104,7 +113,10 @@ def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
     """One body, tangential and normal displacement of each point in turn, on a support."""
     size = 2 * points
     part = substructure(stiffness(rng, size), (0, 0), course(rng, load, size, instants))
-    gap = rng.choice([0.0, 0.1], size=points) if gap is None else np.full(points, gap)
+    if gap is None:
+        gap = rng.choice([0.0, 0.1], size=points)
+    else:
+        gap = np.full(points, gap)
     law = contact(np.arange(1, size, 2), np.arange(0, size, 2), None, gap, friction)
     return problem([part], {"support": law}, instants)
 
@@ -115,9 +127,14 @@ def two_bodies(rng, points, friction, *, load="random", instants=6):
     below = substructure(stiffness(rng, size + 2), (0, 0), None)
     force = course(rng, load, size, instants)
     above = substructure(stiffness(rng, size), (size + 2, size + 2), force)
-    normal, tangent = np.arange(1, size, 2), np.arange(0, size, 2)
+    normal = np.arange(1, size, 2)
+    tangent = np.arange(0, size, 2)
     law = contact(
-        normal + size + 2, tangent + size + 2, (normal + 2, tangent + 2), np.zeros(points), friction
+        normal + size + 2,
+        tangent + size + 2,
+        (normal + 2, tangent + 2),
+        np.zeros(points),
+        friction,
     )
     clamp = Dirichlet(np.arange(2), np.zeros((2, instants)))
     return problem([below, above], {"contact 1-2": law, "clamp": clamp}, instants)
@@ -137,7 +154,9 @@ def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
         )
         for one in range(strands)
     ]
-    along, taken, laws = np.arange(points), first[:-1].copy(), {}
+    along = np.arange(points)
+    taken = first[:-1].copy()
+    laws = {}
     for above, below in pairs:
         component = Component(taken[above] + along, taken[below] + along)
         taken[[above, below]] += points
@@ -150,7 +169,16 @@ def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
     return problem(parts, laws, instants)
 
 
-def block(*, elements=(12, 8), cuts=(2, 2), bodies=1, friction=0.3, shear=0.2, slope=0.0, **given):
+def block(
+    *,
+    elements=(12, 8),
+    cuts=(2, 2),
+    bodies=1,
+    friction=0.3,
+    shear=0.2,
+    slope=0.0,
+    **given,
+):
     """A block that is pressed on a rough support, then sheared back and forth on its top.
 
     Shear and its change along the top are shares of the pressure, 1e-3 E.
@@ -158,8 +186,16 @@ def block(*, elements=(12, 8), cuts=(2, 2), bodies=1, friction=0.3, shear=0.2, s
     instants = given.pop("instants", 17)
     time = np.linspace(0.0, 1.0, instants)
     pressure = -1e6 * np.minimum(4.0 * time, 1.0)
-    swing = 1e6 * shear * np.where(time > 0.25, np.sin(2.0 * np.pi * (time - 0.25) / 0.75), 0.0)
-    tilt = slope * pressure * np.where(time > 0.25, np.sin(np.pi * (time - 0.25) / 0.75), 0.0)
+    swing = (
+        1e6
+        * shear
+        * np.where(time > 0.25, np.sin(2.0 * np.pi * (time - 0.25) / 0.75), 0.0)
+    )
+    tilt = (
+        slope
+        * pressure
+        * np.where(time > 0.25, np.sin(np.pi * (time - 0.25) / 0.75), 0.0)
+    )
     top = Side(Given(False, swing), Given(False, pressure, tilt))
     return Stack(
         length=1.0,

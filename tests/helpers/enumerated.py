@@ -15,12 +15,15 @@ ROUNDING = 1e-9
 def numbers_of_equilibria(solution):
     """How many equilibria each instant has after the instants before it, as they were solved.
 
-    Of a rod on a support with friction that changes with slip. What is singular is left out:
-    there a rod may lie anywhere.
+    Of a rod on a support with friction that changes with slip. What is singular is left
+    out: there a rod may lie anywhere.
     """
-    problem, numbers = solution.problem, []
+    problem = solution.problem
+    numbers = []
     gone, before = np.zeros((2, problem.n_dofs))
-    for instant, now in enumerate((solution.displacement / problem.scales.displacement).T):
+    for instant, now in enumerate(
+        (solution.displacement / problem.scales.displacement).T
+    ):
         numbers.append(len(equilibria(problem, instant, before, gone)))
         gone = gone + np.abs(now - before)
         before = now
@@ -30,11 +33,12 @@ def numbers_of_equilibria(solution):
 def equilibria(problem, instant, before, gone):
     """All increments of an instant, shape (n_equilibria, n_dofs), scaled.
 
-    A point sticks, or slips either way and comes to rest between two points of the strength:
-    for each choice of all points the problem is linear, and its solution shows whether the
-    choice was right. All choices are solved side by side.
+    A point sticks, or slips either way and comes to rest between two points of the
+    strength: for each choice of all points the problem is linear, and its solution
+    shows whether the choice was right. All choices are solved side by side.
     """
-    rules, dofs = rules_of(problem), points_dofs(problem)
+    rules = rules_of(problem)
+    dofs = points_dofs(problem)
     strength = rules.strength
     fixed, prescribed = problem.prescribed
     bound = np.zeros(problem.n_dofs)
@@ -45,11 +49,17 @@ def equilibria(problem, instant, before, gone):
     pieces = range(len(strength.slips))
     each = [(0, 0), *product((-1, 1), pieces)]
     choices = np.array(list(product(each, repeat=len(rubbing))))
-    way, piece = choices[..., 0], choices[..., 1]
-    slopes, ends = strength.slopes, np.append(strength.slips[1:], np.inf)
-    starts, factors = np.array(strength.slips), np.array(strength.factors)
-    # The bound at the end of a slip is linear in it: what is left without slip, and the slope.
-    left = bound[rubbing] * (factors[piece] + slopes[piece] * (gone[rubbing] - starts[piece]))
+    way = choices[..., 0]
+    piece = choices[..., 1]
+    slopes = strength.slopes
+    ends = np.append(strength.slips[1:], np.inf)
+    starts = np.array(strength.slips)
+    factors = np.array(strength.factors)
+    # The bound at the end of a slip is linear in it: what is left without slip, and the
+    # slope.
+    left = bound[rubbing] * (
+        factors[piece] + slopes[piece] * (gone[rubbing] - starts[piece])
+    )
     slope = np.abs(way) * bound[rubbing] * slopes[piece]
     matrices = np.tile(stiffness, (len(choices), 1, 1))
     rights = np.tile(force, (len(choices), 1))
@@ -63,7 +73,8 @@ def equilibria(problem, instant, before, gone):
     matrices[held] = np.eye(problem.n_dofs)[np.nonzero(held)[1]]
     rights = np.where(held, given, rights)
     regular = np.linalg.cond(matrices) < 1e13
-    way, piece = way[regular], piece[regular]
+    way = way[regular]
+    piece = piece[regular]
     moved = np.linalg.solve(matrices[regular], rights[regular][..., None])[..., 0]
     slack = ROUNDING * max(np.abs(force).max(), bound.max())
     pulled = np.abs(force - moved @ stiffness)[:, rubbing]

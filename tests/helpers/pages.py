@@ -18,7 +18,8 @@ IGNORED = re.compile(
     "GL Driver Message|Failed to repull session"
     "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not open websocket"
 )
-"""In the console: a hint on speed, and what is said of a network that is cut, and was."""
+"""In the console: a hint on speed, and what is said of a network that is cut, and
+was."""
 POLL_MS = 50.0
 FAULT = re.compile(r"Traceback|ERROR|WARNING")
 """In the server's log."""
@@ -27,7 +28,8 @@ CLOSED = re.compile(
     r"|Task exception was never retrieved\n.*?WebSocketClosedError(?!\()[^\n]*\n)",
     re.DOTALL,
 )
-"""What is said of a message that was on its way to a page that closed, and of nothing else."""
+"""What is said of a message that was on its way to a page that closed, and of nothing
+else."""
 ALLOWED = re.compile("Dropping a patch|session-lifetime")
 """Lines of it that a page leaves which is closed in the midst of a picture."""
 MODEL = """(name) => {
@@ -54,7 +56,11 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
         complaints.append(error.stack or str(error))
 
     def visit(
-        query: str = "", width: int = 1280, height: int = 720, root: str = "", **device: Any
+        query: str = "",
+        width: int = 1280,
+        height: int = 720,
+        root: str = "",
+        **device: Any,
     ) -> Page:
         page = chrome.new_page(width, height, **device)
         page.on("console", hear)
@@ -100,7 +106,9 @@ def is_solved(page: Page) -> None:
 def holds(page: Page, expression: str, arg: Any = None) -> None:
     """Wait until an expression holds, of `model`, the way to the page's models by their names."""
     page.wait_for_function(
-        f"(arg) => {{ const model = {MODEL}; return ({expression}) }}", arg=arg, polling=POLL_MS
+        f"(arg) => {{ const model = {MODEL}; return ({expression}) }}",
+        arg=arg,
+        polling=POLL_MS,
     )
 
 
@@ -131,7 +139,9 @@ def figure(page: Page, number: int) -> Locator:
     return page.locator(".bk-Figure").nth(number)
 
 
-def drag(page: Page, place: Locator, start: float, end: float, height: float = 0.5) -> None:
+def drag(
+    page: Page, place: Locator, start: float, end: float, height: float = 0.5
+) -> None:
     """Press on a place, at a share of its width, and move to another; the button stays down."""
     box = place.bounding_box()
     assert box is not None
@@ -143,7 +153,8 @@ def drag(page: Page, place: Locator, start: float, end: float, height: float = 0
 
 def close_dialog(page: Page) -> None:
     """Close what has opened over the page."""
-    # Where its content is new, the focus is on the page until MUI looks after it, some 50 ms later.
+    # Where its content is new, the focus is on the page until MUI looks after it, some
+    # 50 ms later.
     expect(page.locator(".MuiDialog-root:focus-within")).not_to_have_count(0)
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(0)

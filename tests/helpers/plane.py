@@ -15,11 +15,15 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
     """Iterate until the k-free indicator, looked at now and then, is low enough."""
     settings = CATALOGUE[scene].checked(values)
     problem = discretise(settings)
-    for iterate in islice(iterations(problem, method_of(settings)), LOOK - 1, most, LOOK):
+    for iterate in islice(
+        iterations(problem, method_of(settings)), LOOK - 1, most, LOOK
+    ):
         found = iterate.behaviour
         if found <= violation:
             return iterate
-    raise AssertionError(f"the laws are violated by {found} after {iterate.number} iterations")
+    raise AssertionError(
+        f"the laws are violated by {found} after {iterate.number} iterations"
+    )
 
 
 def lengths(iterate, name="support"):
@@ -47,4 +51,6 @@ def stress(iterate, instant=-1):
 def whole_force_error(reference, iterate):
     """How wrong the contact force is as one field, pressure and friction together, (-)."""
     wanted = reference.contact_force
-    return float(np.linalg.norm(iterate.contact_force - wanted) / np.linalg.norm(wanted))
+    return float(
+        np.linalg.norm(iterate.contact_force - wanted) / np.linalg.norm(wanted)
+    )

@@ -10,7 +10,8 @@ from contextlib import contextmanager
 from typing import Any
 
 PATIENCE = 120.0
-"""Seconds that a test waits for what comes at all, also where others keep the machine busy."""
+"""Seconds that a test waits for what comes at all, also where others keep the machine
+busy."""
 
 
 def is_alive(pid: int) -> bool:
@@ -29,7 +30,9 @@ def wait_for(condition: Callable[[], object]) -> None:
 
 
 @contextmanager
-def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[bytes]]:
+def started(
+    command: Sequence[str], **options: Any
+) -> Iterator[subprocess.Popen[bytes]]:
     """Start a command, with options of `Popen`, and end it in any case."""
     with subprocess.Popen(command, **options) as process:
         try:

@@ -11,7 +11,12 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes.rope import RopeSettings
 
-SMALL_ROPE: dict[str, Any] = {"layers": 1, "length": 0.15, "tension": 4e4, "substructures": 2}
+SMALL_ROPE: dict[str, Any] = {
+    "layers": 1,
+    "length": 0.15,
+    "tension": 4e4,
+    "substructures": 2,
+}
 STRAND: dict[str, Any] = {"bending": "uniform", "elements": 40, "substructures": 4}
 
 

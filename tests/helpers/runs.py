@@ -39,7 +39,9 @@ def iterates(settings: Settings, number: int) -> list[Iterate]:
 
 def sample(settings: Settings, number: int) -> Iterate:
     """Iterate of some number."""
-    return next(islice(iterations(discretise(settings), method_of(settings)), number - 1, None))
+    return next(
+        islice(iterations(discretise(settings), method_of(settings)), number - 1, None)
+    )
 
 
 def errors(settings: Settings, number: int) -> Array:
@@ -52,11 +54,22 @@ def errors(settings: Settings, number: int) -> Array:
 
 def assert_goes_on(settings: Settings, number: int, place: int) -> None:
     """A run that is resumed at one of its iterates has the others again, to the bit."""
-    problem, method = discretise(settings), method_of(settings)
+    problem = discretise(settings)
+    method = method_of(settings)
     straight = list(islice(iterations(problem, method), number))
-    again = islice(iterations(problem, method, straight[place].checkpoint), number - place - 1)
+    again = islice(
+        iterations(problem, method, straight[place].checkpoint), number - place - 1
+    )
     for one, other in zip(again, straight[place + 1 :], strict=True):
         assert (one.number, one.course.phase) == (other.number, other.course.phase)
-        for name in ("k", "outgoing", "incoming", "local_displacement", "local_incoming"):
+        for name in (
+            "k",
+            "outgoing",
+            "incoming",
+            "local_displacement",
+            "local_incoming",
+        ):
             assert np.array_equal(getattr(one, name), getattr(other, name)), name
-        assert [basis.n_modes for basis in one.bases] == [basis.n_modes for basis in other.bases]
+        assert [basis.n_modes for basis in one.bases] == [
+            basis.n_modes for basis in other.bases
+        ]

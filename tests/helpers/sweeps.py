@@ -21,7 +21,9 @@ class Here(ThreadPoolExecutor):
         super().__init__(1)
         self.calls = 0
 
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+    def submit(
+        self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> Future[Any]:
         self.calls += 1
         return super().submit(fn, *args, **kwargs)
 
@@ -38,5 +40,8 @@ def rows_of(plan: Plan, executor: Executor | None = None, **rest: Any) -> list[R
 
 def rows_in_table(file: Path) -> int:
     """Rows that a sweep has written so far."""
-    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+    if file.exists():
+        lines = file.read_text(encoding="utf-8").splitlines()
+    else:
+        lines = []
     return max(0, sum(not line.startswith("#") for line in lines) - 1)

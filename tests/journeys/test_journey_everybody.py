@@ -8,7 +8,8 @@ from axe_playwright_python.sync_playwright import Axe
 from pages import ANSWER, Visit, button, close_dialog, figure, is_solved, status
 from playwright.sync_api import Page, expect
 
-WIDTH, HEIGHT = 390, 844
+WIDTH = 390
+HEIGHT = 844
 LIGHT_TAB = "rgb(25, 118, 210)"
 BACKGROUND = "getComputedStyle(document.body).backgroundColor"
 SIZE = """() => {
@@ -22,7 +23,12 @@ OF_THE_WIDGETS = ("aria-prohibited-attr", "aria-progressbar-name", "button-name"
 
 def violations(page: Page) -> list[str]:
     """What the rules of WCAG find, as far as they are of level A and AA."""
-    options = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
+    options = {
+        "runOnly": {
+            "type": "tag",
+            "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"],
+        }
+    }
     response = Axe().run(page, options=options).response
     return [
         f"{rule['id']}: {node['html'][:160]}"
@@ -47,7 +53,9 @@ def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(visit: Visit) 
     button(page, "Toggle theme").click()
     page.wait_for_function(f"(dark) => {BACKGROUND} !== dark", arg=dark)
     # Tabs take their colour some frames later.
-    expect(page.get_by_text("Contact force", exact=True)).to_have_css("color", LIGHT_TAB)
+    expect(page.get_by_text("Contact force", exact=True)).to_have_css(
+        "color", LIGHT_TAB
+    )
     is_clean()
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()

@@ -19,7 +19,9 @@ def measured() -> str:
     """The loop of a bar whose friction is 0.25, in kN and mm."""
     made = default_settings("bar").replace(load="cycle", friction=0.25, **SIZES)
     run = finished_run(made, errors=False, indicators=False)
-    rows = zip(run.problem.instants, 1e3 * run.displacement, 1e-3 * run.force, strict=True)
+    rows = zip(
+        run.problem.instants, 1e3 * run.displacement, 1e-3 * run.force, strict=True
+    )
     lines = [",".join(map(str, row)) for row in rows]
     return "\n".join(["time [s],displacement [mm],force [kN]", *lines])
 
@@ -46,7 +48,9 @@ def test_a_measured_loop_is_compared_and_fitted_and_the_fit_is_run(
     is_solved(page)
     button(page, "Fit").click()
     with page.expect_file_chooser() as chooser:
-        page.locator("label, button").filter(has=page.locator("input[type=file]")).first.click()
+        page.locator("label, button").filter(
+            has=page.locator("input[type=file]")
+        ).first.click()
     chooser.value.set_files(path)
     expect(page.get_by_role("dialog").get_by_text("Columns and units")).to_be_visible()
     close_dialog(page)

@@ -11,7 +11,18 @@ from urllib.error import HTTPError
 
 import pytest
 from browser import Chrome, Server
-from pages import ANSWER, ENDLESS, Visit, button, field, figures, is_solved, painted, status, visits
+from pages import (
+    ANSWER,
+    ENDLESS,
+    Visit,
+    button,
+    field,
+    figures,
+    is_solved,
+    painted,
+    status,
+    visits,
+)
 from playwright.sync_api import Page, expect
 from processes import is_alive, wait_for
 from proxy import Proxy
@@ -47,11 +58,14 @@ def change_peak(page: Page, value: str) -> None:
     typed.press("Enter")
 
 
-def test_a_network_that_breaks_and_is_mended_costs_no_settings(visit: Visit, proxy: Proxy) -> None:
+def test_a_network_that_breaks_and_is_mended_costs_no_settings(
+    visit: Visit, proxy: Proxy
+) -> None:
     page = visit(f"?{ANSWER}&peak=1000", root=f"http://localhost:{proxy.port}")
     is_solved(page)
     expect(figures(page)).to_contain_text("Force −1 kN")
-    # Of a message that is cut in two Bokeh's client keeps the first part for the next connection.
+    # Of a message that is cut in two Bokeh's client keeps the first part for the next
+    # connection.
     wait_for(lambda: time.monotonic() > proxy.heard_at + QUIET)
     with page.expect_console_message(lambda message: "Lost websocket" in message.text):
         proxy.cut()
@@ -95,13 +109,16 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
         return page, worker
 
     def goes_on(page: Page, worker: int, words: str) -> None:
-        expect(page.locator(".status")).to_contain_text(f"{words}; the run was started anew")
+        expect(page.locator(".status")).to_contain_text(
+            f"{words}; the run was started anew"
+        )
         painted(page, 3)
         wait_for(lambda: not is_alive(worker))
 
     with visits(server, chrome) as visit:
         stopped = strike(visit, signal.SIGSTOP)
-        # Both waits at once: for the sign of life, and for the end of a page that is closed.
+        # Both waits at once: for the sign of life, and for the end of a page that is
+        # closed.
         with visits(server, chrome) as visit_too:
             goes_on(*strike(visit_too, signal.SIGKILL), "process ended")
         goes_on(*stopped, "no sign of life for some seconds")
@@ -130,7 +147,8 @@ def test_what_a_foolish_address_has_is_said_on_its_page(visit: Visit) -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "code"), [("/app?load=" + "1" * 20_000, 414), ("/static/%00", 404), ("/moon", 404)]
+    ("path", "code"),
+    [("/app?load=" + "1" * 20_000, 414), ("/static/%00", 404), ("/moon", 404)],
 )
 def test_what_is_no_address_is_refused(server: Server, path: str, code: int) -> None:
     before = len(server.log)
@@ -151,4 +169,6 @@ def test_whoever_speaks_another_language_leaves_a_line_in_the_log(
     chrome.leave(page)
     said = server.log[before:]
     assert "Traceback" not in said
-    assert len([line for line in said.splitlines() if "onnection" not in line]) <= 1, said
+    assert len([line for line in said.splitlines() if "onnection" not in line]) <= 1, (
+        said
+    )

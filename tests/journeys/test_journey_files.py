@@ -36,20 +36,25 @@ def upload(page: Page, path: Path, text: str) -> None:
     """Open a file by the browser's own dialog."""
     path.write_text(text, encoding="utf-8")
     with page.expect_file_chooser() as chooser:
-        page.locator("label, button").filter(has=page.locator("input[type=file]")).first.click()
+        page.locator("label, button").filter(
+            has=page.locator("input[type=file]")
+        ).first.click()
     chooser.value.set_files(path)
 
 
 def opens_alone(browser: Browser, path: Path) -> None:
     """Check that a page is drawn from a file without a network."""
-    context, complaints = browser.new_context(offline=True), list[str]()
+    context = browser.new_context(offline=True)
+    complaints = list[str]()
     page = context.new_page()
     page.on("request", lambda request: complaints.append(request.url))
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.goto(path.as_uri())
     expect(page.locator(".bk-Figure").first).to_be_visible()
     context.close()
-    assert [c for c in complaints if not c.startswith(("file:", "data:", "blob:"))] == []
+    assert [
+        c for c in complaints if not c.startswith(("file:", "data:", "blob:"))
+    ] == []
 
 
 def test_what_if_draws_a_chart_by_itself_and_a_run_is_taken_away_as_table_program_and_page(
@@ -59,12 +64,18 @@ def test_what_if_draws_a_chart_by_itself_and_a_run_is_taken_away_as_table_progra
     is_solved(page)
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
-    expect(page.get_by_text(re.compile(r"13 of 13 runs: \d+ converged"))).to_be_visible()
+    expect(
+        page.get_by_text(re.compile(r"13 of 13 runs: \d+ converged"))
+    ).to_be_visible()
     expect(page.locator(".bk-Figure").locator("visible=true")).to_have_count(1)
     button(page, "Live").click()
     is_solved(page)
     button(page, "Take away").click()
-    table = download(page, "All iterations", tmp_path).read_text(encoding="utf-8").splitlines()
+    table = (
+        download(page, "All iterations", tmp_path)
+        .read_text(encoding="utf-8")
+        .splitlines()
+    )
     (head,) = [number for number, line in enumerate(table) if "error" in line]
     assert len(table) > head + 2
     program = download(page, "The run as a program", tmp_path)
@@ -126,7 +137,17 @@ HOSTILE = {
     f"{NAME} {{0}} loop.csv": LOOP,
 }
 """Files by their names; those that are not refused come last."""
-PLACES = "scene", "lesson", "case", "tab", "question", "plots", "file", "friction", MARKUP
+PLACES = (
+    "scene",
+    "lesson",
+    "case",
+    "tab",
+    "question",
+    "plots",
+    "file",
+    "friction",
+    MARKUP,
+)
 """In an address."""
 
 
@@ -164,7 +185,10 @@ def test_nothing_runs_that_a_file_says_or_is_called(
         for number, (name, text) in enumerate(HOSTILE.items()):
             folder = tmp_path / str(number)
             folder.mkdir()
-            before = said.inner_text() if number else ""
+            if number:
+                before = said.inner_text()
+            else:
+                before = ""
             upload(page, folder / name, text)
             expect(said).not_to_have_text(before)
         expect(said).to_contain_text(NAME)
@@ -186,8 +210,12 @@ def test_a_handler_in_an_element_does_not_run_should_a_text_become_one(
 ) -> None:
     page = chrome.new_page()
     page.goto(server.address)
-    with page.expect_console_message(lambda message: "Content Security Policy" in message.text):
-        page.evaluate("(text) => document.body.insertAdjacentHTML('beforeend', text)", HANDLER)
+    with page.expect_console_message(
+        lambda message: "Content Security Policy" in message.text
+    ):
+        page.evaluate(
+            "(text) => document.body.insertAdjacentHTML('beforeend', text)", HANDLER
+        )
     assert page.evaluate("window.ran") is None
     chrome.leave(page)
 

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import re
 
-from pages import ANSWER, Visit, button, close_dialog, field, figure, figures, is_solved, status
+from pages import (
+    ANSWER,
+    Visit,
+    button,
+    close_dialog,
+    field,
+    figure,
+    figures,
+    is_solved,
+    status,
+)
 from playwright.sync_api import Page, expect
 
 QUESTION = "Is a small indicator a small error?"
@@ -34,7 +44,9 @@ def follow(visit: Visit, code: str) -> Page:
     return page
 
 
-def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(visit: Visit) -> None:
+def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
+    visit: Visit,
+) -> None:
     page = visit()
     button(page, "Lessons").click()
     page.get_by_role("button", name=QUESTION).click()
@@ -48,8 +60,10 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(visit: Vis
     expect(button(page, "Handout")).to_be_visible()
     expect(page.get_by_text("{value:")).to_have_count(0)
     expect(figures(page)).to_be_visible()
-    # Bokeh's figures would not follow what moves them: longer numbers take no line more.
-    before, place = figures(page).inner_text(), page.locator(".figures").bounding_box()
+    # Bokeh's figures would not follow what moves them: longer numbers take no line
+    # more.
+    before = figures(page).inner_text()
+    place = page.locator(".figures").bounding_box()
     figure(page, 1).click(position={"x": 40, "y": 20})
     expect(figures(page)).not_to_have_text(before)
     assert page.locator(".figures").bounding_box() == place

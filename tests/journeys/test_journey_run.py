@@ -49,8 +49,8 @@ def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_a
     drag(page, scrub, 0.5, -4.0)
     expect(status(page)).to_contain_text(re.compile(rf"iteration \d+ of {last}"))
     page.mouse.up()
-    # Pictures follow a hand with some delay; counted back from the answer, which comes after the
-    # last iterate; not each was shown.
+    # Pictures follow a hand with some delay; counted back from the answer, which comes
+    # after the last iterate; not each was shown.
     wait_for(lambda: iteration(page) <= last + 1 + int(scrub.input_value()))
     back = iteration(page)
     page.locator(".sentence").click()
@@ -82,8 +82,11 @@ def has_plots_beside(page: Page) -> bool:
     return bool(scene and plot and scene["x"] + scene["width"] <= plot["x"])
 
 
-def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(visit: Visit) -> None:
-    page, told = visit("?pace=fastest"), [""]
+def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
+    visit: Visit,
+) -> None:
+    page = visit("?pace=fastest")
+    told = [""]
     sentence = page.locator(".sentence div").first
     for scene in CATALOGUE:
         button(page, scene.capitalize()).click()
@@ -118,9 +121,15 @@ def test_what_is_typed_runs_or_is_refused_beside_it_and_leaves_the_pinned_run_an
         typed.press("Enter")
         expect(figures(page)).to_contain_text(f"Force −{int(value) / 1000:g} kN")
     legend = "model('pulse').document._all_models"
-    holds(page, f"[...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
+    holds(
+        page,
+        f"[...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)",
+    )
     button(page, "Keep this run").click()
-    holds(page, f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
+    holds(
+        page,
+        f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)",
+    )
 
     hidden = f"[...{legend}.values()].filter(m => m.type === 'GlyphRenderer' && !m.visible).length"
     # The curve and its copy in the legend.
@@ -134,10 +143,14 @@ def test_what_is_typed_runs_or_is_refused_beside_it_and_leaves_the_pinned_run_an
     field(page, "Peak load").fill("1000")
     field(page, "Peak load").press("Enter")
     expect(figures(page)).to_contain_text("Force −1 kN")
-    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")
+    expect(page.get_by_role("tab", name="Loop")).to_have_attribute(
+        "aria-selected", "true"
+    )
     button(page, "Block").click()
     expect(page.locator(".sentence")).to_contain_text("block")
-    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")
+    expect(page.get_by_role("tab", name="Loop")).to_have_attribute(
+        "aria-selected", "true"
+    )
 
 
 def test_the_load_path_is_the_time_line_which_one_plays_and_stops(visit: Visit) -> None:
@@ -159,7 +172,9 @@ def test_the_load_path_is_the_time_line_which_one_plays_and_stops(visit: Visit) 
     expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
 
 
-def test_a_scene_plays_its_load_cycle_until_somebody_does_something(visit: Visit) -> None:
+def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
+    visit: Visit,
+) -> None:
     page = visit("?pace=fastest")
     is_solved(page)
     expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
@@ -168,7 +183,9 @@ def test_a_scene_plays_its_load_cycle_until_somebody_does_something(visit: Visit
     expect(figures(page)).to_contain_text(re.compile(r"Force −?\d\d? N"))
 
 
-def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(visit: Visit) -> None:
+def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(
+    visit: Visit,
+) -> None:
     page = visit(f"?{ENDLESS}")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
     button(page, "Run or pause").click()

@@ -24,7 +24,8 @@ BLOCK = (
     "top_tangential_load=[[0,0],[0.5,937242.781],[1,0]]"
 )
 FINE = ["bar elements=800", "bar elements=800 substructures=5 max_iterations=3000"]
-"""Bars that the paper's method leaves unsolved after a thousand iterations, some seconds each."""
+"""Bars that the paper's method leaves unsolved after a thousand iterations, some
+seconds each."""
 HARD = [
     *FINE,
     "bar elements=200",
@@ -36,7 +37,8 @@ HARD = [
     BLOCK,
     "layers poisson=0.4999",
 ]
-"""Commands that once were called converged with contact forces 0.2 to 11 per cent wrong."""
+"""Commands that once were called converged with contact forces 0.2 to 11 per cent
+wrong."""
 
 
 def from_words(command, **changes):
@@ -52,7 +54,9 @@ def outcome_of(settings):
 def test_the_papers_method_ends_right_or_told_on_a_hard_command(command):
     settings = from_words(command)
     # Its own tolerance, 1e-10, would hide what the accuracy says, and take long.
-    settings = settings.replace(method="paper", tolerance=settings.tolerance, max_iterations=1000)
+    settings = settings.replace(
+        method="paper", tolerance=settings.tolerance, max_iterations=1000
+    )
     outcome = outcome_of(settings)
     assert judge(outcome, settings.accuracy).verdict is not Verdict.WRONG, outcome
 
@@ -105,11 +109,15 @@ def test_friction_does_not_hide_behind_a_large_pressure(finish, friction):
 def test_an_error_is_that_of_friction_and_one_of_next_to_nothing_counts_beside_the_pressure(
     size, error
 ):
-    problem = discretise(BlockSettings.checked({"elements": 4, "elements_up": 2, "instants": 5}))
+    problem = discretise(
+        BlockSettings.checked({"elements": 4, "elements_up": 2, "instants": 5})
+    )
     normal = rules_of(problem).normal[:, None]
     exact = np.where(normal, 1.0, size) * np.ones(problem.n_instants)
     wrong = np.where(normal, 1.0, 1.5 * size) * np.ones(problem.n_instants)
     nowhere = np.zeros((problem.n_dofs, problem.n_instants))
-    distance = distance_to(SimpleNamespace(displacement=nowhere, contact_force=exact), problem)
+    distance = distance_to(
+        SimpleNamespace(displacement=nowhere, contact_force=exact), problem
+    )
     fields = SimpleNamespace(displacement=nowhere, contact_force=wrong)
     assert distance.of_friction_force(fields) == pytest.approx(error, rel=1e-2)

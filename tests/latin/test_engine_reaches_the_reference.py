@@ -53,7 +53,10 @@ def test_the_default_reaches_the_reference_in_fields_and_statuses():
     problem = discretise(chosen)
     reference = reference_of(problem)
     solution = solve(
-        problem, method_of(chosen), distance=distance_to(reference, problem), watch=False
+        problem,
+        method_of(chosen),
+        distance=distance_to(reference, problem),
+        watch=False,
     )
     assert solution.status.ending is Ending.CONVERGED
     last = solution.records[-1]
@@ -93,7 +96,9 @@ def test_the_decomposition_changes_the_path_and_not_the_limit(substructures):
     chosen = balanced(substructures)
     other = balanced(5)
     assert_reached(chosen)
-    assert relative(sample(chosen, 5).displacement, sample(other, 5).displacement) > 1e-3
+    assert (
+        relative(sample(chosen, 5).displacement, sample(other, 5).displacement) > 1e-3
+    )
 
 
 @pytest.mark.parametrize("k_scale", [0.3, 3.0])
@@ -101,11 +106,15 @@ def test_k_changes_the_path_and_not_the_limit(k_scale):
     chosen = options(**SMALL, k_scale=k_scale)
     assert_reached(chosen)
     plain = options(**SMALL)
-    assert relative(sample(chosen, 5).displacement, sample(plain, 5).displacement) > 1e-3
+    assert (
+        relative(sample(chosen, 5).displacement, sample(plain, 5).displacement) > 1e-3
+    )
 
 
 @pytest.mark.parametrize("substructures", [3, 6])
-def test_monoscale_and_multiscale_differ_on_the_way_and_agree_in_the_limit(substructures):
+def test_monoscale_and_multiscale_differ_on_the_way_and_agree_in_the_limit(
+    substructures,
+):
     multi, mono = (
         options(**{**SMALL, "substructures": substructures}, multiscale=multiscale)
         for multiscale in (True, False)
@@ -116,10 +125,23 @@ def test_monoscale_and_multiscale_differ_on_the_way_and_agree_in_the_limit(subst
 
 
 def test_the_bar_remembers_its_return_points():
-    forces = [0.0, 600.0, 1200.0, 300.0, 900.0, 500.0, 900.0, 300.0, 1200.0, -1200.0, 1200.0]
+    forces = [
+        0.0,
+        600.0,
+        1200.0,
+        300.0,
+        900.0,
+        500.0,
+        900.0,
+        300.0,
+        1200.0,
+        -1200.0,
+        1200.0,
+    ]
     chosen = options(**{**SMALL, "instants": len(forces)}, load=table(forces))
     iterate = assert_reached(chosen)
-    displacement, friction = iterate.displacement, iterate.friction_force
+    displacement = iterate.displacement
+    friction = iterate.friction_force
     for closes, opened in [(6, 4), (7, 3), (8, 2), (10, 2)]:
         assert relative(displacement[:, closes], displacement[:, opened]) < 1e-9
         assert relative(friction[1:, closes], friction[1:, opened]) < 1e-7
@@ -133,7 +155,9 @@ SCENES: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("changes", [{"method": "paper"}, {"linear_stage": "pgd"}], ids=str)
+@pytest.mark.parametrize(
+    "changes", [{"method": "paper"}, {"linear_stage": "pgd"}], ids=str
+)
 @pytest.mark.parametrize("scene", SCENES)
 def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(scene, changes):
     settings = CATALOGUE[scene].checked({**SCENES[scene], **changes})

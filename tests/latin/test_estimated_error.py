@@ -42,7 +42,9 @@ def small(scene: str, **changes: Any) -> Any:
 def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
     scene: str, method: str
 ) -> None:
-    settings = small(scene, method=method, finish="none", tolerance=1e-8, max_iterations=400)
+    settings = small(
+        scene, method=method, finish="none", tolerance=1e-8, max_iterations=400
+    )
     problem = discretise(settings)
     distance = distance_of(problem)
     proven = 0
@@ -72,7 +74,9 @@ def test_a_run_that_converges_is_as_accurate_as_was_asked(
 
 
 @pytest.mark.parametrize("scene", SMALL)
-def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scene: str) -> None:
+def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(
+    scene: str,
+) -> None:
     for accuracy in (1e-2, 1e-6):
         solution = solved(small(scene, accuracy=accuracy))
         assert solution.status.ending is Ending.CONVERGED
@@ -81,7 +85,9 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scen
         assert solution.records[-1].estimated_error == solution.iterate.residual
 
 
-@pytest.mark.parametrize(("scene", "is_by_increments"), [("bar", False), ("layers", True)])
+@pytest.mark.parametrize(
+    ("scene", "is_by_increments"), [("bar", False), ("layers", True)]
+)
 def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     scene: str, is_by_increments: bool
 ) -> None:
@@ -103,7 +109,9 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     settings = small("bar", finish="none")
     rules = StopState(method_of(settings))
     number = 20 if has_certificate else 1
-    for iterate in islice(iterations(discretise(settings), method_of(settings)), number):
+    for iterate in islice(
+        iterations(discretise(settings), method_of(settings)), number
+    ):
         known = rules.judge(iterate).certificate is not None
     assert known == has_certificate
     field = iterate.incoming.copy()
@@ -116,7 +124,9 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     assert verdict.finished is None
 
 
-def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_seconds_include_all_that_the_stop_rules_take(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     now = 0.0
 
     def clock() -> float:
@@ -129,7 +139,9 @@ def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.Monkey
     found = list(judged(discretise(settings), method_of(settings)))
     rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
     assert found[-1][0].residual is not None
-    assert rules == pytest.approx([100.0 * number for number in range(1, len(found) + 1)])
+    assert rules == pytest.approx(
+        [100.0 * number for number in range(1, len(found) + 1)]
+    )
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -170,8 +182,11 @@ def searched(scene: str) -> Solution:
 def test_the_search_ends_with_its_first_iterate_within_the_accuracy(scene: str) -> None:
     *iterates, answer = searched(scene).records
     assert [one.is_answer for one in iterates] == [False] * len(iterates)
-    # A run knows how far it is once a step has held; small ones know before they are near.
-    assert [one.error_force <= 0.01 for one in iterates] == [False] * (len(iterates) - 1) + [True]
+    # A run knows how far it is once a step has held; small ones know before they are
+    # near.
+    assert [one.error_force <= 0.01 for one in iterates] == [False] * (
+        len(iterates) - 1
+    ) + [True]
     assert answer.is_answer
     assert answer.error_force < 1e-7
 
@@ -182,7 +197,9 @@ def test_iterations_depend_on_k_and_the_answer_does_not() -> None:
         solution = ended(options("strand", k_scale=k))
         counts[k] = solution.iterate.iterations
         answer = searched("strand").iterate.contact_force
-        assert np.allclose(solution.iterate.contact_force, answer, atol=1e-9 * np.abs(answer).max())
+        assert np.allclose(
+            solution.iterate.contact_force, answer, atol=1e-9 * np.abs(answer).max()
+        )
     assert counts[0.1] > 1.5 * counts[1.0] < counts[10.0]
 
 
@@ -201,7 +218,11 @@ SMALL_BAR = {"elements": 40, "instants": 21, "substructures": 4}
 def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    changes = [word for name, value in SMALL_BAR.items() for word in ("--set", f"{name}={value}")]
+    changes = [
+        word
+        for name, value in SMALL_BAR.items()
+        for word in ("--set", f"{name}={value}")
+    ]
     file = tmp_path / "limited.npz"
     assert main(["run", "bar", *changes, "--limit", "1e-9", "--out", str(file)]) == 1
     out, err = capsys.readouterr()
@@ -214,7 +235,8 @@ def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converg
 
 def test_a_status_step_that_is_halted_is_tried_again_at_the_next_iterate() -> None:
     settings = small("block", finish="at-once")
-    problem, method = discretise(settings), method_of(settings)
+    problem = discretise(settings)
+    method = method_of(settings)
     asked: list[int] = []
     at_once = list(judged(problem, method, interrupted=lambda: bool(asked.append(0))))
     certified = at_once[-1][0].number

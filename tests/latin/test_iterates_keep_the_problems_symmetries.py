@@ -40,8 +40,16 @@ def test_scaling_or_reversing_the_load_does_so_to_the_answer(factor):
 @pytest.mark.parametrize("method", ["fast", "paper"])
 @pytest.mark.parametrize(
     ("metre", "newton", "second"),
-    [(1e3, 1.0, 1e3), (1.0 / 0.0254, 1.0 / 4.4482216152605, 1.0), (1e-3, 1e-9, 1.0 / 3600.0)],
-    ids=["millimetres and milliseconds", "inches and pounds", "kilometres, giganewtons and hours"],
+    [
+        (1e3, 1.0, 1e3),
+        (1.0 / 0.0254, 1.0 / 4.4482216152605, 1.0),
+        (1e-3, 1e-9, 1.0 / 3600.0),
+    ],
+    ids=[
+        "millimetres and milliseconds",
+        "inches and pounds",
+        "kilometres, giganewtons and hours",
+    ],
 )
 def test_other_units_give_the_same_iterates(method, metre, newton, second):
     def in_units(metre, newton, second):
@@ -57,7 +65,9 @@ def test_other_units_give_the_same_iterates(method, metre, newton, second):
         settings = BarSettings.checked({"method": method, **SMALL, **values})
         return iterates(settings, 40)
 
-    for own, other in zip(in_units(1.0, 1.0, 1.0), in_units(metre, newton, second), strict=True):
+    for own, other in zip(
+        in_units(1.0, 1.0, 1.0), in_units(metre, newton, second), strict=True
+    ):
         assert relative(other.displacement, own.displacement * metre) < 1e-10
         assert relative(other.friction_force, own.friction_force * newton) < 1e-10
 
@@ -81,11 +91,14 @@ def iterate_of(problem, k, displacement, force):
 @pytest.mark.parametrize("multiscale", [True, False])
 def test_the_latin_indicator_is_equation_2(number, multiscale):
     iterate = sample(options(**SMALL, multiscale=multiscale, k_scale=2.0), number)
-    problem, k = iterate.problem, iterate.k[:, None]
+    problem = iterate.problem
+    k = iterate.k[:, None]
     time_step = 1.0 / (problem.n_instants - 1)
 
     def squared(displacement, force):
-        return np.trapezoid((k * displacement**2 + force**2 / k).sum(axis=0), dx=time_step)
+        return np.trapezoid(
+            (k * displacement**2 + force**2 / k).sum(axis=0), dx=time_step
+        )
 
     linear = iterate.boundary_displacement, iterate.boundary_force
     local = iterate.local_displacement, iterate.boundary_local_force
@@ -98,7 +111,9 @@ def test_the_latin_indicator_is_equation_2(number, multiscale):
 @pytest.mark.parametrize(
     "change", [{}, {"body_force": 800.0, "support_displacement": 3e-4}], ids=str
 )
-def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(load, change):
+def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(
+    load, change
+):
     chosen = options(load=load, peak=1300.0, **change)
     problem = discretise(chosen)
     k = method_of(chosen).direction.of(problem)
@@ -109,7 +124,9 @@ def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(l
     for kind in (Contact, Dirichlet):
         (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
         moved = displacement.copy()
-        moved[law.rows] += 1e-3 * displacement.max() * random.normal(size=moved[law.rows].shape)
+        moved[law.rows] += (
+            1e-3 * displacement.max() * random.normal(size=moved[law.rows].shape)
+        )
         assert iterate_of(problem, k, moved, force).behaviour > 1e-6
     for kind in (Contact, Neumann):
         (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
@@ -121,7 +138,8 @@ def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(l
 @pytest.mark.parametrize("number", [1, 5, 40, 200])
 def test_the_behaviour_indicator_sees_no_k(number):
     iterate = sample(options(**SMALL), number)
-    displacement, force = iterate.boundary_displacement, iterate.boundary_force
+    displacement = iterate.boundary_displacement
+    force = iterate.boundary_force
     found = [
         iterate_of(iterate.problem, factor * iterate.k, displacement, force).behaviour
         for factor in (1e-3, 1.0, 40.0)
@@ -135,7 +153,9 @@ def short(**values):
     return BarSettings.checked({"method": "paper", "instants": 31, **values})
 
 
-@pytest.mark.parametrize("change", [{}, {"multiscale": False}, {"body_force": 800.0}], ids=str)
+@pytest.mark.parametrize(
+    "change", [{}, {"multiscale": False}, {"body_force": 800.0}], ids=str
+)
 @pytest.mark.parametrize("substructures", [1, 10])
 def test_dense_and_sparse_boundary_responses_agree(monkeypatch, change, substructures):
     chosen = short(substructures=substructures, **change)

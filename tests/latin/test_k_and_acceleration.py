@@ -24,11 +24,15 @@ def options(**changes: object) -> BarSettings:
 
 
 def within(solution, level: float) -> int:
-    return next(entry.iteration for entry in solution.records if entry.error_force <= level)
+    return next(
+        entry.iteration for entry in solution.records if entry.error_force <= level
+    )
 
 
 @pytest.mark.parametrize(
-    "changes", [*({"load": load} for load in PRESETS), {"peak": 300.0}, {"peak": 2400.0}], ids=str
+    "changes",
+    [*({"load": load} for load in PRESETS), {"peak": 300.0}, {"peak": 2400.0}],
+    ids=str,
 )
 def test_all_together_reach_one_percent_of_friction_force_early(changes):
     assert within(solved(options(max_iterations=30, **changes)), 0.01) <= 30
@@ -41,7 +45,9 @@ def test_a_run_starts_from_no_mesh_that_has_other_instants():
     fine = options(elements=1200, load=np.stack([times, wave], axis=1).tolist())
     assert fine.n_instants < len(times)
     for settings in (fine, options()):
-        assert all(len(coarse.instants) == settings.n_instants for coarse in settings.coarser())
+        assert all(
+            len(coarse.instants) == settings.n_instants for coarse in settings.coarser()
+        )
     assert len(next(options().coarser()).positions) == options().elements // 2 + 1
 
 
@@ -52,7 +58,9 @@ def test_a_run_starts_from_no_mesh_that_has_other_instants():
 )
 def test_iterations_to_one_percent_hardly_depend_on(setting, sizes, most):
     early = {"tolerance": 1e-20, "max_iterations": 60}
-    found = [within(solved(options(**early, **{setting: size})), 0.01) for size in sizes]
+    found = [
+        within(solved(options(**early, **{setting: size})), 0.01) for size in sizes
+    ]
     assert max(found) <= most * min(found)
 
 
@@ -94,7 +102,9 @@ def test_a_millionth_of_friction_force_takes_at_most_150_iterations(load):
 @pytest.mark.parametrize("substructures", [1, 10])
 def test_it_makes_the_plain_iteration_shorter(substructures):
     chosen = updating(substructures=substructures)
-    updated, plain = (errors(one, 300) for one in (chosen, chosen.replace(k_update="none")))
+    updated, plain = (
+        errors(one, 300) for one in (chosen, chosen.replace(k_update="none"))
+    )
     assert sum(updated > 1e-3) < sum(plain > 1e-3)
 
 
@@ -117,16 +127,23 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
     phases = [iterate.course.phase for iterate in found]
     assert [phase for phase, _ in groupby(phases)] == ["first", "updated", "returned"]
     # An iterate says what follows: the next is the first with the new k.
-    start, back = phases.index("updated") + 1, phases.index("returned") + 1
+    start = phases.index("updated") + 1
+    back = phases.index("returned") + 1
     assert (back - start) % TRIAL == 0
     assert np.array_equal(found[back].k, constant[0].k)
-    if back - start == TRIAL:  # from the state before the update, as if it had never been
-        assert np.allclose(found[back].local_incoming, constant[start].local_incoming, atol=1e-15)
+    if (
+        back - start == TRIAL
+    ):  # from the state before the update, as if it had never been
+        assert np.allclose(
+            found[back].local_incoming, constant[start].local_incoming, atol=1e-15
+        )
     assert distance_of(found[-1].problem).of_friction_force(found[-1]) < 1e-3
 
 
 @pytest.mark.parametrize("harm", [1.0, 1e-9])
-def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, harm):
+def test_a_run_without_acceleration_goes_on_from_any_checkpoint_to_the_bit(
+    monkeypatch, harm
+):
     monkeypatch.setattr(from_status, "SLIDING", harm * from_status.SLIDING)
     chosen = updating(**{**FAST, "acceleration": "none"})
     for place in (2, CALM, CALM + 1, CALM + TRIAL):

@@ -29,7 +29,13 @@ FAST = {
     "tolerance": 1e-3,
 }
 METHODS = {"paper": PAPER, "fast": FAST}
-OTHERS = {"friction": 0.4, "elements": 30, "accuracy": 1e-4, "k_scale": 2.0, "max_iterations": 77}
+OTHERS = {
+    "friction": 0.4,
+    "elements": 30,
+    "accuracy": 1e-4,
+    "k_scale": 2.0,
+    "max_iterations": 77,
+}
 BY_HAND = {"search_direction": "auto", "start": "zero", "tolerance": 1e-7}
 
 
@@ -50,7 +56,11 @@ def test_a_method_sets_all_its_parts_of_the_bar(method):
 def test_what_is_called_a_default_is_what_the_fast_method_sets(scene):
     kind = CATALOGUE[scene]
     assert kind.checked({}).method == "fast"
-    assert kind().values() == kind.checked({}).values() == kind.checked({"method": "fast"}).values()
+    assert (
+        kind().values()
+        == kind.checked({}).values()
+        == kind.checked({"method": "fast"}).values()
+    )
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -72,9 +82,14 @@ def test_another_method_brings_its_parts_and_all_else_stays(method, change):
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("method_first", [True, False])
-def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first, tmp_path):
+def test_what_is_set_beside_a_method_is_kept_by_every_front(
+    method, method_first, tmp_path
+):
     named = {"method": method}
-    values = named | BY_HAND if method_first else BY_HAND | named
+    if method_first:
+        values = named | BY_HAND
+    else:
+        values = BY_HAND | named
     expected = METHODS[method] | BY_HAND
     assert parts(BarSettings.checked(values)) == expected
     words = [f"{name}={value}" for name, value in values.items()]

@@ -22,7 +22,10 @@ SMALL = {"elements": 32, "elements_up": 16, "instants": 41}
 
 
 def errors_of(scene, most, **values):
-    size = SMALL if scene == "block" else {"instants": 41}
+    if scene == "block":
+        size = SMALL
+    else:
+        size = {"instants": 41}
     return errors(settings_of(scene, **{**size, **values}), most)
 
 
@@ -34,7 +37,9 @@ def within(found, level):
 
 @pytest.mark.parametrize("acceleration", ["anderson", "none"])
 @pytest.mark.parametrize("gap", ["parabola", "flat"])
-def test_twenty_thousand_unknowns_come_within_one_percent_in_fifteen_iterations(gap, acceleration):
+def test_twenty_thousand_unknowns_come_within_one_percent_in_fifteen_iterations(
+    gap, acceleration
+):
     settings = settings_of(
         "block",
         elements=96,
@@ -64,8 +69,11 @@ def test_iterations_to_one_percent_hardly_grow_from_four_to_sixty_four_substruct
 
 
 HERE = np.linspace(0.0, 1.0, 17)
-LEANING = Side(Given(True, 1e-4 * HERE, 0.0 * HERE), Given(False, 0.0 * HERE, 0.0 * HERE))
-"""A side whose horizontal displacement is prescribed: it rubs on the support as it moves."""
+LEANING = Side(
+    Given(True, 1e-4 * HERE, 0.0 * HERE), Given(False, 0.0 * HERE, 0.0 * HERE)
+)
+"""A side whose horizontal displacement is prescribed: it rubs on the support as it
+moves."""
 CASES = {
     "pressed, then sheared back and forth": {},
     "much friction": {"friction": 1.0, "shear": 0.5},
@@ -92,7 +100,8 @@ def test_converged_latin_is_the_reference_and_shows_the_same_at_every_interface(
     assert distance.of_friction_force(iterate) < 1e-6
     size = np.abs(reference.displacement).max()
     for name in problem.rubbing:
-        ours, theirs = iterate.contact(name), reference.contact(name)
+        ours = iterate.contact(name)
+        theirs = reference.contact(name)
         np.testing.assert_allclose(ours.opening, theirs.opening, atol=1e-5 * size)
         np.testing.assert_allclose(ours.slip, theirs.slip, atol=1e-5 * size)
 
@@ -100,12 +109,15 @@ def test_converged_latin_is_the_reference_and_shows_the_same_at_every_interface(
 def test_the_tilted_block_lifts_off_and_comes_back():
     reference = reference_of(block(**CASES["tilted until it lifts off"]).discretise())
     status = reference.contact("support").status
-    opened, closed = np.diff((status == OPEN).astype(int), axis=1) > 0, status[:, -1] != OPEN
+    opened = np.diff((status == OPEN).astype(int), axis=1) > 0
+    closed = status[:, -1] != OPEN
     assert (opened[:, 3:].any(axis=1) & closed).sum() > 3
 
 
 def test_only_forces_that_a_support_does_not_share_are_compared():
-    wall = Side(Given(True, 0.0 * HERE, 0.0 * HERE), Given(True, -1e-4 * HERE, 0.0 * HERE))
+    wall = Side(
+        Given(True, 0.0 * HERE, 0.0 * HERE), Given(True, -1e-4 * HERE, 0.0 * HERE)
+    )
     for side, points in ((LEANING, 13), (wall, 12)):
         problem = block(left=side).discretise()
         assert len(problem.rubbing["support"].positions) == points

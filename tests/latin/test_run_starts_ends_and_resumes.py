@@ -20,7 +20,17 @@ from scipy import sparse
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from solver.arrays import sparse_factor
-from solver.latin import PGD, Auto, Checkpoint, Ending, Latin, Paper, Stop, iterations, solve
+from solver.latin import (
+    PGD,
+    Auto,
+    Checkpoint,
+    Ending,
+    Latin,
+    Paper,
+    Stop,
+    iterations,
+    solve,
+)
 from solver.latin.iteration import Iteration
 from solver.latin.stages import coarse, response
 from solver.latin.stages.blocks import Blocks, one_blas_thread
@@ -51,7 +61,11 @@ def test_without_load_the_run_stops_at_once(multiscale):
         {"substructures": 1},
         {"elements": 53, "substructures": 7},
         {"load": "random", "peak": 2400.0},
-        {"body_force": 1000.0, "support_displacement": 5e-4, "friction_profile": "rising"},
+        {
+            "body_force": 1000.0,
+            "support_displacement": 5e-4,
+            "friction_profile": "rising",
+        },
     ],
     ids=str,
 )
@@ -74,7 +88,9 @@ def test_started_at_the_reference_the_run_stops_at_once(change):
     assert solution.records[-1].error_force < 1e-8
 
 
-@pytest.mark.parametrize("change", [{}, {"multiscale": False}, {"body_force": 500.0}], ids=str)
+@pytest.mark.parametrize(
+    "change", [{}, {"multiscale": False}, {"body_force": 500.0}], ids=str
+)
 @pytest.mark.parametrize("elements", [30, 32])
 def test_resuming_from_a_checkpoint_continues_bit_by_bit(change, elements):
     assert_goes_on(options(**{**SMALL, "elements": elements}, **change), 12, 6)
@@ -136,8 +152,18 @@ def test_a_run_whose_numbers_overflow_says_where_and_keeps_the_last_good_iterate
 
 
 LARGE = {
-    "block": {"elements": 192, "elements_up": 96, "substructures": 8, "substructures_up": 4},
-    "layers": {"elements": 192, "elements_up": 16, "substructures": 8, "search_direction": "paper"},
+    "block": {
+        "elements": 192,
+        "elements_up": 96,
+        "substructures": 8,
+        "substructures_up": 4,
+    },
+    "layers": {
+        "elements": 192,
+        "elements_up": 16,
+        "substructures": 8,
+        "search_direction": "paper",
+    },
     "bar": {"elements": 2000, "acceleration": "anderson"},
     "strand": {"elements": 800},
 }
@@ -152,13 +178,21 @@ def test_iterates_are_the_same_to_the_bit_whatever_the_threads(scene):
     assert np.array_equal(one.local_displacement, several.local_displacement)
 
 
-def test_blas_has_one_thread_while_an_iteration_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blas_has_one_thread_while_an_iteration_lasts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def threads() -> set[int]:
-        return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
+        return {
+            each["num_threads"]
+            for each in threadpool_info()
+            if each["user_api"] == "blas"
+        }
 
     seen: list[set[int]] = []
     stage = Iteration.linear_stage
-    monkeypatch.setattr(Iteration, "linear_stage", lambda at: (seen.append(threads()), stage(at)))
+    monkeypatch.setattr(
+        Iteration, "linear_stage", lambda at: (seen.append(threads()), stage(at))
+    )
     settings = BarSettings.checked(SMALL_BAR)
     with threadpool_limits(2, user_api="blas"):
         for _ in islice(iterations(discretise(settings), method_of(settings)), 2):
@@ -171,7 +205,12 @@ def test_blas_has_one_thread_while_an_iteration_lasts(monkeypatch: pytest.Monkey
     assert seen == [{1}, {1}]
 
 
-SMALL_BAR = {"elements": 20, "instants": 11, "substructures": 4, "search_direction": "paper"}
+SMALL_BAR = {
+    "elements": 20,
+    "instants": 11,
+    "substructures": 4,
+    "search_direction": "paper",
+}
 
 
 def test_a_sparse_factor_tells_a_singular_matrix_from_memory_that_is_short(
@@ -192,7 +231,9 @@ def singular(*arguments: Any, **options: Any) -> Any:
     raise LinAlgError("Factor is exactly singular")
 
 
-@pytest.mark.parametrize("module", [response, coarse], ids=["substructure", "coarse problem"])
+@pytest.mark.parametrize(
+    "module", [response, coarse], ids=["substructure", "coarse problem"]
+)
 def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
     module: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -217,5 +258,7 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
     ],
 )
 def test_a_part_refuses_its_own_numbers(make: Callable[[], object], name: str) -> None:
-    with pytest.raises(RefusedError, match=rf"^{name} = .* is refused; allowed: a (whole )?number"):
+    with pytest.raises(
+        RefusedError, match=rf"^{name} = .* is refused; allowed: a (whole )?number"
+    ):
         make()

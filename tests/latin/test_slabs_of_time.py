@@ -31,7 +31,10 @@ ROUGH = replace(TIGHT, stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=400))
 LOADED: dict[str, dict[str, Any]] = {
     "block": {
         **{"elements": 16, "elements_up": 8, "substructures": 2},
-        **{"top_normal_load": [[0.0, 0.0], [0.25, -4e-5]], "top_tangential_displacement": 2e-5},
+        **{
+            "top_normal_load": [[0.0, 0.0], [0.25, -4e-5]],
+            "top_tangential_displacement": 2e-5,
+        },
         "top_tangential_load": "sine",
     },
     "bar": {"load": "sine", "elements": 20, "substructures": 4},
@@ -57,9 +60,13 @@ def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
         ("incline", {}),
     ],
 )
-def test_they_have_the_solution_of_the_whole(scene: str, changes: dict[str, Any]) -> None:
+def test_they_have_the_solution_of_the_whole(
+    scene: str, changes: dict[str, Any]
+) -> None:
     problem = cyclic(scene, 3, **changes)
-    found = solve_in_slabs(problem, TIGHT, CYCLE + 2)  # neither a cycle, nor a part of the whole
+    found = solve_in_slabs(
+        problem, TIGHT, CYCLE + 2
+    )  # neither a cycle, nor a part of the whole
     distance = distance_of(problem)
     assert distance.of_friction_force(found.iterate) < 1e-6
     assert distance.of_displacement(found.iterate) < 1e-6
@@ -68,7 +75,8 @@ def test_they_have_the_solution_of_the_whole(scene: str, changes: dict[str, Any]
 
 def test_what_repeats_itself_takes_one_iteration() -> None:
     problem = cyclic("block", 6)
-    slab, counts = first_slab(problem, ROUGH, CYCLE), []
+    slab = first_slab(problem, ROUGH, CYCLE)
+    counts = []
     while slab is not None:
         found = solve(slab.problem, slab.latin, start=slab.start)
         counts.append(len(found.records))
@@ -98,8 +106,19 @@ def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
     assert ended.iterate.displacement.shape == (problem.n_dofs, problem.n_instants)
 
 
-def test_the_command_solves_in_slabs(capsys: pytest.CaptureFixture[str], tmp_path: Any) -> None:
-    asked = ["run", "bar", "--set", "load=cycles", "--set", "elements=20", "--set", "instants=33"]
+def test_the_command_solves_in_slabs(
+    capsys: pytest.CaptureFixture[str], tmp_path: Any
+) -> None:
+    asked = [
+        "run",
+        "bar",
+        "--set",
+        "load=cycles",
+        "--set",
+        "elements=20",
+        "--set",
+        "instants=33",
+    ]
     out = tmp_path / "result.npz"
     assert main([*asked, "--slab", "10", "--json", "--out", str(out)]) == 0
     said = json.loads(capsys.readouterr().out)

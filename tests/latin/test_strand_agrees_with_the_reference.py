@@ -17,7 +17,8 @@ from solver.settings.definitions import SettingError
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 FAST = {"finish": "none"}
-"""The iteration itself has to get there, without a solver that is much like the reference."""
+"""The iteration itself has to get there, without a solver that is much like the
+reference."""
 
 
 def options(**changes: object) -> StrandSettings:
@@ -32,7 +33,9 @@ def test_converged_latin_is_the_reference(wires, broken, grip):
     reference = reference_of(problem)
     assert reference.converged.all()
     assert reference.residual <= 1e-10
-    last = solve(problem, method_of(settings), distance=distance_to(reference, problem)).records[-1]
+    last = solve(
+        problem, method_of(settings), distance=distance_to(reference, problem)
+    ).records[-1]
     assert last.error_displacement < 1e-6
     assert last.error_force < 1e-6
 
@@ -54,13 +57,16 @@ def test_only_the_four_forces_at_an_inner_break_balance_each_other(wires):
 @pytest.mark.parametrize("grip", ["force", "displacement"])
 def test_where_nothing_rubs_the_force_error_is_relative_to_what_pulls(grip):
     settings = options(broken=0, wires=4, grip=grip)
-    problem, pull = discretise(settings), settings.structure().load
+    problem = discretise(settings)
+    pull = settings.structure().load
     reference = reference_of(problem)
     assert np.abs(reference.contact_force).max() < 1e-10
     wrong = replace(reference, contact_force=reference.contact_force + 0.01 * pull)
     found = distance_to(reference, problem).of_friction_force(wrong)
     # Each of these forces is one per cent of what pulls each of the four wires.
-    assert found == pytest.approx(0.01 * np.sqrt(len(wrong.contact_force) / 4.0), rel=1e-9)
+    assert found == pytest.approx(
+        0.01 * np.sqrt(len(wrong.contact_force) / 4.0), rel=1e-9
+    )
 
 
 PLAIN = {"method": "paper"}
@@ -108,7 +114,9 @@ def apart(one, other):
     ],
     ids=str,
 )
-def test_every_method_and_any_number_of_substructures_reach_the_same_solution(known, change):
+def test_every_method_and_any_number_of_substructures_reach_the_same_solution(
+    known, change
+):
     assert apart(solution_of(by_paper(**change)), known) < 2e-5
 
 
@@ -122,7 +130,11 @@ def test_every_method_and_any_number_of_substructures_reach_the_same_solution(kn
         ({"peak": 800.0, "broken": 1}, "peak", "tensions below 750 N"),
         ({"friction": 0.0}, "peak", "raise friction or pressure"),
         ({"load": [[0.0, 1500.0]]}, "load", "move the break to the left"),
-        ({"wires": 200, "elements": 2000, "instants": 101}, "instants", "fewer instants"),
+        (
+            {"wires": 200, "elements": 2000, "instants": 101},
+            "instants",
+            "fewer instants",
+        ),
     ],
     ids=str,
 )

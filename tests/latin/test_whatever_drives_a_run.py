@@ -1,7 +1,7 @@
 """Runs without loads: overlaps and prescribed displacements drive as loads do, whatever their size.
 
-The smallest and the largest sizes are far from any that is physical: what is rounding is so beside
-what drives, and not beside one newton or one metre.
+The smallest and the largest sizes are far from any that is physical: what is rounding
+is so beside what drives, and not beside one newton or one metre.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ from solver.settings.load_paths import PRESETS
 
 PLANE = {"elements": 12, "elements_up": 6, "substructures": 2, "instants": 9}
 RODS = {"elements": 20, "instants": 21}
-YOUNG, POISSON, WEIGHT = 2.1e11, 0.3, 7.8e4
+YOUNG = 2.1e11
+POISSON = 0.3
+WEIGHT = 7.8e4
 
 
 def gap(left: float, right: float) -> list[list[float]]:
@@ -52,11 +54,23 @@ def driven(size: float) -> dict[str, tuple[str, dict[str, Any]]]:
         ),
         "a stack that is bent": (
             "layers",
-            {**PLANE, "elements_up": 2, "layers": 3, "pressure": 0.0, "deflection": size},
+            {
+                **PLANE,
+                "elements_up": 2,
+                "layers": 3,
+                "pressure": 0.0,
+                "deflection": size,
+            },
         ),
-        "a support that moves": ("bar", {**RODS, "peak": 0.0, "support_displacement": size}),
+        "a support that moves": (
+            "bar",
+            {**RODS, "peak": 0.0, "support_displacement": size},
+        ),
         "a grip that moves": ("strand", {**RODS, "grip": "displacement", "peak": size}),
-        "a strand that is bent": ("rope", {**RODS, "layers": 2, "curvature": min(size, 1e3)}),
+        "a strand that is bent": (
+            "rope",
+            {**RODS, "layers": 2, "curvature": min(size, 1e3)},
+        ),
     }
 
 

@@ -1,6 +1,7 @@
 """A law that no incremental solver knows: LATIN solves it, and nobody claims a proof of it.
 
-References here are dense time stepping that reads nothing of the engine but the stiffness.
+References here are dense time stepping that reads nothing of the engine but the
+stiffness.
 """
 
 from __future__ import annotations
@@ -19,7 +20,15 @@ from solver.discrete.problem import nothing_acts
 from solver.latin import PGD, Ending, Solution, Stop, solve_in_slabs
 from solver.latin.end.cost import run_cost
 from solver.latin.stages.sliding_body import slide_of
-from solver.laws import Component, Contact, Friction, Interface, Neumann, Perfect, Strength
+from solver.laws import (
+    Component,
+    Contact,
+    Friction,
+    Interface,
+    Neumann,
+    Perfect,
+    Strength,
+)
 from solver.laws.interface import IncrementalForm, Rule
 from solver.laws.unilateral import ContactRule
 from solver.reference.assembly import NoReferenceError, assembled_stiffness
@@ -38,12 +47,17 @@ EXACT = Latin(stop=Stop(accuracy=1e-4, tolerance=1e-10, iterations=3000))
 
 def viscous(rows: Indices, damping: Array, force: Array, k: Array) -> Rule:
     """The local stage of F = F_d - c dW/dt, by backward Euler from rest."""
-    stiffness, per_step = k[rows], damping / STEP
+    stiffness = k[rows]
+    per_step = damping / STEP
 
     def rule(incoming: Array, displacement: Array, _instants: slice) -> None:
         before = np.zeros(len(rows))
         for instant in range(len(T)):
-            given = stiffness * incoming[rows, instant] + force[:, instant] + per_step * before
+            given = (
+                stiffness * incoming[rows, instant]
+                + force[:, instant]
+                + per_step * before
+            )
             before = given / (stiffness + per_step)
             displacement[rows, instant] = before
 
@@ -98,7 +112,9 @@ def damped(law: type[Interface], damping: float = 2.0, **rest: Any) -> Problem:
     of = bar()
     load: Any = of.interfaces["load"]
     if law is Dashpot:
-        return with_law(of, "load", Dashpot(load.rows, np.array([damping]), load.values))
+        return with_law(
+            of, "load", Dashpot(load.rows, np.array([damping]), load.values)
+        )
     assert law is DampedLoad
     return with_law(of, "load", DampedLoad(load.rows, load.values, load.macro, damping))
 
@@ -106,7 +122,8 @@ def damped(law: type[Interface], damping: float = 2.0, **rest: Any) -> Problem:
 def stepped(of: Problem, load: Array, damping: Array, bound: Array) -> Array:
     """Dense time stepping, node by node until nothing changes, (n_dofs, n_instants), scaled.
 
-    The increment minimises an energy with a term |v| at each node, held at the first of them.
+    The increment minimises an energy with a term |v| at each node, held at the first of
+    them.
     """
     matrix = assembled_stiffness(of).toarray() + np.diag(damping / STEP)
     elastic = matrix - np.diag(damping / STEP)
@@ -118,7 +135,9 @@ def stepped(of: Problem, load: Array, damping: Array, bound: Array) -> Array:
         for _ in range(3000):
             before = step.copy()
             for node in range(1, len(step)):
-                left = pull[node] - matrix[node] @ step + matrix[node, node] * step[node]
+                left = (
+                    pull[node] - matrix[node] @ step + matrix[node, node] * step[node]
+                )
                 rest = max(abs(left) - bound[node], 0.0)
                 step[node] = np.copysign(rest, left) / matrix[node, node]
             if np.abs(step - before).max() <= 1e-16:
@@ -130,10 +149,13 @@ def stepped(of: Problem, load: Array, damping: Array, bound: Array) -> Array:
 
 def exact_of_damped(damping: float = 2.0) -> Array:
     of = bar()
-    law, units = of.friction, of.scales
+    law = of.friction
+    units = of.scales
     bound = law.by_point(law.tangential.bound)[:, 0]
-    load, dampers = np.zeros((9, len(T))), np.zeros(9)
-    load[-1], dampers[-1] = PULL / units.force, damping
+    load = np.zeros((9, len(T)))
+    dampers = np.zeros(9)
+    load[-1] = PULL / units.force
+    dampers[-1] = damping
     return stepped(of, load, dampers, bound) * units.displacement
 
 
@@ -141,12 +163,18 @@ def is_honest(solution: Solution) -> bool:
     """Whether a run has ended without claiming a proof."""
     assert not solution.is_certified
     assert "ertified" not in solution.status.advice
-    return solution.status.ending in (Ending.CONVERGED, Ending.EXHAUSTED, Ending.STALLED)
+    return solution.status.ending in (
+        Ending.CONVERGED,
+        Ending.EXHAUSTED,
+        Ending.STALLED,
+    )
 
 
 @pytest.mark.parametrize("law", [Dashpot, DampedLoad])
 @pytest.mark.parametrize("damping", [0.2, 2.0, 50.0])
-def test_a_damper_is_solved_and_ends_by_estimate(law: type[Interface], damping: float) -> None:
+def test_a_damper_is_solved_and_ends_by_estimate(
+    law: type[Interface], damping: float
+) -> None:
     of = damped(law, damping)
     solution = solve(of, EXACT)
     assert is_honest(solution)
@@ -165,14 +193,16 @@ def test_an_estimate_is_no_smaller_than_the_error(damping: float) -> None:
     exact = solve(of, EXACT).iterate
     law: Any = of.interfaces["load"]
     for rows in (of.friction.tangent.above, law.rows):
-        found, expected = rough.boundary_force[rows], exact.boundary_force[rows]
+        found = rough.boundary_force[rows]
+        expected = exact.boundary_force[rows]
         assert np.linalg.norm(found - expected) <= 0.01 * np.linalg.norm(expected)
 
 
 def test_a_support_of_dampers_alone_needs_no_contact() -> None:
     """Dampers all along: (K + C/dt) u = F + C/dt u of the instant before."""
     of = bar()
-    friction, units = of.friction, of.scales
+    friction = of.friction
+    units = of.scales
     damping = 3.0 * friction.weights
     force = np.zeros((len(damping), len(T)))
     law = Dashpot(friction.tangent.above, damping, force)
@@ -198,7 +228,9 @@ class HalfContact(Contact):
 class HalfFriction(Friction):
     """Friction that says of itself that it is half as large."""
 
-    def without_slip(self, pressing: Array | None, opening: Array | None = None) -> Array:
+    def without_slip(
+        self, pressing: Array | None, opening: Array | None = None
+    ) -> Array:
         return 0.5 * super().without_slip(pressing, opening)
 
 
@@ -232,7 +264,8 @@ def test_two_contacts_of_one_kind_keep_their_own_local_stages() -> None:
     of = bar()
     whole = of.friction
     rows = whole.tangent.above
-    left, right = np.flatnonzero(whole.points < 5), np.flatnonzero(whole.points >= 5)
+    left = np.flatnonzero(whole.points < 5)
+    right = np.flatnonzero(whole.points >= 5)
 
     def part(kind: type[Contact], own: Indices) -> Contact:
         points = whole.points[own] - whole.points[own].min()
@@ -251,7 +284,8 @@ def test_two_contacts_of_one_kind_keep_their_own_local_stages() -> None:
 
     others = {name: law for name, law in of.interfaces.items() if name != "friction"}
     halved = replace(
-        of, interfaces={**others, "a": part(Contact, left), "b": part(HalfContact, right)}
+        of,
+        interfaces={**others, "a": part(Contact, left), "b": part(HalfContact, right)},
     )
     solution = solve(halved, EXACT)
     assert is_honest(solution)
@@ -287,7 +321,9 @@ def glued_apart() -> Problem:
     """Two bodies that are glued, of degrees of freedom of their own."""
     random = np.random.default_rng(1)
     parts = [
-        substructure(stiffness(random, 2), (2 * one, 2 * one), random.normal(size=(2, 5)))
+        substructure(
+            stiffness(random, 2), (2 * one, 2 * one), random.normal(size=(2, 5))
+        )
         for one in range(2)
     ]
     law = support_of(np.array([0, 2]))
@@ -309,14 +345,18 @@ def uneven_pairs() -> Problem:
     """Two pairs of one point whose degrees of freedom differ."""
     random = np.random.default_rng(2)
     part = substructure(stiffness(random, 2), (0, 0), random.normal(size=(2, 5)))
-    law = replace(support_of(np.arange(2)), points=np.zeros(2, int), positions=np.zeros(1))
+    law = replace(
+        support_of(np.arange(2)), points=np.zeros(2, int), positions=np.zeros(1)
+    )
     return problem([part], {"support": law}, 5)
 
 
 def without_contact() -> Problem:
     of = bar()
     law = of.friction
-    free = Neumann(law.rows, np.zeros((len(law.rows), len(T))), np.zeros((len(law.rows), 0)))
+    free = Neumann(
+        law.rows, np.zeros((len(law.rows), len(T))), np.zeros((len(law.rows), 0))
+    )
     return with_law(of, "friction", free)
 
 
@@ -333,10 +373,16 @@ UNREAD: dict[str, tuple[Callable[[], Problem], str]] = {
 
 
 @pytest.mark.parametrize("case", UNREAD)
-def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(case: str) -> None:
+def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
+    case: str,
+) -> None:
     make, words = UNREAD[case]
     of = make()
-    for judge in (reference_of, fingerprint, lambda some: shakedown_limit(some, slice(None))):
+    for judge in (
+        reference_of,
+        fingerprint,
+        lambda some: shakedown_limit(some, slice(None)),
+    ):
         with pytest.raises(NoReferenceError, match=words) as refused:
             judge(of)
         assert "judge the run by its estimate" in str(refused.value)
@@ -348,7 +394,9 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
 
 def test_bases_that_nothing_can_prove_do_not_converge() -> None:
     """What is converged on a few modes need not be near the answer."""
-    method = Latin(linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40))
+    method = Latin(
+        linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40)
+    )
     solution = solve(damped(Dashpot), method)
     assert is_honest(solution)
     assert solution.status.ending is not Ending.CONVERGED
@@ -371,7 +419,9 @@ def test_something_may_act_where_a_law_is_not_known() -> None:
 
 
 @pytest.mark.parametrize("law", [Dashpot, DampedLoad])
-def test_slabs_of_time_refuse_what_remembers_more_than_sliders(law: type[Interface]) -> None:
+def test_slabs_of_time_refuse_what_remembers_more_than_sliders(
+    law: type[Interface],
+) -> None:
     with pytest.raises(RefusedError, match="load"):
         solve_in_slabs(damped(law), Latin(), 4)
 
@@ -424,8 +474,12 @@ def test_a_cap_on_friction_of_known_bound_is_kept_by_both() -> None:
     assert searched == pytest.approx(expected, abs=1e3 * size)
 
 
-def test_a_body_that_slides_as_a_whole_is_not_shifted_where_something_else_pulls() -> None:
-    settings = CATALOGUE["incline"].checked({"elements": 8, "elements_up": 4, "instants": 9})
+def test_a_body_that_slides_as_a_whole_is_not_shifted_where_something_else_pulls() -> (
+    None
+):
+    settings = CATALOGUE["incline"].checked(
+        {"elements": 8, "elements_up": 4, "instants": 9}
+    )
     of = discretise(settings)
     k = np.ones(of.n_rows)
     assert slide_of(of, k) is not None
@@ -434,7 +488,9 @@ def test_a_body_that_slides_as_a_whole_is_not_shifted_where_something_else_pulls
     assert slide_of(with_law(of, "spring", law), k) is None
 
 
-@pytest.mark.parametrize("stop", [Stop(accuracy=0.01), Stop(accuracy=0.01, tolerance=1e-3)])
+@pytest.mark.parametrize(
+    "stop", [Stop(accuracy=0.01), Stop(accuracy=0.01, tolerance=1e-3)]
+)
 def test_without_contact_an_estimate_is_no_smaller_than_the_error(stop: Stop) -> None:
     """All that acts is a force at the end: u = F x / ES."""
     solution = solve(without_contact(), Latin(stop=stop))

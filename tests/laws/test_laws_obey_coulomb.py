@@ -26,8 +26,13 @@ REACH = st.floats(0.0, 1e6)
 def targets_and_reaches(draw, varying=True):
     """Targets, and reaches that vary over points, and over instants too where wanted."""
     shape = draw(SHAPES)
-    each = shape if varying and draw(st.booleans()) else shape[:1]
-    return draw(arrays(float, shape, elements=REAL)), draw(arrays(float, each, elements=REACH))
+    if varying and draw(st.booleans()):
+        each = shape
+    else:
+        each = shape[:1]
+    return draw(arrays(float, shape, elements=REAL)), draw(
+        arrays(float, each, elements=REACH)
+    )
 
 
 def dominating(target):
@@ -45,7 +50,8 @@ def test_play_is_coulombs_law(case):
     before = np.concatenate([np.zeros((len(target), 1)), position[:, :-1]], axis=1)
     rounding = 2.0 * EPS * (np.abs(target) + bound)
     assert np.all(np.abs(position - target) <= bound + rounding)
-    forward, backward = position > before, position < before
+    forward = position > before
+    backward = position < before
     assert np.array_equal(position[forward], (target - bound)[forward])
     assert np.array_equal(position[backward], (target + bound)[backward])
     inside = (target - bound <= before) & (before <= target + bound)
@@ -65,7 +71,10 @@ def test_play_is_monotone_in_its_target(case, data):
 def test_play_is_causal(case):
     target, reach = case
     half = target.shape[1] // 2 + 1
-    some = reach[:, :half] if reach.ndim == 2 else reach
+    if reach.ndim == 2:
+        some = reach[:, :half]
+    else:
+        some = reach
     assert np.array_equal(play(target[:, :half], some), play(target, reach)[:, :half])
 
 
@@ -80,14 +89,16 @@ def test_instants_on_the_way_change_nothing(case, share):
         np.maximum(target[:, :-1], target[:, 1:]),
     )
     finer = np.empty((len(target), 2 * target.shape[1] - 1))
-    finer[:, ::2], finer[:, 1::2] = target, between
+    finer[:, ::2] = target
+    finer[:, 1::2] = between
     assert np.array_equal(play(finer, reach)[:, ::2], play(target, reach))
 
 
 @ANY
 @given(targets_and_reaches(varying=False), st.floats(-1.0, 1.0))
 def test_a_closed_loop_inside_the_past_leaves_no_trace(case, turn):
-    target, reach = case[0][:1], case[1][:1]
+    target = case[0][:1]
+    reach = case[1][:1]
     top = dominating(target)
     loop = np.array([[turn * target[0, top], target[0, top]]])
     longer = np.concatenate([target[:, : top + 1], loop, target[:, top + 1 :]], axis=1)
@@ -113,7 +124,9 @@ def test_what_a_point_does_depends_on_no_other(n_points):
 
 
 @pytest.mark.parametrize("substructures", [1, 7])
-def test_the_local_stage_obeys_all_linear_laws_along_its_search_direction(substructures):
+def test_the_local_stage_obeys_all_linear_laws_along_its_search_direction(
+    substructures,
+):
     options = BarSettings.checked(
         {
             "elements": 20,
@@ -125,7 +138,9 @@ def test_the_local_stage_obeys_all_linear_laws_along_its_search_direction(substr
     )
     problem = discretise(options)
     k = method_of(options).direction.of(problem)
-    incoming = np.random.default_rng(3).normal(size=(problem.n_rows, problem.n_instants))
+    incoming = np.random.default_rng(3).normal(
+        size=(problem.n_rows, problem.n_instants)
+    )
     incoming *= problem.friction.tangential.bound.max() / k.min()
     stage = LocalStage(problem, k, Blocks(problem.n_rows, problem.n_instants))
     outgoing = stage(np.asfortranarray(incoming))

@@ -32,7 +32,9 @@ def test_a_generous_basis_follows_the_full_stage():
     assert reduced.status.ending is full.status.ending is Ending.CONVERGED
     assert len(reduced.records) == len(full.records)
     for one, other in zip(reduced.records, full.records, strict=True):
-        assert one.error_displacement == pytest.approx(other.error_displacement, rel=0.1)
+        assert one.error_displacement == pytest.approx(
+            other.error_displacement, rel=0.1
+        )
         assert one.error_force == pytest.approx(other.error_force, rel=0.1)
 
 
@@ -41,7 +43,8 @@ def test_the_default_basis_reaches_one_percent_of_displacement(substructures, mo
     solution = solved(options(substructures=substructures, max_iterations=300))
     assert min(entry.error_displacement for entry in solution.records) < 0.01
     assert solution.records[-1].error_displacement < 0.01
-    # The friction force of a moving front does not separate well: 0.7 % at 10, 8.5 % at 5.
+    # The friction force of a moving front does not separate well: 0.7 % at 10, 8.5 % at
+    # 5.
     assert solution.records[-1].error_force < (0.01 if substructures == 10 else 0.12)
     assert 0 < max(basis.n_modes for basis in solution.iterate.bases) <= most
 
@@ -52,7 +55,9 @@ def test_the_default_basis_reaches_one_percent_of_displacement(substructures, mo
 )
 def test_the_force_follows_the_number_of_modes(scene, size):
     settings = settings_of(scene, linear_stage="pgd", **size)
-    few, some, many = (errors(settings.replace(pgd_modes=most), 40)[-1] for most in (3, 6, 12))
+    few, some, many = (
+        errors(settings.replace(pgd_modes=most), 40)[-1] for most in (3, 6, 12)
+    )
     assert few > 1.5 * some > 3.0 * many
 
 
@@ -72,13 +77,19 @@ def test_every_mode_is_admissible():
 
 
 fields = st.tuples(
-    st.integers(1, 9), st.integers(1, 12), st.integers(0, 2**32 - 1), st.floats(-9.0, 0.0)
+    st.integers(1, 9),
+    st.integers(1, 12),
+    st.integers(0, 2**32 - 1),
+    st.floats(-9.0, 0.0),
 )
 
 
-def random_basis(rows: int, columns: int, seed: int) -> tuple[SeparatedBasis, np.ndarray]:
+def random_basis(
+    rows: int, columns: int, seed: int
+) -> tuple[SeparatedBasis, np.ndarray]:
     generator = np.random.default_rng(seed)
-    k, weights = 10.0 ** generator.uniform(-2, 2, rows), generator.uniform(0.1, 1.0, columns)
+    k = 10.0 ** generator.uniform(-2, 2, rows)
+    weights = generator.uniform(0.1, 1.0, columns)
     sizes = 10.0 ** -np.arange(min(rows, columns), dtype=float)
     field = (
         generator.normal(size=(rows, len(sizes)))
@@ -133,9 +144,17 @@ def test_sharing_as_it_is_by_default_costs_no_accuracy(scene):
 
 def test_an_instant_right_after_another_does_not_blow_up_the_modes():
     path = [[0.0, -1.0], [2.3e-308, 0.0], [1.0, -1.0]]
-    size = {"elements": 2, "layers": 1, "instants": 1, "substructures": 1, "length": 1.0}
+    size = {
+        "elements": 2,
+        "layers": 1,
+        "instants": 1,
+        "substructures": 1,
+        "length": 1.0,
+    }
     method = {"method": "paper", "linear_stage": "pgd", "multiscale": False}
-    settings = settings_of("rope", **size, **method, load=path, friction=1.0, fall_off=1.0)
+    settings = settings_of(
+        "rope", **size, **method, load=path, friction=1.0, fall_off=1.0
+    )
     assert np.abs(sample(settings, 10).boundary_force).max() < 1.0
 
 
@@ -160,16 +179,23 @@ def test_two_modes_find_the_solution_of_every_scene(scene: str) -> None:
 def test_what_the_bases_alone_came_to_is_said(bar: Solution) -> None:
     left = bar.records[-2].error_force
     assert "status step" in bar.status.advice
-    assert f"contact force was still {float(f'{100.0 * left:.2g}'):g} % away" in bar.status.advice
+    assert (
+        f"contact force was still {float(f'{100.0 * left:.2g}'):g} % away"
+        in bar.status.advice
+    )
     full = solved(small(linear_stage="full"))
     assert full.is_certified
     assert "bases" not in full.status.advice
 
 
 @pytest.mark.parametrize(("stage", "is_answered"), [("full", True), ("pgd", False)])
-def test_a_run_on_bases_is_not_answered_by_its_neighbour(stage: str, is_answered: bool) -> None:
+def test_a_run_on_bases_is_not_answered_by_its_neighbour(
+    stage: str, is_answered: bool
+) -> None:
     first = finished_run(small(linear_stage=stage), errors=False)
-    again = finished_run(small(linear_stage=stage), errors=False, before=states_of(first.iterate))
+    again = finished_run(
+        small(linear_stage=stage), errors=False, before=states_of(first.iterate)
+    )
     assert again.was_warm is is_answered
     assert again.iterate.number == (1 if is_answered else first.iterate.number)
     assert np.allclose(again.force, first.force)

@@ -32,7 +32,8 @@ def weighted_fields(draw):
     shape = draw(st.tuples(st.integers(1, 8), st.integers(1, 8)))
     field = draw(arrays.arrays(float, shape, elements=st.floats(-1e3, 1e3, width=32)))
     weights = [
-        draw(arrays.arrays(float, length, elements=st.floats(0.01, 100.0))) for length in shape
+        draw(arrays.arrays(float, length, elements=st.floats(0.01, 100.0)))
+        for length in shape
     ]
     return field, *weights
 
@@ -49,9 +50,9 @@ def first_modes(found, rank):
 def constant_speed_front(n_points, n_instants):
     """Decompose a front that crosses its domain at constant speed in the time there is.
 
-    Scaled to the unit square the field is H(x - t), the kernel of an integration, whose singular
-    values are 2/((2n - 1) pi). Here it is sampled in the middle of cells; on the front itself it is
-    one half.
+    Scaled to the unit square the field is H(x - t), the kernel of an integration, whose
+    singular values are 2/((2n - 1) pi). Here it is sampled in the middle of cells; on
+    the front itself it is one half.
     """
     positions = (np.arange(n_points) + 0.5) / n_points
     instants = (np.arange(n_instants) + 0.5) / n_instants
@@ -65,8 +66,12 @@ def test_modes_are_orthonormal_in_their_own_inner_products(case):
     field, space, time = case
     found = decompose(field, space, time, np.arange(len(space)))
     same = np.eye(len(found.values))
-    np.testing.assert_allclose((found.space_modes.T * space) @ found.space_modes, same, atol=1e-10)
-    np.testing.assert_allclose((found.time_modes * time) @ found.time_modes.T, same, atol=1e-10)
+    np.testing.assert_allclose(
+        (found.space_modes.T * space) @ found.space_modes, same, atol=1e-10
+    )
+    np.testing.assert_allclose(
+        (found.time_modes * time) @ found.time_modes.T, same, atol=1e-10
+    )
     assert np.all(np.diff(found.values) <= 0.0)
 
 
@@ -77,7 +82,9 @@ def test_the_error_of_every_rank_is_the_distance_to_its_approximation_and_falls(
     whole = squared_norm(field, space, time)
     for rank, error in enumerate(found.errors):
         left = squared_norm(field - first_modes(found, rank), space, time)
-        assert np.sqrt(left) == pytest.approx(error * np.sqrt(whole), abs=1e-9 * np.sqrt(whole))
+        assert np.sqrt(left) == pytest.approx(
+            error * np.sqrt(whole), abs=1e-9 * np.sqrt(whole)
+        )
     assert np.all(np.diff(found.errors) <= 0.0)
 
 
@@ -111,7 +118,14 @@ def solved(**changes) -> Clips:
 @pytest.mark.parametrize("elements", [50, 200, 800])
 @pytest.mark.parametrize(
     ("load", "branches"),
-    [("ramp", 1), ("triangle", 2), ("sine", 3), ("cycle", 3), ("decaying", 8), ("random", 9)],
+    [
+        ("ramp", 1),
+        ("triangle", 2),
+        ("sine", 3),
+        ("cycle", 3),
+        ("decaying", 8),
+        ("random", 9),
+    ],
 )
 def test_two_vectors_a_branch_are_the_friction_of_a_bar(load, branches, elements):
     clips = solved(load=load, elements=elements, peak=1200.0)
@@ -135,7 +149,9 @@ def test_two_vectors_a_branch_are_the_friction_of_a_bar(load, branches, elements
     ],
     ids=str,
 )
-def test_they_stay_so_with_cuts_uneven_pressure_sliding_and_a_support_that_moves(changes):
+def test_they_stay_so_with_cuts_uneven_pressure_sliding_and_a_support_that_moves(
+    changes,
+):
     assert solved(**changes).errors[0] < EXACT
 
 
@@ -149,7 +165,9 @@ def test_they_stay_so_with_cuts_uneven_pressure_sliding_and_a_support_that_moves
     ],
     ids=str,
 )
-def test_where_the_theory_ends_the_error_is_seen_and_modes_of_the_rest_remove_it(changes):
+def test_where_the_theory_ends_the_error_is_seen_and_modes_of_the_rest_remove_it(
+    changes,
+):
     clips = solved(**changes)
     assert clips.errors[0] > 0.01
     assert clips.errors[-1] < EXACT
@@ -158,7 +176,8 @@ def test_where_the_theory_ends_the_error_is_seen_and_modes_of_the_rest_remove_it
 def play_of(load: Array, bound: Array) -> Array:
     """Give the friction on a clamped rod: its axial force follows the load with play."""
     reach = np.cumsum(bound[::-1])[::-1]
-    axial, now = np.zeros((len(bound) + 1, len(load))), np.zeros(len(bound))
+    axial = np.zeros((len(bound) + 1, len(load)))
+    now = np.zeros(len(bound))
     axial[-1] = load
     for instant, force in enumerate(load):
         now = np.clip(now, force - reach, force + reach)
@@ -197,7 +216,8 @@ def test_branches_go_one_way_and_are_as_few_as_can_be(load):
 
 def test_a_substructure_decomposed_alone_is_as_it_is_among_all():
     iterate = sample(settings_of("bar", substructures=4), 3)
-    fields, chosen = (iterate.problem, iterate.boundary_force), np.array([1, 3])
+    fields = (iterate.problem, iterate.boundary_force)
+    chosen = np.array([1, 3])
     every = decompositions(*fields, is_force=True)
     some = decompositions(*fields, chosen, is_force=True)
     for place, part in zip(chosen, some, strict=True):

@@ -35,7 +35,13 @@ def components(of, found):
         slip = np.diff(fields.slip, axis=1, prepend=0.0)
         if law.opens:
             bound = law.tangential.friction[:, None] * fields.normal_force
-            yield fields.opening, slip, fields.normal_force, bound, fields.tangential_force
+            yield (
+                fields.opening,
+                slip,
+                fields.normal_force,
+                bound,
+                fields.tangential_force,
+            )
         else:
             bound = np.broadcast_to(law.tangential.bound, slip.shape)
             yield None, slip, None, bound, fields.tangential_force
@@ -64,27 +70,42 @@ def assert_laws(of, found, slack=SMALL):
 
 def all_solutions(of, before, instant):
     """Enumerate the states of a body on a support; give the displacements that obey every law."""
-    matrix, load = of.substructures[0].elasticity.stiffness, external_force(of)[:, instant]
-    law, size = of.rubbing["support"], of.n_dofs
+    matrix = of.substructures[0].elasticity.stiffness
+    load = external_force(of)[:, instant]
+    law = of.rubbing["support"]
+    size = of.n_dofs
     found = []
     for states in product(("open", "stick", 1.0, -1.0), repeat=size // 2):
-        system, right = np.zeros((2 * size, 2 * size)), np.concatenate([load, np.zeros(size)])
-        system[:size, :size], system[:size, size:] = matrix, -np.eye(size)
+        system = np.zeros((2 * size, 2 * size))
+        right = np.concatenate([load, np.zeros(size)])
+        system[:size, size:] = -np.eye(size)
+        system[:size, :size] = matrix
         for point, state in enumerate(states):
-            tangent, normal = 2 * point, 2 * point + 1
+            tangent = 2 * point
+            normal = 2 * point + 1
             if state == "open":
-                system[[size + tangent, size + normal], [size + tangent, size + normal]] = 1.0
+                system[
+                    [size + tangent, size + normal], [size + tangent, size + normal]
+                ] = 1.0
                 continue
-            system[size + normal, normal], right[size + normal] = 1.0, -law.normal.gap[point]
+            system[size + normal, normal] = 1.0
+            right[size + normal] = -law.normal.gap[point]
             if state == "stick":
-                system[size + tangent, tangent], right[size + tangent] = 1.0, before[tangent]
+                right[size + tangent] = before[tangent]
+                system[size + tangent, tangent] = 1.0
             else:
                 system[size + tangent, size + tangent] = 1.0
-                system[size + tangent, size + normal] = state * law.tangential.friction[point]
+                system[size + tangent, size + normal] = (
+                    state * law.tangential.friction[point]
+                )
         displacement, force = np.linalg.solve(system, right).reshape(2, size)
-        slip, normal = (displacement - before)[::2], force[1::2]
+        slip = (displacement - before)[::2]
+        normal = force[1::2]
         bound = law.tangential.friction * normal
-        good = normal.min() >= -1e-12 and (displacement[1::2] + law.normal.gap).min() >= -1e-12
+        good = (
+            normal.min() >= -1e-12
+            and (displacement[1::2] + law.normal.gap).min() >= -1e-12
+        )
         good &= np.all(np.abs(force[::2]) <= bound + 1e-12)
         if good and np.all(np.abs(force[::2] * slip + bound * np.abs(slip)) <= 1e-12):
             found.append(displacement)
@@ -127,7 +148,9 @@ def test_an_instant_that_is_called_ambiguous_has_several_solutions():
 @pytest.mark.parametrize("friction", [0.0, 0.3, 10.0])
 @pytest.mark.parametrize("load", COURSES)
 @pytest.mark.parametrize("make", [on_a_support, two_bodies])
-def test_whatever_the_load_and_the_friction_held_bodies_obey_every_law(make, load, friction):
+def test_whatever_the_load_and_the_friction_held_bodies_obey_every_law(
+    make, load, friction
+):
     rng = np.random.default_rng(5)
     for points in (1, 4, 15):
         of = make(rng, points, friction, load=load, instants=8)
@@ -167,11 +190,15 @@ def test_a_body_that_nothing_holds_even_glued_is_refused():
     rigid = np.ones((1, 4))  # moves all points together, at no energy
     keep = np.eye(4) - rigid.T @ rigid / 4.0
     parts = [
-        substructure(keep @ stiffness(rng, 4) @ keep, (4 * one, 4 * one), np.ones((4, 2)))
+        substructure(
+            keep @ stiffness(rng, 4) @ keep, (4 * one, 4 * one), np.ones((4, 2))
+        )
         for one in range(2)
     ]
     of = rubbing_strands(rng, 2, 4, instants=2)
-    with pytest.raises(NoReferenceError, match="even where all its contacts are closed"):
+    with pytest.raises(
+        NoReferenceError, match="even where all its contacts are closed"
+    ):
         reference_of(problem(parts, of.interfaces, 2))
 
 

@@ -10,7 +10,9 @@ from plane import lengths, solved
 
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 
-RADIUS, FRICTION, MESHES = 10.0, 0.3, [40, 80, 160]
+RADIUS = 10.0
+FRICTION = 0.3
+MESHES = [40, 80, 160]
 
 
 class Contact:
@@ -42,7 +44,8 @@ class Contact:
         self.x = x - x @ self.fields.normal_force[:, -1] / self.total
         stiffness = 210e9 / (1.0 - poisson**2)
         self.exact = HalfPlane(self.total, RADIUS, stiffness)
-        self.half_width, self.peak = self.exact.half_width, self.exact.peak
+        self.half_width = self.exact.half_width
+        self.peak = self.exact.peak
 
     def root(self, half_width):
         return np.sqrt(np.maximum(1.0 - (self.x / half_width) ** 2, 0.0))
@@ -66,11 +69,15 @@ def pressed(elements):
 def reversed_(elements):
     """Slide everywhere, so that the pressing is forgotten, then go back a little.
 
-    At nu = 0.4999 tangential forces do not move the surface along the normal, as Mindlin assumes.
+    At nu = 0.4999 tangential forces do not move the surface along the normal, as
+    Mindlin assumes.
     """
 
     def path(*values):
-        return [[time, value] for time, value in zip((0.0, 0.3, 0.6, 0.9), values, strict=True)]
+        return [
+            [time, value]
+            for time, value in zip((0.0, 0.3, 0.6, 0.9), values, strict=True)
+        ]
 
     return Contact(
         elements,
@@ -100,7 +107,9 @@ def test_the_pressure_approaches_that_of_hertz_under_refinement():
 @pytest.mark.parametrize("run", [pressed, reversed_])
 def test_the_pressure_rises_and_falls_once_without_spurious_oscillation(run):
     pressure = run(80).pressure
-    assert np.abs(np.diff(pressure)).sum() == pytest.approx(2.0 * pressure.max(), rel=1e-6)
+    assert np.abs(np.diff(pressure)).sum() == pytest.approx(
+        2.0 * pressure.max(), rel=1e-6
+    )
 
 
 @pytest.mark.parametrize("elements", MESHES)
@@ -120,10 +129,13 @@ def test_friction_summed_along_the_contact_approaches_two_square_roots():
     errors = []
     for elements in MESHES:
         contact = reversed_(elements)
-        wide, narrow = contact.half_width, stick_half_width(contact)
+        wide = contact.half_width
+        narrow = stick_half_width(contact)
         back = contact.root(wide) - narrow / wide * contact.root(narrow)
         exact = FRICTION * contact.peak * (2.0 * back - contact.root(wide))
-        gap = np.cumsum(-contact.fields.tangential_force[:, -1] - exact * contact.weights)
+        gap = np.cumsum(
+            -contact.fields.tangential_force[:, -1] - exact * contact.weights
+        )
         errors.append(np.abs(gap).max() / (FRICTION * contact.total))
     assert errors[0] > errors[1] > errors[2]
     assert errors[-1] < 0.03

@@ -84,8 +84,14 @@ def problem_of(scene, values):
 
 def spoiled(answer, *, displacement=None, force=None):
     """An answer with other displacements or contact forces."""
-    new = answer.displacement if displacement is None else displacement
-    forces = answer.contact_force if force is None else force
+    if displacement is None:
+        new = answer.displacement
+    else:
+        new = displacement
+    if force is None:
+        forces = answer.contact_force
+    else:
+        forces = force
     return dataclasses.replace(answer, displacement=new, contact_force=forces)
 
 
@@ -99,7 +105,9 @@ def largest_work(problem, answer):
     return place, instant, all_jumps[[place]].indices[0]
 
 
-@pytest.fixture(params=[*SMALL, "bar with strength", "block with strength"], scope="module")
+@pytest.fixture(
+    params=[*SMALL, "bar with strength", "block with strength"], scope="module"
+)
 def solved(request):
     """A problem of each scene, and of laws with strength, with its reference."""
     scene = request.param.split()[0]
@@ -158,7 +166,8 @@ def test_friction_above_its_bound_breaks_its_law(solved):
 def test_an_instant_that_is_left_out_breaks_a_law(solved):
     problem, found = solved
     _, instant, _ = largest_work(problem, found)
-    displacement, force = found.displacement.copy(), found.contact_force.copy()
+    displacement = found.displacement.copy()
+    force = found.contact_force.copy()
     displacement[:, instant] = displacement[:, instant - 1]
     force[:, instant] = force[:, instant - 1]
     stale = spoiled(found, displacement=displacement, force=force)
@@ -170,7 +179,8 @@ def test_overlap_and_tension_and_force_at_a_distance_break_the_law_across(scene)
     problem = problem_of(scene, SMALL[scene])
     found = reference_of(problem)
     (name, law) = list(problem.rubbing.items())[-1]
-    place, last = problem.contact_places[name][0], problem.n_instants - 1
+    place = problem.contact_places[name][0]
+    last = problem.n_instants - 1
     point = int(np.argmax(found.contact_force[place, last]))
     assert found.contact_force[place.start + point, last] > 0.0
     node = problem.row_dofs[law.normal.component.above[law.points == point][0]]
@@ -200,7 +210,8 @@ def test_the_answer_to_another_law_of_contact_breaks_this_one(differs):
 
 
 def test_a_bond_that_has_opened_is_gone_for_good():
-    # Lifted until it opens, and then pressed and sheared, where cohesion would carry again.
+    # Lifted until it opens, and then pressed and sheared, where cohesion would carry
+    # again.
     values = {
         **PRESSED,
         **GENERAL,
@@ -232,7 +243,8 @@ def test_cuts_are_to_agree_in_displacement_and_force(scene):
     settings = CATALOGUE[scene].checked(SMALL[scene])
     problem = discretise(settings)
     iterate = solve(problem, method_of(settings)).iterate
-    displacement, force = iterate.boundary_displacement, iterate.boundary_force
+    displacement = iterate.boundary_displacement
+    force = iterate.boundary_force
     whole = law_residuals(iterate, problem, RowFields(displacement, force))
     assert whole.largest < ROUNDED
     cut = [law for law in problem.interfaces.values() if isinstance(law, Perfect)][-1]
@@ -249,7 +261,9 @@ def test_cuts_are_to_agree_in_displacement_and_force(scene):
 def test_a_law_that_is_not_known_here_is_not_passed_over():
     problem = problem_of("bar", SMALL["bar"])
     found = reference_of(problem)
-    foreign = dataclasses.replace(problem, interfaces={**problem.interfaces, "spring": object()})
+    foreign = dataclasses.replace(
+        problem, interfaces={**problem.interfaces, "spring": object()}
+    )
     with pytest.raises(TypeError, match="spring"):
         law_residuals(found, foreign)
 
@@ -274,8 +288,8 @@ def test_a_body_that_flies_away_hides_no_force_that_is_missing():
 
 
 def test_a_run_whose_body_flies_away_is_not_called_solved():
-    # Held up along its left side and moved along its top, it may turn about their corner: it
-    # came to 1e11 m, where rounding hid all that did not balance.
+    # Held up along its left side and moved along its top, it may turn about their
+    # corner: it came to 1e11 m, where rounding hid all that did not balance.
     values = {
         "elements": 8,
         "elements_up": 4,

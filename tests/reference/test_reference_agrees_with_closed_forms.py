@@ -44,11 +44,17 @@ def fitted_order(sizes: np.ndarray, errors: list[float]) -> float:
 def test_the_answer_does_not_depend_on_the_rate(corners, points):
     base = scene(elements=10)
     path = [0.0, *corners]
-    slowly = np.interp(np.arange(len(corners) * points + 1) / points, range(len(path)), path)
+    slowly = np.interp(
+        np.arange(len(corners) * points + 1) / points, range(len(path)), path
+    )
     fast = solved(under(base, path))
     slow = solved(under(base, slowly))
-    np.testing.assert_allclose(slow.displacement[:, ::points], fast.displacement, atol=1e-15)
-    np.testing.assert_allclose(slow.normal_force[:, ::points], fast.normal_force, atol=1e-9)
+    np.testing.assert_allclose(
+        slow.displacement[:, ::points], fast.displacement, atol=1e-15
+    )
+    np.testing.assert_allclose(
+        slow.normal_force[:, ::points], fast.normal_force, atol=1e-9
+    )
 
 
 @EXACT
@@ -57,31 +63,44 @@ def test_a_closed_inner_loop_leaves_no_trace(first, turn, depth):
     inside = turn + depth * (first - turn)
     load = [first, turn, inside, turn]
     base = under(scene(elements=20, friction_profile="rising"), load)
-    exact, discrete = solved(base), reference_of(base.discretise())
+    exact = solved(base)
+    discrete = reference_of(base.discretise())
     for field in (exact.displacement, discrete.displacement):
         np.testing.assert_allclose(field[:, 3], field[:, 1], rtol=0.0, atol=1e-15)
-    np.testing.assert_allclose(exact.normal_force[:, 3], exact.normal_force[:, 1], atol=1e-9)
+    np.testing.assert_allclose(
+        exact.normal_force[:, 3], exact.normal_force[:, 1], atol=1e-9
+    )
 
 
 @EXACT
 @given(FORCES, st.integers(1, 60))
-def test_friction_forces_of_both_references_are_one_under_a_uniform_bound(load, elements):
+def test_friction_forces_of_both_references_are_one_under_a_uniform_bound(
+    load, elements
+):
     base = under(scene(elements=elements, substructures=1), load)
-    exact, discrete = solved(base), reference_of(base.discretise())
+    exact = solved(base)
+    discrete = reference_of(base.discretise())
     off_the_clamp = slice(1, None)
     np.testing.assert_allclose(
-        discrete.friction_force[off_the_clamp], exact.friction_force[off_the_clamp], atol=1e-9
+        discrete.friction_force[off_the_clamp],
+        exact.friction_force[off_the_clamp],
+        atol=1e-9,
     )
 
 
 @pytest.mark.parametrize("profile", ["uniform", "rising", "falling"])
-@pytest.mark.parametrize(("load", "peak"), [("sine", 900.0), ("random", 1200.0), ("sine", 2400.0)])
+@pytest.mark.parametrize(
+    ("load", "peak"), [("sine", 900.0), ("random", 1200.0), ("sine", 2400.0)]
+)
 def test_incremental_displacement_converges_with_order_two(profile, load, peak):
     sizes = np.array([25, 50, 100, 200])
     errors = []
     for elements in sizes:
-        base = scene(elements=int(elements), load=load, peak=peak, friction_profile=profile)
-        exact, discrete = solved(base).displacement, reference_of(base.discretise()).displacement
+        base = scene(
+            elements=int(elements), load=load, peak=peak, friction_profile=profile
+        )
+        exact = solved(base).displacement
+        discrete = reference_of(base.discretise()).displacement
         errors.append(float(np.linalg.norm(discrete - exact) / np.linalg.norm(exact)))
     assert fitted_order(sizes, errors) > 1.8
     assert errors[-1] < 1e-4
@@ -98,7 +117,10 @@ def problem(**values: object) -> Problem:
 
 
 def table(values: list[float]) -> list[list[float]]:
-    return [[float(x), y] for x, y in zip(np.linspace(0.0, 1.0, len(values)), values, strict=True)]
+    return [
+        [float(x), y]
+        for x, y in zip(np.linspace(0.0, 1.0, len(values)), values, strict=True)
+    ]
 
 
 @st.composite
@@ -114,7 +136,9 @@ def problems(draw: st.DrawFn) -> Problem:
         "substructures": draw(st.integers(1, min(elements, 6))),
         "load": table([peak * force for force in load]),
         "friction_profile": draw(
-            st.sampled_from(["uniform", "gap", table([10.0**decade for decade in decades])])
+            st.sampled_from(
+                ["uniform", "gap", table([10.0**decade for decade in decades])]
+            )
         ),
         "friction": draw(st.sampled_from([0.0, 0.3, 1.0])),
         "support_displacement": draw(st.sampled_from([0.0, 1e-5, 1e-2])),
@@ -130,7 +154,9 @@ def bounds(of: Problem) -> np.ndarray:
 
 
 def assert_coulomb(of: Problem, found: Reference) -> None:
-    bound, force, status = bounds(of), found.friction_force, found.status
+    bound = bounds(of)
+    force = found.friction_force
+    status = found.status
     slip = np.diff(found.displacement, axis=1, prepend=0.0)
     slides = status != 0
     assert np.all(np.abs(force) <= bound * (1.0 + 4.0 * EPS))
@@ -175,14 +201,20 @@ def test_the_fallback_alone_finds_the_same_minimum(monkeypatch):
     slow = reference_of(of)
     assert slow.residual <= 1e-12
     assert np.array_equal(slow.status, fast.status)
-    np.testing.assert_allclose(slow.displacement, fast.displacement, rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(
+        slow.displacement, fast.displacement, rtol=0.0, atol=1e-15
+    )
 
 
 def test_decomposition_changes_nothing():
     whole, parts = (reference_of(problem(substructures=number)) for number in (1, 10))
     assert np.array_equal(whole.status, parts.status)
-    np.testing.assert_allclose(whole.displacement, parts.displacement, rtol=0.0, atol=1e-15)
-    np.testing.assert_allclose(whole.friction_force, parts.friction_force, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(
+        whole.displacement, parts.displacement, rtol=0.0, atol=1e-15
+    )
+    np.testing.assert_allclose(
+        whole.friction_force, parts.friction_force, rtol=0.0, atol=1e-9
+    )
 
 
 def test_a_stop_interrupts_between_instants():

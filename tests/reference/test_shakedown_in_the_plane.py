@@ -41,12 +41,18 @@ def path(swing: float, first: float = 0.0) -> tuple[tuple[float, float], ...]:
 
 
 @cache
-def _ran(scene: str, swing: float, first: float, given: tuple[tuple[str, Any], ...]) -> FinishedRun:
-    settings = CATALOGUE[scene].checked({**dict(given), LOADS[scene]: path(swing, first)})
+def _ran(
+    scene: str, swing: float, first: float, given: tuple[tuple[str, Any], ...]
+) -> FinishedRun:
+    settings = CATALOGUE[scene].checked(
+        {**dict(given), LOADS[scene]: path(swing, first)}
+    )
     return finished_run(settings, errors=False, indicators=False)
 
 
-def ran(scene: str, given: dict[str, Any], swing: float, first: float = 0.0) -> FinishedRun:
+def ran(
+    scene: str, given: dict[str, Any], swing: float, first: float = 0.0
+) -> FinishedRun:
     return _ran(scene, swing, first, tuple(given.items()))
 
 
@@ -81,7 +87,8 @@ def test_two_equal_layers_cease_to_slip_below_the_limit_from_any_start_and_not_a
         assert first == 0.0 or np.abs(run.iterate.status[:, : last(run).start]).any()
 
 
-SHEAR, PUSH = 1.2e7, 1.7e7
+SHEAR = 1.2e7
+PUSH = 1.7e7
 """Pa, of a block that contact alone holds, and whose slip changes what presses."""
 
 
@@ -123,7 +130,9 @@ def last_of(settings: Any) -> slice:
 
 
 def test_a_spring_that_catches_a_block_and_too_many_points_are_refused() -> None:
-    incline = CATALOGUE["incline"].checked({"elements": 4, "elements_up": 2, "cycles": 3})
+    incline = CATALOGUE["incline"].checked(
+        {"elements": 4, "elements_up": 2, "cycles": 3}
+    )
     assert not QUANTITIES["shakedown_factor"].applies(incline)
     many = {"layers": 7, "elements": 100, "elements_up": 1, "substructures": 10}
     with pytest.raises(NoReferenceError, match=str(MOST_POINTS)):
@@ -139,4 +148,6 @@ def test_a_pressing_that_leaves_contacts_open_has_no_factor() -> None:
 
 
 def test_without_any_pressing_no_swing_is_small_enough() -> None:
-    assert factor(ran("layers", {**TWINS, "pressure": 0.0}, SMALL)) == pytest.approx(0.0, abs=1e-9)
+    assert factor(ran("layers", {**TWINS, "pressure": 0.0}, SMALL)) == pytest.approx(
+        0.0, abs=1e-9
+    )

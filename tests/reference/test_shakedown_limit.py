@@ -13,7 +13,8 @@ from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities.cycles import cycles_of, ends_of
 from solver.study.quantities.finished import finished_run
 
-BOUND, LENGTH = 1500.0, 1.0
+BOUND = 1500.0
+LENGTH = 1.0
 SMALL = {"elements": 20, "instants": 161, "substructures": 2, "load": "cycles"}
 GIVES_WAY = {"friction_law": "compliant", "contact_stiffness": 100.0}
 
@@ -60,7 +61,9 @@ def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:
     for elements in (10, 40):
         changes = {**SMALL, "elements": elements, "load": "hold", "peak": 0.0}
         swings = {"body_force": 100.0, "body_load": "cycles"}
-        assert limit("bar", **changes, **swings) == pytest.approx(BOUND / 100.0, rel=1e-9)
+        assert limit("bar", **changes, **swings) == pytest.approx(
+            BOUND / 100.0, rel=1e-9
+        )
 
 
 def test_the_limit_of_a_contact_that_gives_way_converges_to_that_of_shear_lag() -> None:
@@ -80,7 +83,9 @@ def test_a_mean_load_does_not_matter() -> None:
     """Slip moves the mean into what is left behind: the swing alone decides."""
     pulled = limit("bar", **SMALL, peak=300.0, **GIVES_WAY)
     held = {"body_force": 700.0, "body_load": "hold"}
-    assert limit("bar", **SMALL, **held, peak=300.0, **GIVES_WAY) == pytest.approx(pulled)
+    assert limit("bar", **SMALL, **held, peak=300.0, **GIVES_WAY) == pytest.approx(
+        pulled
+    )
 
 
 def test_a_load_that_nothing_feels_has_no_limit() -> None:
@@ -88,7 +93,12 @@ def test_a_load_that_nothing_feels_has_no_limit() -> None:
 
 
 def test_what_the_theorem_does_not_cover_is_refused() -> None:
-    block = {"elements": 6, "elements_up": 4, "instants": 61, "top_tangential_load": "cycles"}
+    block = {
+        "elements": 6,
+        "elements_up": 4,
+        "instants": 61,
+        "top_tangential_load": "cycles",
+    }
     with pytest.raises(NoReferenceError):
         limit("block", **block, substructures=1)
     with pytest.raises(NoReferenceError):
@@ -103,4 +113,6 @@ def test_where_slip_presses_nothing_the_program_of_the_plane_gives_it_too(
     ends = ends_of(rods)
     some = slice(ends[-2], ends[-1] + 1)
     theorem = shakedown_limit(discretise(rods), some)
-    assert largest_swing(slip_space(discretise(rods)), some)[0] == pytest.approx(theorem, rel=1e-6)
+    assert largest_swing(slip_space(discretise(rods)), some)[0] == pytest.approx(
+        theorem, rel=1e-6
+    )

@@ -1,6 +1,7 @@
 """Rods whose friction falls with slip are solved wherever there is an equilibrium (README, 14).
 
-Whether there is one is found apart from the solver: by trying all statuses of a short rod.
+Whether there is one is found apart from the solver: by trying all statuses of a short
+rod.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ PULLED = {
     "settlement_load": [[0.0, 0.0], [0.5, 4e-4], [1.0, -2e-4]],
     "settlement_profile": [[0.0, 0.8], [0.13, -0.25]],
 }
-"""Pulled at one end, on a support that moves to and fro: all of it slips for a moment."""
+"""Pulled at one end, on a support that moves to and fro: all of it slips for a
+moment."""
 STRETCHED = STEEL | {
     "elements": 3,
     "instants": 8,
@@ -131,7 +133,10 @@ def drawn_rod(seed):
         "left_load": path(0.2 * bound),
         "load": path(0.2 * bound),
         "settlement_load": path(settled),
-        "settlement_profile": [[0.0, random.uniform(-1, 1)], [length, random.uniform(-1, 1)]],
+        "settlement_profile": [
+            [0.0, random.uniform(-1, 1)],
+            [length, random.uniform(-1, 1)],
+        ],
     }
 
 

@@ -82,7 +82,10 @@ def test_an_iterate_that_obeys_all_laws_is_a_solution_without_a_status_step(fini
     assert "laws hold up to rounding" in run.status.advice
     assert run.is_certified is (finish != "none")
     assert kkt_residual(run.iterate, problem) < 1e-10
-    assert distance_to(reference_of(problem), problem).of_friction_force(run.iterate) < 1e-8
+    assert (
+        distance_to(reference_of(problem), problem).of_friction_force(run.iterate)
+        < 1e-8
+    )
 
 
 @pytest.mark.usefixtures("_no_status_step")

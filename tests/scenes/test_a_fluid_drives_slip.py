@@ -42,13 +42,19 @@ def solved(**changes: Any) -> tuple[FaultSettings, Problem, Reference]:
 def reached(problem: Problem, found: Reference) -> Array:
     """Farthest place that slips at every instant, m."""
     slips = found.contact("support").status == 1
-    return np.where(slips, problem.rubbing["support"].positions[:, None], 0.0).max(axis=0)
+    return np.where(slips, problem.rubbing["support"].positions[:, None], 0.0).max(
+        axis=0
+    )
 
 
 def test_pressure_spreads_as_diffusion_has_it_whatever_is_given_at_the_well() -> None:
     """Crank and Nicolson's steps on a fine line, for a pressure that jumps, rises and falls."""
-    length, parts, step, rate = 12.0, 600, 0.05, 0.7
-    place, instants = np.linspace(0.0, length, parts + 1), np.arange(41) * step
+    length = 12.0
+    parts = 600
+    step = 0.05
+    rate = 0.7
+    place = np.linspace(0.0, length, parts + 1)
+    instants = np.arange(41) * step
     given = np.where(instants < 1.0, 1.0 + instants, 2.0 - 1.2 * (instants - 1.0))
     found = spread(place, instants, given, rate)
     many = 40
@@ -59,7 +65,9 @@ def test_pressure_spreads_as_diffusion_has_it_whatever_is_given_at_the_well() ->
     now = np.zeros(parts + 1)
     for instant in range(1, len(instants)):
         for part in range(1, many + 1):
-            now[0] = np.interp((part - 1) / many, [0, 1], given[instant - 1 : instant + 1])
+            now[0] = np.interp(
+                (part - 1) / many, [0, 1], given[instant - 1 : instant + 1]
+            )
             right = now[1:-1] + share * (now[2:] - 2.0 * now[1:-1] + now[:-2])
             now[0] = np.interp(part / many, [0, 1], given[instant - 1 : instant + 1])
             right[0] += share * now[0]
@@ -74,15 +82,23 @@ def test_stress_ahead_of_a_zone_holds_the_balance_of_forces() -> None:
     lack = (0.5 - erfc(place))[:, None]
     (front,) = fronts(place, lack)
     angle = (np.arange(4000) + 0.5) * np.pi / 8000
-    within = front * np.sum(np.interp(front * np.sin(angle), place, lack[:, 0]) * np.cos(angle))
+    within = front * np.sum(
+        np.interp(front * np.sin(angle), place, lack[:, 0]) * np.cos(angle)
+    )
     # Beyond, x = a / s, so that all of it is seen, and ds / s^2 of it is dx.
     share = (np.arange(20000) + 0.5) / 20000
-    beyond = front * np.mean(stress_ahead(front / share, place, lack[:, 0], front) / share**2)
+    beyond = front * np.mean(
+        stress_ahead(front / share, place, lack[:, 0], front) / share**2
+    )
     assert within * np.pi / 8000 + beyond == pytest.approx(0.0, abs=2e-4)
 
 
-@pytest.mark.parametrize("changes", [{"young": 1e9}, {"poisson": 0.0}, {"plane": "stress"}])
-def test_the_front_does_not_depend_on_the_elastic_constants(changes: dict[str, Any]) -> None:
+@pytest.mark.parametrize(
+    "changes", [{"young": 1e9}, {"poisson": 0.0}, {"plane": "stress"}]
+)
+def test_the_front_does_not_depend_on_the_elastic_constants(
+    changes: dict[str, Any],
+) -> None:
     """As published: only slip does. The width of an element is what it may differ by."""
     _, problem, usual = solved()
     _, _, other = solved(**changes)
@@ -101,7 +117,9 @@ def test_the_front_does_not_depend_on_the_size_of_the_body() -> None:
 
 def test_slip_goes_on_after_the_fluid_is_stopped() -> None:
     """What has spread still does: the front runs on, while the well sticks again."""
-    settings, problem, found = solved(injection_load="stopped", shear_stress=5e6, instants=61)
+    settings, problem, found = solved(
+        injection_load="stopped", shear_stress=5e6, instants=61
+    )
     stopped = int(np.argmax(settings.path("injection_load") == 0.0))
     front = reached(problem, found)
     assert front.max() > front[stopped - 1]
@@ -114,7 +132,9 @@ def test_a_barrier_stops_the_front() -> None:
     settings, problem, found = solved(normal_profile="barrier", duration=3e5)
     _, _, free = solved(duration=3e5)
     end = 0.16 * settings.length
-    assert reached(problem, found).max() <= end < 2.0 * end < reached(problem, free).max()
+    assert (
+        reached(problem, found).max() <= end < 2.0 * end < reached(problem, free).max()
+    )
 
 
 @pytest.mark.parametrize(
@@ -139,7 +159,11 @@ def test_no_closed_form_is_drawn_where_none_holds(changes: dict[str, Any]) -> No
     [
         ({"overpressure": 1.1e7}, "overpressure", "normal stress"),
         ({"injection_load": [[0.0, 1.1e7]]}, "injection_load", "normal stress"),
-        ({"normal_profile": [[0.0, 1.0], [600.0, -1.0]]}, "normal_profile", "factors of at least"),
+        (
+            {"normal_profile": [[0.0, 1.0], [600.0, -1.0]]},
+            "normal_profile",
+            "factors of at least",
+        ),
         ({"normal_profile": [[0.0, 1.0], [5.0, 0.1]]}, "overpressure", "normal stress"),
         ({"diffusivity": 0.0}, "diffusivity", "above 0"),
         ({"overpressure": -1.0}, "overpressure", "0"),
@@ -165,15 +189,20 @@ JOINT = {
 }
 
 
-def test_a_joint_slips_by_the_shear_stress_over_its_stiffness_between_both_of_its_sides() -> None:
+def test_a_joint_slips_by_the_shear_stress_over_its_stiffness_between_both_of_its_sides() -> (
+    None
+):
     """Some 6.5 mm between its sides, of which the body that is solved moves half."""
     settings, problem, found = solved(**JOINT)
-    law, contact = problem.rubbing["support"], found.contact("support")
+    law = problem.rubbing["support"]
+    contact = found.contact("support")
     shear = -contact.tangential_force / law.by_point(law.weights)[:, None]
     assert shear == pytest.approx(5e8 * contact.slip, rel=1e-9)
     assert contact.slip.max() == pytest.approx(0.0065, rel=0.015)
     above = problem.row_dofs[law.tangent.above]
-    assert found.displacement[above] == pytest.approx(0.5 * contact.slip[law.points], rel=1e-12)
+    assert found.displacement[above] == pytest.approx(
+        0.5 * contact.slip[law.points], rel=1e-12
+    )
     across, _ = settings.structure().loop(problem).along(found)
     assert across == pytest.approx(contact.slip[0], rel=1e-12)
 
@@ -189,19 +218,35 @@ def test_quantities_of_a_fault_are_those_between_both_of_its_sides() -> None:
 
 
 @pytest.mark.parametrize("law", ["slip-dependent", "general"])
-def test_friction_of_a_fault_has_its_last_value_after_the_slip_length_between_its_sides(law):
+def test_friction_of_a_fault_has_its_last_value_after_the_slip_length_between_its_sides(
+    law,
+):
     """All of the fault slides, as its top is moved by more than friction holds."""
-    length, ratio = 0.02, 0.5
+    length = 0.02
+    ratio = 0.5
     changes = {"friction_law": law, "friction_ratio": ratio, "slip_length": length}
-    changes |= {"strength": "linear"} if law == "general" else {}
-    changes |= {"overpressure": 0.0, "shear_stress": 6.3e6, "instants": 2, "elements": 8}
+    if law == "general":
+        changes |= {"strength": "linear"}
+    else:
+        changes |= {}
+    changes |= {
+        "overpressure": 0.0,
+        "shear_stress": 6.3e6,
+        "instants": 2,
+        "elements": 8,
+    }
     _, problem, found = solved(**{**changes, "elements_up": 4})
-    contact, where = found.contact("support"), problem.rubbing["support"]
-    factor = np.abs(contact.tangential_force) / where.by_point(where.weights)[:, None] / 6e6
+    contact = found.contact("support")
+    where = problem.rubbing["support"]
+    factor = (
+        np.abs(contact.tangential_force) / where.by_point(where.weights)[:, None] / 6e6
+    )
     slip = np.abs(contact.slip)
     assert found.converged.all()
     assert slip.max() > 0.001
-    assert factor == pytest.approx(1.0 - (1.0 - ratio) * np.minimum(slip / length, 1.0), rel=1e-9)
+    assert factor == pytest.approx(
+        1.0 - (1.0 - ratio) * np.minimum(slip / length, 1.0), rel=1e-9
+    )
 
 
 OLD = """
@@ -213,7 +258,9 @@ tangential_stiffness = 1e9
 """
 
 
-def test_a_settings_file_of_before_is_told_that_slip_is_that_of_both_sides(tmp_path) -> None:
+def test_a_settings_file_of_before_is_told_that_slip_is_that_of_both_sides(
+    tmp_path,
+) -> None:
     settings, told = read_settings(OLD, "old.toml")
     assert told.keys() == {"slip_length", "tangential_stiffness"}
     assert "give 0.002 m" in told["slip_length"]
@@ -237,19 +284,24 @@ def test_what_friction_never_changes_is_not_told_of_a_file_of_before() -> None:
 
 
 VIESCA = {0.1: 3.6405, 0.3: 1.3474, 0.5: 0.79161, 0.7: 0.43513, 0.9: 0.13981}
-"""lambda over T: the condition of Viesca, J. Fluid Mech. 928, A29, 2021, evaluated elsewhere."""
+"""lambda over T: the condition of Viesca, J. Fluid Mech. 928, A29, 2021, evaluated
+elsewhere."""
 
 
 @pytest.mark.parametrize(("stress", "factor"), VIESCA.items())
 def test_the_front_of_a_fluid_runs_with_the_factor_of_its_stress(stress, factor):
     place = np.linspace(0.0, 20.0, 20_001)
-    assert fronts(place, (stress - erfc(place))[:, None]) == pytest.approx(factor, rel=5e-5)
+    assert fronts(place, (stress - erfc(place))[:, None]) == pytest.approx(
+        factor, rel=5e-5
+    )
 
 
 @pytest.mark.parametrize("place", [0.0, 0.3, 0.9])
 def test_slip_under_growing_strength_is_that_of_the_drop_of_stress(place):
     """The slip at a place is an integral over the drop, with the logarithm of a point force."""
-    half, drop, stiffness = 2.0, 1e5, 5e8
+    half = 2.0
+    drop = 1e5
+    stiffness = 5e8
     here = place * half
 
     def slipped(there):
@@ -265,9 +317,11 @@ def test_slip_under_growing_strength_is_that_of_the_drop_of_stress(place):
 
 def loosened(substructures):
     """Shear a body over an interface whose strength falls from its middle, then comes back."""
-    x, time = np.linspace(0.0, 1.0, 21), np.linspace(0.0, 1.0, 9)
+    x = np.linspace(0.0, 1.0, 21)
+    time = np.linspace(0.0, 1.0, 9)
     strength = 1e6 - 8e5 * np.sin(np.pi * time) * np.exp(-8.0 * x[:, None])
-    none, shear = Given(False, 0.0 * time), Given(False, np.full_like(time, 6e5))
+    none = Given(False, 0.0 * time)
+    shear = Given(False, np.full_like(time, 6e5))
     level = Given(True, 0.0 * time)
     return Stack(
         length=1.0,
@@ -279,7 +333,11 @@ def loosened(substructures):
         instants=time,
         duration=1.0,
         support=Support(np.zeros(21), 0.0, strength),
-        sides={"left": Side(none, level), "top": Side(shear, level), "right": Side(none, shear)},
+        sides={
+            "left": Side(none, level),
+            "top": Side(shear, level),
+            "right": Side(none, shear),
+        },
     )
 
 
@@ -291,7 +349,8 @@ def test_a_known_bound_in_the_plane_is_obeyed_and_presses_nothing(substructures)
     solution = solve(problem, method)
     assert reference.converged.all()
     assert solution.status.ending is Ending.CONVERGED
-    law, there = problem.rubbing["support"], reference.contact("support")
+    law = problem.rubbing["support"]
+    there = reference.contact("support")
     found = solution.iterate.contact("support")
     bound = law.by_point(law.tangential.bound) * problem.scales.force
     assert there.normal_force is None

@@ -27,12 +27,17 @@ def answer(settings):
     problem = discretise(settings)
     fields = reference_of(problem)
     assert fields.converged.all()
-    return fields, problem.at_rest(fields.displacement), AxialForce(problem)(fields.displacement)
+    return (
+        fields,
+        problem.at_rest(fields.displacement),
+        AxialForce(problem)(fields.displacement),
+    )
 
 
 def test_a_long_rail_breathes_at_its_ends_and_comes_back_by_half():
     """theory: N = -ES e in the middle, u = ES e^2/(2 q) at an end; cooled down, half of that."""
-    e, bound = 1.2e-5 * 40.0, 0.5 * 2e4
+    e = 1.2e-5 * 40.0
+    bound = 0.5 * 2e4
     rail = bar(
         length=400.0,
         section=7.7e-3,
@@ -70,14 +75,19 @@ def test_a_spring_is_a_clamp_where_it_is_stiff_and_nothing_where_it_is_soft():
 
 
 def test_the_loop_of_a_spring_that_is_pulled_out_holds_the_energy_that_friction_takes():
-    settings = bar(left_end="free", right_end="spring", right_displacement=5e-3, right_load="cycle")
+    settings = bar(
+        left_end="free", right_end="spring", right_displacement=5e-3, right_load="cycle"
+    )
     fields, _, _ = answer(settings)
     loop = settings.structure().loop(fields.problem)
-    force, moved = loop.force(fields), loop.displacement(fields.displacement)
+    force = loop.force(fields)
+    moved = loop.displacement(fields.displacement)
     contact = fields.contact("friction")
     taken = np.diff(contact.slip, axis=1) * fields.friction_force[:, 1:]
     stored = AxialForce(fields.problem)(fields.displacement)[:, -1] ** 2
-    elastic = (stored / (settings.young * settings.section) / settings.elements).sum() / 2.0
+    elastic = (
+        stored / (settings.young * settings.section) / settings.elements
+    ).sum() / 2.0
     # Work by the trapezoidal rule: friction is what it is after each increment.
     work = (0.5 * (force[1:] + force[:-1]) * np.diff(moved)).sum()
     assert work == pytest.approx(-taken.sum() + elastic, rel=0.05)
@@ -87,15 +97,24 @@ def test_right_and_left_are_mirror_images():
     force = [[0.0, 0.0], [0.4, 900.0], [1.0, -300.0]]
     mirrored = [[time, -value] for time, value in force]
     right = answer(bar(load=force, elements=23))[1]
-    left = answer(bar(left_end="pulled", left_load=mirrored, right_end="held", elements=23))[1]
+    left = answer(
+        bar(left_end="pulled", left_load=mirrored, right_end="held", elements=23)
+    )[1]
     np.testing.assert_allclose(left[::-1], -right, atol=1e-12 * np.abs(right).max())
 
 
 def test_a_support_that_moves_as_one_carries_a_free_bar_along():
     _, moved, axial = answer(
-        bar(left_end="free", right_end="free", settlement=1e-3, settlement_profile="uniform")
+        bar(
+            left_end="free",
+            right_end="free",
+            settlement=1e-3,
+            settlement_profile="uniform",
+        )
     )
-    np.testing.assert_allclose(moved, np.tile(np.linspace(0.0, 1e-3, 101), (51, 1)), atol=1e-15)
+    np.testing.assert_allclose(
+        moved, np.tile(np.linspace(0.0, 1e-3, 101), (51, 1)), atol=1e-15
+    )
     assert not axial.any()
 
 
@@ -103,22 +122,35 @@ def test_a_clamp_that_moves_one_way_is_a_support_that_moves_the_other():
     """Friction feels what one does over the other."""
     clamp, _, _ = answer(bar(support_displacement=2e-3, peak=300.0))
     support, _, _ = answer(
-        bar(settlement=-2e-3, settlement_profile="uniform", settlement_load="sine", peak=300.0)
+        bar(
+            settlement=-2e-3,
+            settlement_profile="uniform",
+            settlement_load="sine",
+            peak=300.0,
+        )
     )
     largest = np.abs(clamp.friction_force).max()
-    np.testing.assert_allclose(support.friction_force, clamp.friction_force, atol=1e-9 * largest)
+    np.testing.assert_allclose(
+        support.friction_force, clamp.friction_force, atol=1e-9 * largest
+    )
 
 
 def test_a_bar_between_two_clamps_holds_all_of_its_heat():
     settings = bar(
-        right_end="held", temperature=30.0, friction=0.0, section_profile="rising", elements=40
+        right_end="held",
+        temperature=30.0,
+        friction=0.0,
+        section_profile="rising",
+        elements=40,
     )
     fields, moved, axial = answer(settings)
     loop = settings.structure().loop(fields.problem)
     force = loop.force(fields)
     assert loop.across == ("Strain without force", "")
     np.testing.assert_allclose(axial[:, -1], force[-1], rtol=1e-9)
-    _, mean = answer(bar(right_end="held", temperature=30.0, friction=0.0, elements=40))[1:]
+    _, mean = answer(
+        bar(right_end="held", temperature=30.0, friction=0.0, elements=40)
+    )[1:]
     harmonic = fields.problem.scales.force / (settings.young * settings.section)
     assert force[-1] == pytest.approx(harmonic * mean[0, -1], rel=1e-9)
     assert moved[0, -1] == moved[-1, -1] == 0.0
@@ -129,7 +161,9 @@ ENDS = st.sampled_from(["held", "spring", "pulled", "free"])
 
 @examples(max_examples=40)
 @given(left=ENDS, right=ENDS, seed=st.integers(0, 1000), parts=st.integers(1, 9))
-def test_the_method_meets_the_incremental_solver_whatever_holds_the_ends(left, right, seed, parts):
+def test_the_method_meets_the_incremental_solver_whatever_holds_the_ends(
+    left, right, seed, parts
+):
     generator = np.random.default_rng(seed)
     sizes = generator.uniform(-1.0, 1.0, 5)
     settings = bar(
@@ -181,7 +215,9 @@ def test_points_that_stood_still_while_slipping_do_not_end_the_search():
 
 
 def test_forces_beyond_all_friction_are_refused_where_nothing_else_holds():
-    with pytest.raises(SettingError, match=r"left_end = \"free\" .*1500 N.*hold an end"):
+    with pytest.raises(
+        SettingError, match=r"left_end = \"free\" .*1500 N.*hold an end"
+    ):
         bar(left_end="free", peak=1500.0)
     bar(left_end="free", peak=1400.0)
     with pytest.raises(SettingError, match="left_end"):

@@ -17,7 +17,8 @@ from solver.scenes.method import method_of
 from solver.scenes.rope import RopeSettings
 
 OWN = [[1, 6e-3, 0.0, 1.1e11], [5, 5e-3, 15.0, 2e11], [12, 4e-3, -25.0, 7e10]]
-"""A core of another metal, a layer with room beside its wires, a softer one the other way round."""
+"""A core of another metal, a layer with room beside its wires, a softer one the other
+way round."""
 
 
 @pytest.mark.parametrize("preset", ["mooring", "seven-wire", "conductor"])
@@ -25,16 +26,23 @@ def test_rows_of_a_named_construction_are_that_construction(preset: str) -> None
     named = settings_of(construction=preset, tension=5e4)
     rows = settings_of(construction=named.points("construction"), tension=5e4)
     for name in ("stiffness", "stuck_bending", "slipping_bending", "diameter", "wires"):
-        assert getattr(rows.section, name) == pytest.approx(getattr(named.section, name), rel=1e-9)
-    bounds = [[float(wire.bound) for wire in s.structure().wires] for s in (named, rows)]
+        assert getattr(rows.section, name) == pytest.approx(
+            getattr(named.section, name), rel=1e-9
+        )
+    bounds = [
+        [float(wire.bound) for wire in s.structure().wires] for s in (named, rows)
+    ]
     assert bounds[1] == pytest.approx(bounds[0], rel=1e-9)
 
 
 def test_its_axial_stiffness_is_the_sum_over_its_wires() -> None:
     expected = sum(
-        n * young * np.pi * d**2 / 4.0 * np.cos(np.radians(lay)) ** 3 for n, d, lay, young in OWN
+        n * young * np.pi * d**2 / 4.0 * np.cos(np.radians(lay)) ** 3
+        for n, d, lay, young in OWN
     )
-    assert settings_of(construction=OWN).section.stiffness == pytest.approx(expected, rel=1e-12)
+    assert settings_of(construction=OWN).section.stiffness == pytest.approx(
+        expected, rel=1e-12
+    )
 
 
 def test_its_first_bending_and_its_cycle_meet_the_closed_form() -> None:
@@ -45,7 +53,8 @@ def test_its_first_bending_and_its_cycle_meet_the_closed_form() -> None:
     assert found.status.any()
     settings = settings_of(construction=OWN, tension=3e4, curvature=0.1, instants=301)
     scene, found = solved(settings)
-    moment, last = moment_of(scene, found), slice(60, None)
+    moment = moment_of(scene, found)
+    last = slice(60, None)
     loop = abs(float(np.trapezoid(moment[last], scene.curvature[last])))
     path = 0.1 * np.cos(np.linspace(0.0, 4.0 * np.pi, 801))
     exact = exact_of(settings).along(path)
@@ -70,7 +79,9 @@ def test_it_comes_from_a_file_with_units_in_its_head_and_what_was_understood_is_
         "core,110,1,6,0\ninner,200,5,5,15\nouter,70,12,4,-25\n"
     )
     settings, messages = settings_from_command("rope", [f"construction={path}"])
-    np.testing.assert_allclose(np.array(settings.values()["construction"]), OWN, rtol=1e-12)
+    np.testing.assert_allclose(
+        np.array(settings.values()["construction"]), OWN, rtol=1e-12
+    )
     assert messages["construction"] == (
         "wires, diameter in mm, lay angle in deg, E in GPa, 3 points, from 70 to 200 GPa; "
         "passed over: 'layer'"
@@ -88,8 +99,14 @@ def changed(row: int, column: int, value: float) -> list[list[float]]:
     [
         (changed(2, 0, 19), "row 3: 19 wires of 0.004 m at -25° do not fit"),
         (changed(1, 0, 2.5), "row 2: wires is 2.5, give a whole number from 1 to 500"),
-        (changed(1, 1, -5e-3), "row 2: diameter is -0.005, give a number from 1e-6 m to 1 m"),
-        (changed(1, 2, 90.0), "row 2: lay angle is 90, give a number from -75 ° to 75 °"),
+        (
+            changed(1, 1, -5e-3),
+            "row 2: diameter is -0.005, give a number from 1e-6 m to 1 m",
+        ),
+        (
+            changed(1, 2, 90.0),
+            "row 2: lay angle is 90, give a number from -75 ° to 75 °",
+        ),
         (changed(1, 2, 0.0), "row 2: give a lay angle of 0.1° or more in size"),
         (changed(2, 3, 0.0), "row 3: modulus is 0, give a number from 1 Pa to 1e18 Pa"),
         (changed(0, 0, 7), "row 1 is the core"),

@@ -12,7 +12,12 @@ from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import solve
 from solver.arrays import Array
-from solver.discrete.rope.cross_section import CONSTRUCTIONS, CrossSection, WireLayer, seven_wire
+from solver.discrete.rope.cross_section import (
+    CONSTRUCTIONS,
+    CrossSection,
+    WireLayer,
+    seven_wire,
+)
 from solver.discrete.rope.rope import Rope
 from solver.discrete.rope.wire_forces import (
     CutWires,
@@ -25,14 +30,23 @@ from solver.files.saved import result_arrays
 from solver.latin import Auto, Latin, Stop
 from solver.reference.closed_forms.bent_strand import BentWire
 from solver.reference.contact import IncrementalContact
-from solver.reference.incremental import IncrementalRod, incremental_solver, reference_of
+from solver.reference.incremental import (
+    IncrementalRod,
+    incremental_solver,
+    reference_of,
+)
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
 
-CLAMPED: dict[str, Any] = {"bending": "clamp", "layers": 2, "elements": 24, "instants": 31}
+CLAMPED: dict[str, Any] = {
+    "bending": "clamp",
+    "layers": 2,
+    "elements": 24,
+    "instants": 31,
+}
 CHANGING: dict[str, Any] = {**CLAMPED, "tension_load": "shaken"}
 
 
@@ -54,7 +68,9 @@ def test_along_any_path_it_follows_masings_rule_with_memory(load: str) -> None:
     assert np.abs(moment_of(scene, found) - exact).max() < 0.005 * np.abs(exact).max()
 
 
-def test_while_all_sticks_it_is_as_stiff_as_one_body_and_once_all_slips_as_loose_wires() -> None:
+def test_while_all_sticks_it_is_as_stiff_as_one_body_and_once_all_slips_as_loose_wires() -> (
+    None
+):
     settings = settings_of(load="ramp", curvature=1.0, instants=401)
     scene, found = solved(settings)
     slopes = np.diff(moment_of(scene, found)) / np.diff(scene.curvature)
@@ -69,17 +85,22 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
     turn = 2.0 * np.pi / len(scene.wires)
     wires = [replace(wire, start=wire.start + turn) for wire in scene.wires]
     turned = replace(scene, wires=wires)
-    moments = [moment_of(one, reference_of(one.discretise())) for one in (scene, turned)]
+    moments = [
+        moment_of(one, reference_of(one.discretise())) for one in (scene, turned)
+    ]
     np.testing.assert_allclose(*moments, rtol=1e-9, atol=1e-9)
 
 
 def test_outer_layers_press_on_what_is_below_them() -> None:
     """All that is laid presses on the core, metre by metre of strand, and nothing on it."""
-    section, tension = CONSTRUCTIONS["mooring"](4), np.array([2e5])
+    section = CONSTRUCTIONS["mooring"](4)
+    tension = np.array([2e5])
     below, above = section.line_pressures(tension)
     per_metre = np.array([one.wires / np.cos(one.lay) for one in section.layers])
     for inner, outer in pairwise(range(4)):
-        assert per_metre[inner] * above[inner] == pytest.approx(per_metre[outer] * below[outer])
+        assert per_metre[inner] * above[inner] == pytest.approx(
+            per_metre[outer] * below[outer]
+        )
     assert above[-1] == 0.0
     own = [
         per_metre[number]
@@ -110,17 +131,24 @@ def test_wires_carry_the_tension_and_lie_beside_each_other(construction: str) ->
 def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None:
     settings = settings_of(**changes)
     problem = discretise(settings)
-    method = Latin(direction=Auto(), finish=None, stop=Stop(accuracy=1e-4, iterations=3000))
-    found, exact = solve(problem, method).iterate, reference_of(problem)
+    method = Latin(
+        direction=Auto(), finish=None, stop=Stop(accuracy=1e-4, iterations=3000)
+    )
+    found = solve(problem, method).iterate
+    exact = reference_of(problem)
     scale = np.abs(exact.contact_force).max()
     assert np.abs(found.contact_force - exact.contact_force).max() < 0.02 * scale
 
 
-def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_every_wire() -> None:
+def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_every_wire() -> (
+    None
+):
     settings = settings_of(**CLAMPED)
     problem = discretise(settings)
     assert isinstance(incremental_solver(problem), IncrementalRod)
-    general = IncrementalContact(discretise(settings_of(**{**CLAMPED, "layers": 1}))).march()
+    general = IncrementalContact(
+        discretise(settings_of(**{**CLAMPED, "layers": 1}))
+    ).march()
     special = reference_of(general.problem)
     np.testing.assert_array_equal(general.status, special.status)
     np.testing.assert_allclose(general.displacement, special.displacement, atol=1e-12)
@@ -170,7 +198,9 @@ def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> 
     section = settings.section
     assert len(stress) == section.wires - 1 == 36
     made = [scene.wires[number].made for number in cut.wire]
-    areas, lay = (np.array([getattr(one, name) for one in made]) for name in ("area", "lay"))
+    areas, lay = (
+        np.array([getattr(one, name) for one in made]) for name in ("area", "lay")
+    )
     share = stress * areas * np.cos(lay)
     moment = float(np.sum(share * cut.centres[:, 1]))
     own = section.slipping_bending * scene.curvature[instant]
@@ -178,13 +208,16 @@ def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> 
     assert moment + own == pytest.approx(whole, rel=0.02)
     core = settings.tension * section.core.stiffness / section.stiffness
     assert float(np.sum(share)) + core == pytest.approx(settings.tension, rel=1e-6)
-    assert float(np.sum(share * cut.centres[:, 0])) == pytest.approx(0.0, abs=0.02 * abs(whole))
+    assert float(np.sum(share * cut.centres[:, 0])) == pytest.approx(
+        0.0, abs=0.02 * abs(whole)
+    )
 
 
 def test_while_all_sticks_the_stress_range_is_that_of_a_bar() -> None:
     settings = settings_of(curvature=0.005, layers=1, instants=21)
     scene, found = solved(settings)
-    layer, (radius,) = settings.section.layers[0], settings.section.radii
+    layer = settings.section.layers[0]
+    (radius,) = settings.section.radii
     stretch = radius * np.cos(layer.lay) ** 2 + 0.5 * layer.diameter
     expected = 2.0 * 0.005 * layer.young * stretch
     ranges = stress_ranges(scene, found.displacement, slice(None))
@@ -193,11 +226,13 @@ def test_while_all_sticks_the_stress_range_is_that_of_a_bar() -> None:
 
 def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     settings = settings_of(curvature=0.1, instants=201, elements=80, layers=1, cycles=2)
-    run, exact = finished_run(settings, errors=False), exact_of(settings)
+    run = finished_run(settings, errors=False)
+    exact = exact_of(settings)
     path = 0.1 * np.cos(np.linspace(0.0, 4.0 * np.pi, 801))
     energy = abs(float(np.trapezoid(exact.along(path)[400:], path[400:])))
     assert reading("energy_per_metre@2")(run) == pytest.approx(energy, rel=0.01)
-    # One wire stands for all of its layer: what is taken is that of the strand that is drawn.
+    # One wire stands for all of its layer: what is taken is that of the strand that is
+    # drawn.
     drawn = settings.structure().described().length
     assert reading("dissipation@2")(run) == pytest.approx(energy * drawn, rel=0.01)
     of_one = np.abs(run.iterate.contact("wire 1.1").tangential_force).sum(axis=0).max()
@@ -205,8 +240,10 @@ def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     secant = float(exact.moment(np.array(0.1))) / 0.1
     assert taken("bending_stiffness", run) == pytest.approx(secant, rel=0.005)
     assert taken("slipping_bending", run) < secant < taken("stuck_bending", run)
-    # All slips, so that friction's bound times the slip of a point is what it takes of a metre.
-    work, slip = taken("wire_work", run), taken("wire_slip", run)
+    # All slips, so that friction's bound times the slip of a point is what it takes of
+    # a metre.
+    work = taken("wire_work", run)
+    slip = taken("wire_slip", run)
     assert work == pytest.approx(2.0 * exact.layers[0].bound * slip, rel=1e-6)
 
 
@@ -217,7 +254,9 @@ BENT = BentWire(WIRE, radius=4e-3, bound=3000.0)
 def test_it_comes_nearer_with_order_two() -> None:
     off = []
     for elements in (20, 40, 80, 160):
-        settings = settings_of(load="ramp", curvature=0.1, layers=1, elements=elements, instants=15)
+        settings = settings_of(
+            load="ramp", curvature=0.1, layers=1, elements=elements, instants=15
+        )
         scene, found = solved(settings)
         exact = exact_of(settings).moment(scene.curvature)
         off.append(np.abs(moment_of(scene, found) - exact).max())
@@ -233,5 +272,7 @@ def test_the_closed_form_has_its_landmarks() -> None:
     assert elastic == pytest.approx(kappas[:2] * stuck, rel=1e-12)
     assert after == pytest.approx(first, rel=1e-6)
     assert full == beyond == pytest.approx(4.0 / np.pi * first, rel=1e-9)
-    slope = np.diff(BENT.moment(np.array([1.2 * BENT.first_slip, 1.2 * BENT.first_slip + step])))
+    slope = np.diff(
+        BENT.moment(np.array([1.2 * BENT.first_slip, 1.2 * BENT.first_slip + step]))
+    )
     assert 0.0 < slope[0] / step < stuck

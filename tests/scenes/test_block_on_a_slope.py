@@ -33,7 +33,8 @@ class Run:
         self.force = loop.force(iterate)
         whole = problem.inside.displacement(iterate.displacement, slice(None))
         self.moved = whole[:, 0].mean(axis=0)
-        weight, mu = self.settings.weight, self.settings.friction
+        weight = self.settings.weight
+        mu = self.settings.friction
         self.sliding_down = weight * (np.sin(self.angle) - mu * np.cos(self.angle))
         self.sliding_up = weight * (np.sin(self.angle) + mu * np.cos(self.angle))
 
@@ -64,7 +65,9 @@ def test_on_the_way_back_nothing_moves_until_the_spring_overcomes_friction(run):
 
 
 @pytest.mark.parametrize(("slope", "returns"), [(30.0, False), (36.0, True)])
-def test_the_spring_pulls_the_block_back_only_from_twice_the_angle_of_friction(slope, returns):
+def test_the_spring_pulls_the_block_back_only_from_twice_the_angle_of_friction(
+    slope, returns
+):
     """At the end it pulls W (sin - mu cos) of the steepest slope against mu W: tan half > mu."""
     found = Run(slope=slope)
     assert (np.tan(np.radians(slope) / 2.0) > 0.3) == returns
@@ -75,7 +78,9 @@ def test_the_spring_pulls_the_block_back_only_from_twice_the_angle_of_friction(s
 @pytest.mark.parametrize("height", [0.12, 0.15, 0.3])
 def test_a_block_tips_where_the_slope_exceeds_base_over_height(height):
     steepest = np.degrees(np.arctan(0.1 / height))
-    assert InclineSettings.checked({**SMALL, "height": height, "slope": 0.99 * steepest})
+    assert InclineSettings.checked(
+        {**SMALL, "height": height, "slope": 0.99 * steepest}
+    )
     with pytest.raises(SettingError, match="tips over an end of its base") as refusal:
         InclineSettings.checked({**SMALL, "height": height, "slope": 1.01 * steepest})
     told = float(str(refusal.value).split("at ")[-1].split("°")[0])
@@ -106,6 +111,8 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     )
     moved, force = local_stage(law, random, rows=6)
     overlap = np.maximum(-(moved[:3] + spring.gap[:, None]), 0.0)
-    np.testing.assert_allclose(force[:3], overlap / spring.softness[:, None], atol=1e-12)
+    np.testing.assert_allclose(
+        force[:3], overlap / spring.softness[:, None], atol=1e-12
+    )
     assert not force[3:].any()
     assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0, 1.0) < 1e-10)

@@ -64,7 +64,9 @@ def relative(found, exact):
 def test_refinement_brings_it_to_the_closed_form(change):
     errors = []
     for elements in (20, 80):
-        scene, iterate = solved(**change, elements=elements, instants=21, tolerance=1e-14)
+        scene, iterate = solved(
+            **change, elements=elements, instants=21, tolerance=1e-14
+        )
         exact = broken_wire(scene)
         number = scene.broken[0]
         contact = iterate.contact("contact 1-2")
@@ -88,7 +90,10 @@ def test_the_closed_form_holds_on_any_tension_path(load):
     contact = iterate.contact("contact 1-2")
     exact = broken_wire(scene)
     assert relative(contact.slip, exact.slip[points(scene)]) < 0.03
-    assert relative(2.0 * contact.tangential_force, exact.friction_force[points(scene)]) < 1e-5
+    assert (
+        relative(2.0 * contact.tangential_force, exact.friction_force[points(scene)])
+        < 1e-5
+    )
 
 
 def test_all_of_it_slips_where_friction_is_too_small_to_give_the_force_back():
@@ -105,7 +110,9 @@ def test_without_friction_it_carries_nothing_and_the_others_what_the_grip_asks_f
     found = axial_forces(scene, iterate.displacement)
     np.testing.assert_allclose(found[1], 0.0, atol=1e-3)
     for whole in (0, 2, 3):
-        np.testing.assert_allclose(found[whole], scene.load + 0.0 * found[whole], atol=1e-3)
+        np.testing.assert_allclose(
+            found[whole], scene.load + 0.0 * found[whole], atol=1e-3
+        )
 
 
 def test_the_break_mirrored_mirrors_everything():
@@ -136,7 +143,8 @@ def strain_energy(scene, forces):
 
 def work_of_the_grip(iterate):
     """Work of each step, by the force at its end, shape (n_instants,), J."""
-    rows, scales = iterate.problem.interfaces["load"].rows, iterate.problem.scales
+    rows = iterate.problem.interfaces["load"].rows
+    scales = iterate.problem.scales
     steps = np.diff(iterate.boundary_displacement[rows], axis=1, prepend=0.0)
     work = (iterate.boundary_force[rows] * steps).sum(axis=0)
     return work * scales.force * scales.displacement
@@ -146,24 +154,36 @@ def dissipation(iterate):
     """Bound times the slip of each step, shape (n_instants,), J."""
     found = np.zeros(iterate.problem.n_instants)
     for name, law in iterate.problem.rubbing.items():
-        bound = law.by_point(law.tangential.highest.max(axis=1)) * iterate.problem.scales.force
-        found += bound @ np.abs(np.diff(iterate.contact(name).slip, axis=1, prepend=0.0))
+        bound = (
+            law.by_point(law.tangential.highest.max(axis=1))
+            * iterate.problem.scales.force
+        )
+        found += bound @ np.abs(
+            np.diff(iterate.contact(name).slip, axis=1, prepend=0.0)
+        )
     return found
 
 
-@pytest.mark.parametrize("change", [PAIR, {"wires": 5}, {**PAIR, **GRIPPED, "peak": 2000.0}])
+@pytest.mark.parametrize(
+    "change", [PAIR, {"wires": 5}, {**PAIR, **GRIPPED, "peak": 2000.0}]
+)
 def test_the_work_of_a_cycle_is_stored_or_dissipated(change):
     """By backward Euler a step also takes the strain energy of its increment."""
     scene, iterate = solved(**change, elements=30, tolerance=1e-22, max_iterations=4000)
     forces = axial_forces(scene, iterate.displacement)
     stored = strain_energy(scene, forces)
     taken = strain_energy(scene, np.diff(forces, axis=2, prepend=0.0))
-    first, second = 8, 24  # the peaks of the tension
+    # the peaks of the tension
+    first = 8
+    second = 24
     cycle = slice(first + 1, second + 1)
     dissipated = dissipation(iterate)[cycle].sum()
     left_over = work_of_the_grip(iterate)[cycle].sum() - taken[cycle].sum() - dissipated
     assert dissipated > 0.01
-    assert left_over == pytest.approx(stored[second] - stored[first], abs=1e-6 * dissipated)
+    assert left_over == pytest.approx(
+        stored[second] - stored[first], abs=1e-6 * dissipated
+    )
     if scene.wires == 2:
-        # Each side of the break is a friction bar, whose cycles are closed (solver/README.md, 6).
+        # Each side of the break is a friction bar, whose cycles are closed
+        # (solver/README.md, 6).
         assert stored[second] == pytest.approx(stored[first], abs=1e-6 * dissipated)

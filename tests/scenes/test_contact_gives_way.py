@@ -11,7 +11,9 @@ from solver.latin import Ending
 from solver.reference.closed_forms.pulled_bar import pulled_compliant_bar
 from solver.scenes import CATALOGUE
 
-LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
+LENGTH = 1.0
+AXIAL = 210e9 * 3.14e-6
+BOUND = 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}
 
 
@@ -44,16 +46,22 @@ def test_a_pulled_bar_moves_as_in_closed_form_and_the_better_the_finer(stiffness
 
 
 def test_where_nothing_slips_the_bar_stands_on_springs():
-    peak, stiffness = 100.0, 100.0
+    peak = 100.0
+    stiffness = 100.0
     assert pulled(peak, stiffness)[1] == 0.0
     found = run(
-        load=[[0.0, 0.0], [1.0, peak]], instants=5, elements=400, contact_stiffness=stiffness
+        load=[[0.0, 0.0], [1.0, peak]],
+        instants=5,
+        elements=400,
+        contact_stiffness=stiffness,
     )
     assert not found.iterate.status.any()
     x = np.linspace(0.0, LENGTH, 401)
     beta = np.sqrt(stiffness) / LENGTH
     exact = peak * np.sinh(beta * x) / (AXIAL * beta * np.cosh(beta * LENGTH))
-    np.testing.assert_allclose(found.iterate.displacement[:, -1], exact, atol=1e-3 * exact[-1])
+    np.testing.assert_allclose(
+        found.iterate.displacement[:, -1], exact, atol=1e-3 * exact[-1]
+    )
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))

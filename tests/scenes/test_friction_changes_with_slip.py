@@ -21,7 +21,8 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
-STIFFNESS, MOST = 6.6e5, 1500.0
+STIFFNESS = 6.6e5
+MOST = 1500.0
 CHANGING = {"friction_law": "slip-dependent"}
 
 
@@ -87,11 +88,13 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
         along = replace(along, softness=softness / common["weights"])
     law = Contact(tangential=along, **common)
     moved, force = local_stage(law, random)
-    friction, slider = force[law.tangent.above], along.slider(moved, force)
+    friction = force[law.tangent.above]
+    slider = along.slider(moved, force)
     slip = np.diff(slider, axis=1, prepend=0.0)
     bound = np.broadcast_to(along.bound, slip.shape)
     if opens:
-        opening, pressing = law.normal.opening(moved, force), force[law.normal.component.above]
+        opening = law.normal.opening(moved, force)
+        pressing = force[law.normal.component.above]
         assert np.all(pressing >= 0.0)
         assert np.all(opening >= -1e-11)
         assert np.all(np.minimum(opening, pressing) <= 1e-11)
@@ -101,7 +104,9 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
         bound = bound * strength(np.cumsum(np.abs(slip), axis=1))
     assert np.all(np.abs(friction) <= bound + 1e-9)
     slips = np.abs(slip) > 1e-8
-    np.testing.assert_allclose(friction[slips], (-np.sign(slip) * bound)[slips], atol=1e-7)
+    np.testing.assert_allclose(
+        friction[slips], (-np.sign(slip) * bound)[slips], atol=1e-7
+    )
     assert law.behaviour(moved, force, 1e-14).violation(1.0, 1.0).max() < 1e-6
     if softness is not None:
         spring = (slider - law.tangent.jump(moved)) / along.softness[:, None]
@@ -113,7 +118,9 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
 
 @pytest.mark.parametrize("ratio", [0.0, 0.5, 2.0])
 def test_a_point_on_a_spring_moves_as_in_closed_form(ratio):
-    first, spring, length = 0.5 * MOST, STIFFNESS, 2.0 * MOST / STIFFNESS
+    first = 0.5 * MOST
+    spring = STIFFNESS
+    length = 2.0 * MOST / STIFFNESS
     slope = first * (ratio - 1.0) / length
     force = np.linspace(0.0, 4.0 * MOST, 81)
     problem = pulled_bar(changing(ratio, length), force, 1)
@@ -121,7 +128,9 @@ def test_a_point_on_a_spring_moves_as_in_closed_form(ratio):
     early = np.maximum(force - first, 0.0) / (spring + slope)
     expected = np.where(early < length, early, (force - first * ratio) / spring)
     assert found.converged.all()
-    np.testing.assert_allclose(found.displacement[-1], expected, atol=1e-12 * expected.max())
+    np.testing.assert_allclose(
+        found.displacement[-1], expected, atol=1e-12 * expected.max()
+    )
     run = solve(problem, Latin(finish=None), distance=distance_to(found, problem))
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.01
@@ -139,14 +148,18 @@ def test_a_point_whose_friction_falls_faster_than_its_spring_unloads_jumps():
 
 
 @pytest.mark.parametrize(("ratio", "length"), [(3.0, 1e-3), (0.5, 1e-3)])
-def test_a_pulled_bar_moves_as_in_closed_form_with_errors_of_second_order(ratio, length):
-    peak, rate = 900.0, gamma(ratio, length)
+def test_a_pulled_bar_moves_as_in_closed_form_with_errors_of_second_order(
+    ratio, length
+):
+    peak = 900.0
+    rate = gamma(ratio, length)
     slope = MOST * abs(ratio - 1.0) / length
     if ratio > 1.0:
         exact = MOST / slope * (np.sqrt(1.0 + (peak * rate / MOST) ** 2) - 1.0)
     else:
         exact = MOST / slope * (1.0 - np.sqrt(1.0 - (peak * rate / MOST) ** 2))
-    sizes, errors = np.array([25, 50, 100, 200]), []
+    sizes = np.array([25, 50, 100, 200])
+    errors = []
     for elements in sizes:
         found = reference_of(
             pulled_bar(changing(ratio, length), np.linspace(0, peak, 21), elements)
@@ -162,7 +175,9 @@ def test_a_pulled_bar_moves_as_in_closed_form_with_errors_of_second_order(ratio,
 def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
     values = {**CHANGING, "friction_ratio": ratio, "slip_length": 3e-4, "load": load}
     chosen = CATALOGUE["bar"].checked({**values, "instants": 51, "finish": "none"})
-    run, whole = (solved(chosen.replace(finish=finish)) for finish in ("none", "at-once"))
+    run, whole = (
+        solved(chosen.replace(finish=finish)) for finish in ("none", "at-once")
+    )
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.02
     assert whole.is_certified
@@ -186,11 +201,19 @@ def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
 
 @pytest.mark.parametrize("length", [1e-6, 1e-4])
 @pytest.mark.parametrize("displaced", [False, True])
-def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(length, displaced):
+def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(
+    length, displaced
+):
     found = []
     for steps in (10, 80):
-        end = np.linspace(0.0, 1.0, steps + 1) * (6e-4 * STIFFNESS if displaced else 800.0)
-        found.append(reference_of(pulled_bar(changing(0.3, length), end, 40, displaced=displaced)))
+        end = np.linspace(0.0, 1.0, steps + 1) * (
+            6e-4 * STIFFNESS if displaced else 800.0
+        )
+        found.append(
+            reference_of(
+                pulled_bar(changing(0.3, length), end, 40, displaced=displaced)
+            )
+        )
         assert found[-1].converged.all()
         assert found[-1].jumps_at is None
     few, many = (one.displacement for one in found)
@@ -218,10 +241,12 @@ STRIP = {
 def pull_out(length):
     """Give displacement and force of the strip's end, up to where the other begins to slip.
 
-    Behind the front friction softens over the same distance as long as it goes on, and beyond is
-    its last value.
+    Behind the front friction softens over the same distance as long as it goes on, and
+    beyond is its last value.
     """
-    stiffness, first, ratio = 2.1e11 * 0.01, 0.3e6, 0.3
+    stiffness = 2.1e11 * 0.01
+    first = 0.3e6
+    ratio = 0.3
     slope = np.sqrt(first * (1.0 - ratio) / length / stiffness)
     softens = np.linspace(0.0, np.arccos(ratio), 100) / slope
     slid = np.linspace(0.0, 1.0 - softens[-1], 200)
@@ -233,9 +258,16 @@ def pull_out(length):
 
 
 @pytest.mark.parametrize(("length", "end"), [(1e-6, 6e-5), (1e-5, 3e-4)])
-def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(length, end):
+def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(
+    length, end
+):
     path = [[0.0, 0.0], [0.25, 0.0], [1.0, end]]
-    values = {**STRIP, "slip_length": length, "right_normal_load": path, "instants": 121}
+    values = {
+        **STRIP,
+        "slip_length": length,
+        "right_normal_load": path,
+        "instants": 121,
+    }
     chosen = CATALOGUE["block"].checked(values)
     problem = discretise(chosen)
     run = solve(problem, method_of(chosen))
@@ -245,7 +277,9 @@ def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(len
     moved = np.interp(problem.instants, *np.transpose(path))
     pulled = -run.iterate.friction_force.sum(axis=0)
     exact = pull_out(length)
-    assert exact[1][-1] == pytest.approx({1e-6: 107.2e3, 1e-5: 144.5e3}[length], rel=1e-3)
+    assert exact[1][-1] == pytest.approx(
+        {1e-6: 107.2e3, 1e-5: 144.5e3}[length], rel=1e-3
+    )
     jumps_at = reference_of(problem).jumps_at
     assert jumps_at == np.searchsorted(moved, exact[0][-1])
     assert f"At {problem.instants[jumps_at]:.4g} s" in run.status.advice
@@ -278,7 +312,12 @@ def test_what_is_found_obeys_equilibrium_and_the_law_wherever_it_is_found(
     seed, scene, ratio, length
 ):
     random = np.random.default_rng(seed)
-    values = {**CHANGING, "friction_ratio": ratio, "slip_length": length, "instants": 21}
+    values = {
+        **CHANGING,
+        "friction_ratio": ratio,
+        "slip_length": length,
+        "instants": 21,
+    }
     values |= {"friction": random.uniform(0.1, 0.8), "elements": 12}
     chosen = CATALOGUE[scene].checked(values)
     problem = discretise(chosen)
@@ -294,10 +333,15 @@ WHOLE = np.linspace(0.0, 1.0, 41)
 
 def pressed_block(law, *, lifted=False):
     """A flat block, moved on its support until all of it slips, and on once more."""
-    low, high = -4e-6, 2e-6 if lifted else -4e-6
+    low = -4e-6
+    high = 2e-6 if lifted else -4e-6
     down = np.interp(WHOLE, [0.0, 0.2, 0.5, 0.6, 0.7], [0.0, low, low, high, low])
     along = np.interp(WHOLE, [0.0, 0.2, 0.5, 0.7, 1.0], [0.0, 0.0, 3e-5, 3e-5, 6e-5])
-    sides = {"top": Side(x=Given(prescribed=True, mean=along), y=Given(prescribed=True, mean=down))}
+    sides = {
+        "top": Side(
+            x=Given(prescribed=True, mean=along), y=Given(prescribed=True, mean=down)
+        )
+    }
     return Stack(
         length=0.1,
         height=0.02,

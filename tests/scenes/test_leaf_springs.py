@@ -13,16 +13,35 @@ from solver import solve
 from solver.arrays import Array
 from solver.discrete.plane.stack import Stack
 from solver.files.saved import settings_from_command
-from solver.reference.closed_forms.elastic_bodies import TwoLeaves, cantilever, leaf_spring
+from solver.reference.closed_forms.elastic_bodies import (
+    TwoLeaves,
+    cantilever,
+    leaf_spring,
+)
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
 from solver.settings.definitions import SettingError
 
-LENGTH, HEIGHT, YOUNG, PRESSURE = 0.5, 0.01, 210e9, 2e6
-THIN = {"plane": "stress", "length": LENGTH, "thickness": 0.005, "young": YOUNG, "instants": 3}
-LOOSE = {**THIN, "friction": 0.0, "pressure": 0.0, "bend_load": "ramp", "bending": "force"}
+LENGTH = 0.5
+HEIGHT = 0.01
+YOUNG = 210e9
+PRESSURE = 2e6
+THIN = {
+    "plane": "stress",
+    "length": LENGTH,
+    "thickness": 0.005,
+    "young": YOUNG,
+    "instants": 3,
+}
+LOOSE = {
+    **THIN,
+    "friction": 0.0,
+    "pressure": 0.0,
+    "bend_load": "ramp",
+    "bending": "force",
+}
 LEAVES = {**LOOSE, "layer_lengths": "graduated"}
 
 
@@ -42,7 +61,9 @@ def alone(height: float = 0.005) -> float:
 
 
 @pytest.mark.parametrize("layers", [2, 3, 4])
-def test_a_graduated_spring_bends_as_beams_that_touch_at_their_ends(layers: int) -> None:
+def test_a_graduated_spring_bends_as_beams_that_touch_at_their_ends(
+    layers: int,
+) -> None:
     settings = settings_of(**LEAVES, layers=layers, force=100.0)
     factor = leaf_spring(np.arange(layers, 0, -1) / layers)
     assert factor is not None
@@ -78,16 +99,23 @@ def test_two_leaves_lose_the_energy_of_goodman_and_klumpp(share: float) -> None:
     there = [[0.0, 0.0], [0.25, 0.0], [0.4, peak], [0.7, -peak], [1.0, peak]]
     settings = settings_of(
         **{**THIN, "thickness": HEIGHT, "poisson": 0.0, "instants": 41, "layers": 2},
-        **{"bending": "force", "bend_load": there, "pressure": PRESSURE, "elements": 32},
+        **{
+            "bending": "force",
+            "bend_load": there,
+            "pressure": PRESSURE,
+            "elements": 32,
+        },
     )
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
     assert solution.is_certified
     loop = settings.structure().loop(problem)
-    bent, force = loop.displacement.of(solution.iterate), loop.force(solution.iterate)
+    bent = loop.displacement.of(solution.iterate)
+    force = loop.force(solution.iterate)
     cycle = settings.times() >= 0.4
     energy = abs(float(np.trapezoid(force[cycle], bent[cycle])))
-    (stuck, apart), slips = leaves.stiffnesses, peak - leaves.first_slip
+    (stuck, apart) = leaves.stiffnesses
+    slips = peak - leaves.first_slip
     lost = 4.0 * leaves.first_slip * slips * (1.0 / apart - 1.0 / stuck)
     assert energy == pytest.approx(lost, rel=0.005)
     (exact,) = settings.exact(problem)
@@ -101,11 +129,15 @@ def test_lengths_that_are_all_whole_are_the_stack_that_it_was() -> None:
     np.testing.assert_array_equal(runs[0].displacement, runs[1].displacement)
 
 
-def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends() -> None:
+def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends() -> (
+    None
+):
     table = [[1, 0.5], [2, 1.0], [3, 0.3]]
     settings = settings_of(layers=3, elements=20, substructures=3, layer_lengths=table)
     problem = discretise(settings)
-    ends = [problem.rubbing[name].positions[-1] for name in ("contact 1-2", "contact 2-3")]
+    ends = [
+        problem.rubbing[name].positions[-1] for name in ("contact 1-2", "contact 2-3")
+    ]
     assert ends == pytest.approx([0.25, 0.15])
     assert len(problem.substructures) == settings.n_substructures == 3 + 5 + 1
     assert problem.inside is not None
@@ -127,7 +159,9 @@ def test_a_run_says_where_leaves_end_elsewhere_than_given() -> None:
 
 def test_pressure_on_all_that_lies_open_presses_leaves_and_bends_none() -> None:
     changes = {"friction": 0.0, "poisson": 0.0, "instants": 3, "pressure_load": "ramp"}
-    settings = settings_of(layer_lengths="graduated", bending="force", force=0.0, **changes)
+    settings = settings_of(
+        layer_lengths="graduated", bending="force", force=0.0, **changes
+    )
     problem = discretise(settings)
     found = reference_of(problem)
     for name, law in problem.rubbing.items():
@@ -159,7 +193,9 @@ def test_a_force_over_time_comes_from_a_file_in_its_unit(tmp_path: Path) -> None
         ("falling", "equal, graduated, or pairs [[layer, share], ...]"),
     ],
 )
-def test_lengths_that_are_not_one_share_for_each_layer_are_refused(table: Any, words: str) -> None:
+def test_lengths_that_are_not_one_share_for_each_layer_are_refused(
+    table: Any, words: str
+) -> None:
     text = refusal(lambda: LayersSettings.checked({"layer_lengths": table}))
     assert "layer_lengths" in text
     assert words in text

@@ -48,7 +48,9 @@ def test_a_bar_slips_on_as_its_bolt_loosens_while_the_load_stands_still():
     slides = np.isnan(formula)
     assert held.sum() > 20
     assert 0 < slides.sum() < held.sum()
-    np.testing.assert_allclose(end[~slides], formula[~slides], atol=1e-6 * np.nanmax(formula))
+    np.testing.assert_allclose(
+        end[~slides], formula[~slides], atol=1e-6 * np.nanmax(formula)
+    )
     found = reference_of(scene.discretise())
     assert np.all(np.diff(found.displacement[-1, held]) > 0.0)
     grown = (found.status == 1).sum(axis=0)[held]
@@ -60,11 +62,15 @@ def test_finer_meshes_come_to_the_closed_form_with_order_two():
     errors = []
     sizes = np.array([10, 20, 40, 80])
     for elements in sizes:
-        scene = rod(load="hold", peak=500.0, pressure_load="loosening", elements=int(elements))
+        scene = rod(
+            load="hold", peak=500.0, pressure_load="loosening", elements=int(elements)
+        )
         found = reference_of(scene.discretise())
         end = solved(scene).end_displacement
         errors.append(np.abs(found.displacement[-1] - end).max() / end.max())
-    assert -np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(2.0, abs=0.2)
+    assert -np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(
+        2.0, abs=0.2
+    )
     assert errors[-1] < 1e-3
 
 
@@ -82,7 +88,8 @@ def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, f
     scene = rod(elements=80, instants=9)
     pressure = np.array([1.0, *factors])
     scene = pulled(scene, [0.0, *load], bound=np.outer(scene.bound, pressure))
-    found, exact = reference_of(scene.discretise()), closed_form(scene)
+    found = reference_of(scene.discretise())
+    exact = closed_form(scene)
     assert found.converged.all()
     bound = np.outer(np.full(81, 1500.0 / 80), pressure)
     assert np.all(np.abs(found.contact_force[1:]) <= bound[1:] * (1.0 + 1e-9))
@@ -103,7 +110,9 @@ def test_latin_and_both_incremental_solvers_find_the_same(path, law, method):
     if law == "coulomb":
         other = IncrementalContact(problem).march()
         size = np.abs(found.contact_force).max()
-        np.testing.assert_allclose(other.contact_force, found.contact_force, atol=1e-9 * size)
+        np.testing.assert_allclose(
+            other.contact_force, found.contact_force, atol=1e-9 * size
+        )
     tight = replace(method, finish=None, stop=Stop(accuracy=1e-3, iterations=2000))
     iterate = solve(problem, tight).iterate
     assert distance_to(found, problem).of_friction_force(iterate) < 1e-3
@@ -116,4 +125,6 @@ def test_foolish_pressures_are_refused_in_words():
         with pytest.raises(RefusedError, match=r"Rods\.bound"):
             replace(rod(), bound=bound)
     with pytest.raises(RefusedError, match="all that friction can hold"):
-        CATALOGUE["strand"].checked({"load": "hold", "peak": 600.0, "pressure_load": "loosening"})
+        CATALOGUE["strand"].checked(
+            {"load": "hold", "peak": 600.0, "pressure_load": "loosening"}
+        )

@@ -31,7 +31,12 @@ TALL = {
     **{"top_tangential_displacement": 1e-4, "top_tangential_load": "ramp"},
 }
 PRESSED = {
-    **{"gap": "parabola", "radius": 30.0, "friction": 0.5, "top_normal_displacement": -2e-5},
+    **{
+        "gap": "parabola",
+        "radius": 30.0,
+        "friction": 0.5,
+        "top_normal_displacement": -2e-5,
+    },
     **{"elements": 96, "elements_up": 16},
 }
 
@@ -55,7 +60,9 @@ def test_nothing_is_remarked_on_a_scene_as_it_stands(scene: str) -> None:
     assert remarks(ran(scene)) == []
 
 
-def test_a_tall_block_whose_top_is_dragged_tips_at_the_force_of_its_lever_arms() -> None:
+def test_a_tall_block_whose_top_is_dragged_tips_at_the_force_of_its_lever_arms() -> (
+    None
+):
     run = ran("block", **TALL, friction=0.9)
     assert run.force[-1] == pytest.approx(1e6 * 0.05 * 0.05 / (2.0 * 0.1), rel=1e-9)
     (remark,) = remarks(run)
@@ -65,7 +72,8 @@ def test_a_tall_block_whose_top_is_dragged_tips_at_the_force_of_its_lever_arms()
 
 def test_a_contact_that_grows_by_leaps_has_friction_in_a_saw_and_says_so() -> None:
     """With steps in which it grows by a point at each end, neighbours rub alike."""
-    leaps, saws = [], []
+    leaps = []
+    saws = []
     for instants in (41, 321):
         run = ran("block", **PRESSED, instants=instants)
         contact = run.iterate.contact("support")
@@ -78,13 +86,20 @@ def test_a_contact_that_grows_by_leaps_has_friction_in_a_saw_and_says_so() -> No
     assert saws[0] > 2.0 * saws[1]
 
 
-def test_the_command_prints_remarks_with_the_result(capsys: pytest.CaptureFixture[str]) -> None:
-    changes = [text for name, value in TALL.items() for text in ("--set", f"{name}={value}")]
+def test_the_command_prints_remarks_with_the_result(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    changes = [
+        text for name, value in TALL.items() for text in ("--set", f"{name}={value}")
+    ]
     command = ["run", "block", *changes, "--set", "friction=0.9", "--no-reference"]
     assert main(command) == 0
     shown = capsys.readouterr().out
     assert "\nremarks              From top_normal_traction = -200000 Pa" in shown
-    assert "and top_tangential_displacement = 5e-6 m (0.05 times its largest value)" in shown
+    assert (
+        "and top_tangential_displacement = 5e-6 m (0.05 times its largest value)"
+        in shown
+    )
     assert ", at 0.05 s, the body tips" in shown
     assert main([*command, "--json"]) == 0
     assert "tips" in json.loads(capsys.readouterr().out)["remarks"][0]
@@ -121,24 +136,37 @@ def test_the_strain_of_a_bar_is_force_over_stiffness():
     values = {"friction": 0.0, "load": "ramp", "peak": 900.0}
     settings = CATALOGUE["bar"].checked(values)
     problem = discretise(settings)
-    found = largest_strain(settings.structure(), problem, reference_of(problem).displacement)
+    found = largest_strain(
+        settings.structure(), problem, reference_of(problem).displacement
+    )
     assert found == pytest.approx(900.0 / (210e9 * 3.14e-6))
 
 
 def test_the_slope_of_a_sheared_body_is_its_shear_and_sliding_is_none():
     settings = CATALOGUE["block"].checked(SMALL["block"])
-    structure, problem = settings.structure(), discretise(settings)
+    structure = settings.structure()
+    problem = discretise(settings)
     along = np.where(problem.inside.components == 0, 1.0, 0.0)[:, None]
     ones = np.ones((1, problem.n_instants))
     assert largest_strain(structure, problem, along * ones) < 1e-12
     settings = CATALOGUE["fault"].checked({**SMALL["fault"], "friction": 10.0})
     problem = discretise(settings)
-    strain = largest_strain(settings.structure(), problem, reference_of(problem).displacement)
+    strain = largest_strain(
+        settings.structure(), problem, reference_of(problem).displacement
+    )
     assert strain == pytest.approx(3.6e6 / (6e10 / 2.5), rel=1e-6)
 
 
 def test_the_command_says_that_a_hundred_giganewtons_are_no_small_strain(capsys):
-    command = ["run", "bar", "--set", "peak=1e11", "--set", "max_iterations=20", "--no-reference"]
+    command = [
+        "run",
+        "bar",
+        "--set",
+        "peak=1e11",
+        "--set",
+        "max_iterations=20",
+        "--no-reference",
+    ]
     main([*command, "--json"])
     (remark,) = json.loads(capsys.readouterr().out)["remarks"]
     assert "does not hold" in remark
@@ -156,7 +184,9 @@ LONG_ONES: dict[str, dict[str, Any]] = {
 def cost(scene: str, *, with_reference: bool = True, **values: Any) -> RunCost:
     settings = CATALOGUE[scene].checked(values)
     most = settings.max_iterations
-    return run_cost(discretise(settings), method_of(settings), most, with_reference=with_reference)
+    return run_cost(
+        discretise(settings), method_of(settings), most, with_reference=with_reference
+    )
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
@@ -181,7 +211,9 @@ def test_what_takes_minutes_or_gigabytes_is_told(scene: str) -> None:
         ("block", "elements", (24, 48, 96)),
     ],
 )
-def test_more_of_anything_takes_more(scene: str, name: str, sizes: tuple[int, ...]) -> None:
+def test_more_of_anything_takes_more(
+    scene: str, name: str, sizes: tuple[int, ...]
+) -> None:
     found = [cost(scene, **{name: size}) for size in sizes]
     assert found[0].seconds < found[1].seconds < found[2].seconds
     assert found[0].memory < found[1].memory < found[2].memory
@@ -189,7 +221,9 @@ def test_more_of_anything_takes_more(scene: str, name: str, sizes: tuple[int, ..
 
 @pytest.mark.parametrize("options", [[], ["--no-reference"]])
 def test_the_command_says_it_in_one_line(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, options: list[str]
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    options: list[str],
 ) -> None:
     monkeypatch.setattr(costs, "LONG", 0.0)
     small = ["--set", "layers=3", "--set", "elements=24", "--set", "instants=5"]
@@ -204,13 +238,25 @@ def test_the_command_says_what_no_reference_would_save(
 ) -> None:
     monkeypatch.setattr(costs, "LONG", 0.0)
     monkeypatch.setattr(costs, "BEGINNING", 0.0)
-    values = ["--set", "elements=96", "--set", "instants=5", "--set", "max_iterations=1"]
+    values = [
+        "--set",
+        "elements=96",
+        "--set",
+        "instants=5",
+        "--set",
+        "max_iterations=1",
+    ]
     main(["run", "layers", *values])
-    assert "for the reference, which --no-reference leaves out" in capsys.readouterr().err
+    assert (
+        "for the reference, which --no-reference leaves out" in capsys.readouterr().err
+    )
 
 
 def test_times_are_written_with_the_one_digit_that_they_have() -> None:
-    texts = [str(RunCost(seconds, 2.34e9, 0.0)) for seconds in (4.4, 34.0, 81.0, 99.0, 7400.0)]
+    texts = [
+        str(RunCost(seconds, 2.34e9, 0.0))
+        for seconds in (4.4, 34.0, 81.0, 99.0, 7400.0)
+    ]
     assert texts == [
         "4 s and 2 GB",
         "30 s and 2 GB",

@@ -26,14 +26,28 @@ def words(scene: str, changes: dict[str, Any]) -> str:
         ("strand", {}, "3 steel wires, number 2 broken, rub on each other; "),
         ("strand", {"broken": 0, "wires": 20}, "20 steel wires rub on each other"),
         ("strand", {"load": "triangle"}, "pulled and let go."),
-        ("block", {}, "a round rough support; it is pressed and moved to and fro at its top"),
+        (
+            "block",
+            {},
+            "a round rough support; it is pressed and moved to and fro at its top",
+        ),
         ("block", {"gap": "flat", "left": "clamped"}, "a flat rough support"),
         ("incline", {}, "a rough slope that rises and falls; a spring catches it"),
-        ("fault", {}, "A fluid is let in at the left end of a sheared fault, and slip spreads"),
+        (
+            "fault",
+            {},
+            "A fluid is let in at the left end of a sheared fault, and slip spreads",
+        ),
         ("fault", {"injection_load": "stopped"}, "A fluid is let in and stopped"),
-        ("layers", {}, "4 steel layers, held at the left, are pressed together and rub; "),
+        (
+            "layers",
+            {},
+            "4 steel layers, held at the left, are pressed together and rub; ",
+        ),
         ("layers", {"layers": 2, "pull": 1e6}, "bent up and down, and pulled."),
     ],
 )
-def test_a_scene_says_what_it_is(scene: str, changes: dict[str, Any], said: str) -> None:
+def test_a_scene_says_what_it_is(
+    scene: str, changes: dict[str, Any], said: str
+) -> None:
     assert said in words(scene, changes)

@@ -118,7 +118,9 @@ def test_the_ground_carries_what_weighs_and_presses():
 
 
 def test_a_wall_that_is_moved_the_other_way_is_its_mirror_image():
-    first, second = (solve(wall(moved=way).discretise(), Latin()) for way in (5e-5, -5e-5))
+    first, second = (
+        solve(wall(moved=way).discretise(), Latin()) for way in (5e-5, -5e-5)
+    )
     shears = []
     for run, sign in ((first, 1.0), (second, -1.0)):
         names = on_ground(run.iterate.problem)
@@ -215,14 +217,18 @@ PILE = {
 
 @pytest.mark.parametrize("friction", [0.2, 0.6])
 @pytest.mark.parametrize("instants", [2, 12])
-def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(friction, instants):
+def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(
+    friction, instants
+):
     """It slides at mu p, and tips at p b / (2 h), whatever the path and its instants."""
     values = {**PILE, "friction": friction, "instants": instants, "traction": 5e5}
     settings = CATALOGUE["wall"].checked(values)
     limit = min(friction, 0.25 / (2.0 * 0.36)) * 1e6
     problem = discretise(settings)
     words = known_reference(problem).doubt
-    told = re.search(r"beyond traction = (\S+) Pa \((\S+) times its largest value\)", words)
+    told = re.search(
+        r"beyond traction = (\S+) Pa \((\S+) times its largest value\)", words
+    )
     assert float(told[1]) == pytest.approx(limit, rel=1e-3)
     assert float(told[2]) == pytest.approx(limit / 5e5, rel=3e-3)
     assert told[0] in solve(problem, method_of(settings)).status.advice
@@ -241,7 +247,9 @@ def test_loads_that_fall_until_nothing_holds_are_told_from_above():
     loosened = {**PILE, "top_load": ((0.0, 2e5),), "friction": 0.6}
     loosened["pressure_load"] = ((0.0, 1e6), (1.0, 0.0))
     words = known_reference(discretise(CATALOGUE["wall"].checked(loosened))).doubt
-    told = re.search(r"below pressure_load = (\S+) Pa \((\S+) times its largest value\)", words)
+    told = re.search(
+        r"below pressure_load = (\S+) Pa \((\S+) times its largest value\)", words
+    )
     exact = 2e5 * 2.0 * 0.36 / 0.25
     assert float(told[1]) == pytest.approx(exact, rel=1e-3)
     assert float(told[2]) == pytest.approx(exact / 1e6, rel=3e-3)
@@ -251,13 +259,21 @@ def test_the_limit_of_a_wall_is_said_to_be_its_meshs_and_rises_with_its_elements
     """Towards that of rigid stones: up to 5 % more than on the coarsest mesh."""
     found = {}
     for elements in (2, 12):
-        size = {"elements": elements, "elements_up": max(elements // 2, 2), "instants": 2}
+        size = {
+            "elements": elements,
+            "elements_up": max(elements // 2, 2),
+            "instants": 2,
+        }
         values = {**PILE, "bond": "running", "bricks": 3, "traction": 1e6, **size}
-        problem = discretise(CATALOGUE["wall"].checked({**values, "top_load": "delayed"}))
+        problem = discretise(
+            CATALOGUE["wall"].checked({**values, "top_load": "delayed"})
+        )
         assert problem.has_short_joints
         collapse = collapse_of(problem)
         found[elements] = collapse.share
-        assert "rigid stones carry up to 5 % more" in collapses(problem, collapse).advice
+        assert (
+            "rigid stones carry up to 5 % more" in collapses(problem, collapse).advice
+        )
     assert 1.01 < found[12] / found[2] < 1.05
     assert not discretise(CATALOGUE["wall"].checked(PILE)).has_short_joints
 
@@ -294,7 +310,9 @@ def test_the_number_of_iterations_does_not_grow_with_the_bricks():
         for count in (3, 7):
             problem = wall(count, count).discretise()
             distance = distance_to(reference_of(problem), problem)
-            for iterate in iterations(problem, Latin(finish=None, multiscale=multiscale)):
+            for iterate in iterations(
+                problem, Latin(finish=None, multiscale=multiscale)
+            ):
                 if distance.of_friction_force(iterate) < 0.01:
                     break
             needed[multiscale, count] = iterate.number

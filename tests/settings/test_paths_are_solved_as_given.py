@@ -30,7 +30,10 @@ SCENES_AND_PATHS = [
 def drawn(scene: str, name: str, seed: int) -> Any:
     """Settings with a table of wide and narrow swings, of which the instants know nothing."""
     random = np.random.default_rng([seed, *name.encode()])
-    grip = {"grip": "displacement"} if scene == "strand" else {}
+    if scene == "strand":
+        grip = {"grip": "displacement"}
+    else:
+        grip = {}
     settings = CATALOGUE[scene].checked(grip)
     size = float(settings.size_of(name)) or 1e5
     middles = np.sort(random.uniform(0.02, 0.98, 5)) * settings.duration
@@ -49,25 +52,35 @@ def turns(values: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
-def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(scene, name):
+def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(
+    scene, name
+):
     settings = drawn(scene, name, 1)
     times, given = np.array(getattr(settings, name)).T
-    seen, instants = settings.path(name), settings.times()
+    seen = settings.path(name)
+    instants = settings.times()
     assert (seen.max(), seen.min()) == (given.max(), given.min())
     np.testing.assert_array_equal(turns(seen), turns(given))
     ends = [(0.0 - times[0]) * -given[0], (settings.duration - times[-1]) * given[-1]]
-    assert np.trapezoid(seen, instants) == pytest.approx(np.trapezoid(given, times) + sum(ends))
+    assert np.trapezoid(seen, instants) == pytest.approx(
+        np.trapezoid(given, times) + sum(ends)
+    )
     assert list(settings.left_out()) == []
 
 
 def of_preset(scene: str, name: str, preset: str, **changes: Any) -> Any:
     """Settings with a preset; wires are gripped, so that no pull is too large."""
-    grip = {"grip": "displacement"} if scene == "strand" else {}
+    if scene == "strand":
+        grip = {"grip": "displacement"}
+    else:
+        grip = {}
     return CATALOGUE[scene].checked({name: preset, "seed": 3, **grip, **changes})
 
 
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
-def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scene, name):
+def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(
+    scene, name
+):
     for preset in CATALOGUE[scene].definitions()[name].presets:
         for number in (1, 2, 7, 38, 41):
             settings = of_preset(scene, name, preset, instants=number)
@@ -75,14 +88,22 @@ def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(scen
             path = settings.definitions()[name].presets[preset]
             given = path.value(fine / settings.duration, 3) * settings.size_of(name)
             seen = settings.path(name)
-            if number == 1:  # it begins at rest: what is between that and its end, is passed
+            if (
+                number == 1
+            ):  # it begins at rest: what is between that and its end, is passed
                 given, seen = (np.concatenate([[0.0], one]) for one in (given, seen))
             else:
                 steps = np.diff(settings.times())
                 assert steps.max() <= settings.duration / (number - 1) * (1.0 + 1e-9)
             size = np.abs(given).max()
-            assert seen.max() == pytest.approx(given.max(), abs=1e-4 * size), (preset, number)
-            assert seen.min() == pytest.approx(given.min(), abs=1e-4 * size), (preset, number)
+            assert seen.max() == pytest.approx(given.max(), abs=1e-4 * size), (
+                preset,
+                number,
+            )
+            assert seen.min() == pytest.approx(given.min(), abs=1e-4 * size), (
+                preset,
+                number,
+            )
             assert settings.n_instants >= number
 
 
@@ -127,11 +148,14 @@ def test_a_large_problem_keeps_the_peaks_of_a_long_table_and_says_what_it_leaves
 
 
 def test_a_fluid_spreads_alike_on_even_and_uneven_instants():
-    place, even = np.linspace(0.0, 3.0, 7), np.linspace(0.0, 1.0, 201)
+    place = np.linspace(0.0, 3.0, 7)
+    even = np.linspace(0.0, 1.0, 201)
     given = np.interp(even, [0.0, 0.3, 0.35, 1.0], [2.0, 1.0, 3.0, 0.0])
     some = np.sort(np.concatenate([[0, 60, 70, 200], np.arange(3, 200, 11)]))
     uneven = spread(place, even[some], given[some], 0.5)
-    np.testing.assert_allclose(uneven, spread(place, even, given, 0.5)[:, some], atol=1e-9)
+    np.testing.assert_allclose(
+        uneven, spread(place, even, given, 0.5)[:, some], atol=1e-9
+    )
 
 
 ASPERITY = [[0.0, 1e-5], [0.05, 1e-5], [0.0503, 0.0], [0.0506, 1e-5], [0.1, 1e-5]]
@@ -159,18 +183,27 @@ def integral(*tables: list[list[float]], over: np.ndarray) -> float:
     ends = np.union1d(points[(points > over[0]) & (points < over[1])], over)
     share = (np.arange(200) + 0.5) / 200
     where = ends[:-1, None] + share * np.diff(ends)[:, None]
-    values = np.prod([np.interp(where, *np.transpose(table)) for table in tables], axis=0)
+    values = np.prod(
+        [np.interp(where, *np.transpose(table)) for table in tables], axis=0
+    )
     return float((values.mean(axis=1) * np.diff(ends)).sum())
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_all_friction_of_the_bar_is_there_whatever_the_mesh(seed):
     length = 2.0
-    mu, pressure = profile(seed, length), profile(seed + 100, length)
+    mu = profile(seed, length)
+    pressure = profile(seed + 100, length)
     whole = 0.3 * 5000.0 * integral(mu, pressure, over=np.array([0.0, length]))
     for elements in (3, 50, 400):
-        changes = {"friction_profile": mu, "pressure_profile": pressure, "length": length}
-        settings = CATALOGUE["bar"].checked({**changes, "elements": elements, "substructures": 1})
+        changes = {
+            "friction_profile": mu,
+            "pressure_profile": pressure,
+            "length": length,
+        }
+        settings = CATALOGUE["bar"].checked(
+            {**changes, "elements": elements, "substructures": 1}
+        )
         problem = discretise(settings)
         (law,) = problem.rubbing.values()
         total = settings.structure().bound @ law.weights
@@ -185,14 +218,21 @@ def test_all_strength_of_a_fault_is_there_whatever_the_mesh():
         settings = CATALOGUE["fault"].checked({**values, "overpressure": 0.0})
         (law,) = discretise(settings).rubbing.values()
         nodal = settings.largest_friction(settings.places)[:, 0]
-        assert nodal @ law.by_point(law.weights[:, None])[:, 0] == pytest.approx(whole, rel=1e-4)
+        assert nodal @ law.by_point(law.weights[:, None])[:, 0] == pytest.approx(
+            whole, rel=1e-4
+        )
 
 
 def test_a_notch_between_nodes_stretches_the_bar():
     notched = [[0.0, 1.0], [0.511, 1.0], [0.512, 0.01], [0.513, 0.01], [0.514, 1.0]]
     ends = []
     for elements in (10, 1000):
-        values = {"section_profile": notched, "friction": 0.0, "load": "ramp", "instants": 2}
+        values = {
+            "section_profile": notched,
+            "friction": 0.0,
+            "load": "ramp",
+            "instants": 2,
+        }
         settings = CATALOGUE["bar"].checked({**values, "elements": elements})
         ends.append(reference_of(discretise(settings)).displacement[-1, -1])
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
@@ -214,7 +254,8 @@ def test_an_asperity_between_nodes_touches_and_the_mesh_that_sees_it_is_named():
     assert "332 elements would see it" in message
     fine, nothing = pressed(332)
     assert nothing == []
-    # A point carries in the plane as 1 / log(size): half as much again on shares 7 times as wide.
+    # A point carries in the plane as 1 / log(size): half as much again on shares 7
+    # times as wide.
     assert fine < coarse < 1.5 * fine
 
 
@@ -233,7 +274,9 @@ def test_every_element_is_as_stiff_as_all_that_lies_in_it(table):
     scene = chosen.structure()
     fine = np.linspace(0.0, 2.0, 24 * 20_000 + 1)
     middles = 0.5 * (fine[1:] + fine[:-1])
-    compliance = np.mean(1.0 / np.interp(middles, *np.transpose(table)).reshape(24, -1), axis=1)
+    compliance = np.mean(
+        1.0 / np.interp(middles, *np.transpose(table)).reshape(24, -1), axis=1
+    )
     assert scene.stiffness * scene.section == pytest.approx(
         chosen.young * chosen.section / compliance, rel=2e-4
     )

@@ -30,8 +30,12 @@ def refusal(kind, **values):
     return str(caught.value)
 
 
-@pytest.mark.parametrize(("side", "sign"), [("left", -1.0), ("right", 1.0), ("top", 1.0)])
-def test_normal_values_are_positive_outward_and_tangential_ones_along_the_axis(side, sign):
+@pytest.mark.parametrize(
+    ("side", "sign"), [("left", -1.0), ("right", 1.0), ("top", 1.0)]
+)
+def test_normal_values_are_positive_outward_and_tangential_ones_along_the_axis(
+    side, sign
+):
     settings = BlockSettings.checked(
         {
             side: "displacement",
@@ -43,7 +47,12 @@ def test_normal_values_are_positive_outward_and_tangential_ones_along_the_axis(s
         }
     )
     given = settings.side(side)
-    normal, tangential = (given.y, given.x) if side == "top" else (given.x, given.y)
+    if side == "top":
+        normal = given.y
+        tangential = given.x
+    else:
+        normal = given.x
+        tangential = given.y
     assert normal.mean[-1] == pytest.approx(sign * 2e-5)
     assert tangential.mean[-1] == pytest.approx(3e-5)
     assert tangential.slope[-1] == pytest.approx(0.5 * 3e-5)
@@ -67,8 +76,14 @@ def test_only_what_a_side_uses_applies():
         ({**PRESSED, "top_normal_slope": 3.1}, "tips over"),
         ({**PRESSED, "top_normal_slope": -3.1}, "tips over"),
         ({**DRAGGED, "body_force_x": 4e6, "friction": 0.1}, "tips over"),
-        ({"top": "pushed", "friction": 0.0, "top_tangential_traction": 1e6}, "friction cannot"),
-        ({"top": "free", "body_force_x": 1.0, "body_force_y": -2.0}, "friction cannot hold"),
+        (
+            {"top": "pushed", "friction": 0.0, "top_tangential_traction": 1e6},
+            "friction cannot",
+        ),
+        (
+            {"top": "free", "body_force_x": 1.0, "body_force_y": -2.0},
+            "friction cannot hold",
+        ),
     ],
 )
 def test_loads_that_contact_alone_cannot_hold_are_refused(values, word):
@@ -78,7 +93,13 @@ def test_loads_that_contact_alone_cannot_hold_are_refused(values, word):
 @pytest.mark.parametrize("shear", [0.8e6, 1e6, 5e6])
 def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(shear):
     """Its top is sheared more and more: it tips at b/(2 h) of what presses, and slides at mu."""
-    tall = {"gap": "flat", "length": 0.05, "height": 0.1, "friction": 0.9, "instants": 1001}
+    tall = {
+        "gap": "flat",
+        "length": 0.05,
+        "height": 0.1,
+        "friction": 0.9,
+        "instants": 1001,
+    }
     sheared = {"top_tangential_traction": shear, "top_tangential_load": "ramp"}
     pressed = {"top": "traction", "top_normal_load": ((0.0, -1e6),)}
     message = refusal(BlockSettings, **tall, **sheared, **pressed)
@@ -87,7 +108,9 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
     told = float(message.split("from ")[1].split(" s on")[0])
     assert told == pytest.approx(0.25e6 / shear, abs=2e-3)
     at_once = {"top_tangential_load": ((0.0, shear),)}
-    assert "tips over" in refusal(BlockSettings, **{**tall, **sheared, **pressed, **at_once})
+    assert "tips over" in refusal(
+        BlockSettings, **{**tall, **sheared, **pressed, **at_once}
+    )
 
 
 @pytest.mark.parametrize(
@@ -95,8 +118,16 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
     [
         (BlockSettings, {"substructures": 49}, "substructures"),
         (LayersSettings, {"substructures_up": 3}, "substructures_up"),
-        (BlockSettings, {"elements": 2000, "elements_up": 1000, "substructures": 99}, "instants"),
-        (BlockSettings, {"elements": 400, "elements_up": 400, "instants": 2}, "parts smaller"),
+        (
+            BlockSettings,
+            {"elements": 2000, "elements_up": 1000, "substructures": 99},
+            "instants",
+        ),
+        (
+            BlockSettings,
+            {"elements": 400, "elements_up": 400, "instants": 2},
+            "parts smaller",
+        ),
         (BlockSettings, {"start": "nested"}, "start"),
         (BlockSettings, {"gap": [[0.1, 0.0], [0.0, 0.0]]}, "must increase"),
         (BlockSettings, {"radius": 0.0}, "radius"),
@@ -119,7 +150,8 @@ def test_a_run_from_the_command_line_writes_every_contact(scene, tmp_path, capsy
     assert main(command) == 0
     assert json.loads(capsys.readouterr().out)["error_force"] < 1e-2
     kept = np.load(file)
-    nodes, instants = len(kept["x"]), len(kept["t"])
+    nodes = len(kept["x"])
+    instants = len(kept["t"])
     assert kept["displacement"].shape == (nodes, 2, instants)
     names = {name.split("/")[1] for name in kept if name.startswith("interface/")}
     assert names == set(discretise(CATALOGUE[scene].checked(SMALL)).rubbing)

@@ -1,7 +1,8 @@
 """Whatever the settings, a run ends right, or says that it does not, or is refused in words.
 
-Here some go over all of the range that they may have, far beyond those that are drawn by
-`python -m solver stability --random`. SLIPFRONT_RANDOM_RUNS=500 makes that many runs of each scene.
+Here some go over all of the range that they may have, far beyond those that are drawn
+by `python -m solver stability --random`. SLIPFRONT_RANDOM_RUNS=500 makes that many runs
+of each scene.
 """
 
 from __future__ import annotations
@@ -21,7 +22,13 @@ RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "8"))
 SMALLEST = 1e-12
 """Of a number whose range begins at zero, or below."""
 MOST = {
-    **{"elements": 12, "elements_up": 3, "instants": 10, "cycles": 2, "max_iterations": 100},
+    **{
+        "elements": 12,
+        "elements_up": 3,
+        "instants": 10,
+        "cycles": 2,
+        "max_iterations": 100,
+    },
     **{"wires": 5, "layers": 3, "bricks": 3, "courses": 3},
 }
 """Bounds that keep a run short."""
@@ -32,15 +39,23 @@ def values_of(scene: str, row: int) -> dict[str, Any]:
     """Values of a small run that is drawn at random, some of them anywhere in their range."""
     generator = np.random.default_rng([row, *scene.encode()])
     settings = draw(scene, 1, row)
-    values, definitions = settings.changed(), settings.definitions()
-    numbers = [name for name, each in definitions.items() if isinstance(each, param.Number)]
-    for name in generator.choice(numbers, generator.integers(1, 6), replace=False).tolist():
+    values = settings.changed()
+    definitions = settings.definitions()
+    numbers = [
+        name for name, each in definitions.items() if isinstance(each, param.Number)
+    ]
+    for name in generator.choice(
+        numbers, generator.integers(1, 6), replace=False
+    ).tolist():
         low, high = definitions[name].bounds
         size = log_uniform(generator, max(low, SMALLEST), high)
         sign = -1.0 if low < 0.0 and generator.random() < 0.5 else 1.0
         anywhere = generator.choice([low, high, sign * size], p=[0.1, 0.1, 0.8])
         is_whole = isinstance(definitions[name], param.Integer)
-        values[name] = int(anywhere) if is_whole else float(anywhere)
+        if is_whole:
+            values[name] = int(anywhere)
+        else:
+            values[name] = float(anywhere)
     for name, most in MOST.items():
         if name in definitions:
             values[name] = min(values.get(name, most), most)

@@ -172,8 +172,16 @@ STACKS: list[Case] = [
     (BODY, {"tilt": np.ones(4)}, "Stack.tilt"),
     (BODY, {"support": 0.3}, "Stack.support"),
     (BODY, {"support": Support(0.0 * NODES[1:], 0.3)}, "Stack.support.gap"),
-    (BODY, {"support": Support(0.0 * NODES, 0.3 * NODES[1:])}, "Stack.support.friction"),
-    (BODY, {"support": Support(0.0 * NODES, 0.3, np.ones((7, 4)))}, "Stack.support.bound"),
+    (
+        BODY,
+        {"support": Support(0.0 * NODES, 0.3 * NODES[1:])},
+        "Stack.support.friction",
+    ),
+    (
+        BODY,
+        {"support": Support(0.0 * NODES, 0.3, np.ones((7, 4)))},
+        "Stack.support.bound",
+    ),
     (BODY, {"sides": None}, "Stack.sides"),
     (BODY, {"sides": {"Top": BODY.sides["top"]}}, "Stack.sides"),
     (BODY, {"sides": {0: BODY.sides["top"]}}, "Stack.sides"),
@@ -241,8 +249,16 @@ PROBLEMS: list[Case] = [
     (PROBLEM, {"interfaces": {}}, "Problem.interfaces"),
     (PROBLEM, {"interfaces": list(PROBLEM.interfaces)}, "Problem.interfaces"),
     (PROBLEM, {"interfaces": without("load")}, "Problem.interfaces"),
-    (PROBLEM, {"interfaces": {**PROBLEM.interfaces, "more": LOAD}}, "Problem.interfaces"),
-    (PROBLEM, {"interfaces": {**PROBLEM.interfaces, "load": None}}, "Problem.interfaces"),
+    (
+        PROBLEM,
+        {"interfaces": {**PROBLEM.interfaces, "more": LOAD}},
+        "Problem.interfaces",
+    ),
+    (
+        PROBLEM,
+        {"interfaces": {**PROBLEM.interfaces, "load": None}},
+        "Problem.interfaces",
+    ),
     (PROBLEM, {"positions": NODES[1:]}, "Problem.substructures"),
     (PROBLEM, {"positions": spoilt(NODES, nan)}, "Problem.positions"),
     (PROBLEM, {"instants": falling(T)}, "Problem.instants"),
@@ -257,7 +273,11 @@ PROBLEMS: list[Case] = [
     (PIECE, {"rows": PIECE.rows - 0.5}, "Substructure.rows"),
     (PIECE, {"elasticity": None}, "Substructure.elasticity"),
     (PIECE.elasticity, {"stiffness": np.eye(4)[:3]}, "Elasticity.stiffness"),
-    (PIECE.elasticity, {"stiffness": np.diag([1.0, 1.0, 1.0, nan])}, "Elasticity.stiffness"),
+    (
+        PIECE.elasticity,
+        {"stiffness": np.diag([1.0, 1.0, 1.0, nan])},
+        "Elasticity.stiffness",
+    ),
     (PIECE.elasticity, {"stiffness": np.triu(np.ones((4, 4)))}, "Elasticity.stiffness"),
     (
         PIECE.elasticity,
@@ -265,7 +285,11 @@ PROBLEMS: list[Case] = [
         "Elasticity.stiffness",
     ),
     (PIECE.elasticity, {"trace": PIECE.elasticity.trace + 9}, "Elasticity.trace"),
-    (PIECE.elasticity, {"direction": -PIECE.elasticity.direction}, "Elasticity.direction"),
+    (
+        PIECE.elasticity,
+        {"direction": -PIECE.elasticity.direction},
+        "Elasticity.direction",
+    ),
     (LOAD, {"values": spoilt(LOAD.values, nan, (0, 2))}, "Neumann.values"),
     (LOAD, {"values": LOAD.values[0]}, "Neumann.values"),
     (SUPPORT, {"rows": -SUPPORT.rows}, "Dirichlet.rows"),
@@ -278,7 +302,13 @@ PROBLEMS: list[Case] = [
         "Contact.tangential.friction",
     ),
 ]
-TABLES = {"rods": RODS, "stack": STACKS, "rope": ROPES, "method": METHODS, "problem": PROBLEMS}
+TABLES = {
+    "rods": RODS,
+    "stack": STACKS,
+    "rope": ROPES,
+    "method": METHODS,
+    "problem": PROBLEMS,
+}
 
 
 def cases() -> Iterator[Any]:
@@ -287,7 +317,10 @@ def cases() -> Iterator[Any]:
             ((attribute, value),) = change.items()
             kind = type(value).__name__
             yield pytest.param(
-                part, change, name, id=f"{type(part).__name__}.{attribute} {kind} {number}"
+                part,
+                change,
+                name,
+                id=f"{type(part).__name__}.{attribute} {kind} {number}",
             )
 
 

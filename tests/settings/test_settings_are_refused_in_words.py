@@ -32,7 +32,18 @@ BAD_TABLES = [
     ([[0.0, 1e16]], "give a number from"),
     ([[0.0, 10**400]], "give a number from"),
 ]
-NO_NUMBERS = [10**400, -(10**400), math.nan, math.inf, -math.inf, True, "many", None, [1.0], {}]
+NO_NUMBERS = [
+    10**400,
+    -(10**400),
+    math.nan,
+    math.inf,
+    -math.inf,
+    True,
+    "many",
+    None,
+    [1.0],
+    {},
+]
 NO_CHOICES = ["nothing", 3, 0.0, None, [], ["none"], {"a": 1}]
 
 
@@ -40,14 +51,20 @@ NO_CHOICES = ["nothing", 3, 0.0, None, [], ["none"], {"a": 1}]
 def wrong(draw):
     """Any setting with a value that it cannot have, what is allowed, and a remedy or none."""
     name = draw(st.sampled_from(sorted(DEFINITIONS)))
-    definition, remedy = DEFINITIONS[name], ""
+    definition = DEFINITIONS[name]
+    remedy = ""
     if isinstance(definition, CurveParameter):
         value, remedy = draw(st.sampled_from(BAD_TABLES))
         return name, value, ", ".join(definition.presets), remedy
     if isinstance(definition, param.Boolean):
         return name, draw(st.sampled_from(NO_CHOICES)), "true or false", ""
     if isinstance(definition, param.Selector):
-        return name, draw(st.sampled_from([*NO_CHOICES, True])), ", ".join(definition.objects), ""
+        return (
+            name,
+            draw(st.sampled_from([*NO_CHOICES, True])),
+            ", ".join(definition.objects),
+            "",
+        )
     low, high = definition.bounds
     beyond = [low - 1, high * 2 + 1, *NO_NUMBERS]
     if isinstance(definition, param.Integer):
@@ -74,7 +91,9 @@ def test_what_is_no_value_of_a_setting_is_refused_with_what_is_allowed(case):
         ("seed", "a whole number from 0 to 2147483647"),
     ],
 )
-def test_a_range_reads_as_one_says_it_and_ends_that_limit_nobody_stand_behind(name, said):
+def test_a_range_reads_as_one_says_it_and_ends_that_limit_nobody_stand_behind(
+    name, said
+):
     assert f"allowed: {said}; " in refusal(lambda: BarSettings.checked({name: "many"}))
 
 
@@ -96,7 +115,9 @@ def test_whole_numbers_may_be_written_with_a_point_and_nothing_behind_it():
         ("k", "k_scale", "Multiplies the search direction k"),
     ],
 )
-def test_unknown_names_are_refused_with_the_nearest_ones_and_their_meaning(name, meant, meaning):
+def test_unknown_names_are_refused_with_the_nearest_ones_and_their_meaning(
+    name, meant, meaning
+):
     text = refusal(lambda: BarSettings.checked({name: 0.3}))
     assert_names(text, name, "0.3", "a setting of bar")
     assert f"did you mean {meant} ({meaning}" in text
@@ -119,20 +140,34 @@ def test_names_that_are_no_settings_are_refused():
 def test_unknown_scenes_are_refused_with_the_known_ones():
     for text in ('scene = "bridge"', "peak = 1.0", "scene = 3", 'scene = ["bar"]'):
         assert "allowed: bar" in refusal(lambda text=text: settings_from_toml(text))
-    assert_names(refusal(lambda: settings_from_command("bridge", [])), "scene", "bridge", "bar")
+    assert_names(
+        refusal(lambda: settings_from_command("bridge", [])), "scene", "bridge", "bar"
+    )
 
 
 def test_values_that_do_not_fit_together_are_refused():
     text = refusal(lambda: BarSettings.checked({"elements": 5}))
     assert_names(text, "substructures", "10", "1 to elements (5)")
-    text = refusal(lambda: BarSettings.checked({"elements": 20_000, "instants": 20_001}))
+    text = refusal(
+        lambda: BarSettings.checked({"elements": 20_000, "instants": 20_001})
+    )
     assert_names(text, "instants", "20001", "at most 1249")
     text = refusal(lambda: BarSettings.checked({"friction_profile": [[0.0, -1.0]]}))
     assert_names(text, "friction_profile", "-1.0", "factors of at least 0")
 
 
 @pytest.mark.parametrize(
-    "text", ["9" * 5000, "1" + "0" * 400, "[" * 20_000, "1\nseed = 4", "", "nan", "true", "1,5"]
+    "text",
+    [
+        "9" * 5000,
+        "1" + "0" * 400,
+        "[" * 20_000,
+        "1\nseed = 4",
+        "",
+        "nan",
+        "true",
+        "1,5",
+    ],
 )
 def test_text_that_is_no_number_is_refused_by_every_front(text):
     assert "peak = " in refusal(lambda: settings_from_command("bar", [f"peak={text}"]))
@@ -150,7 +185,9 @@ def test_text_that_is_no_number_is_refused_by_every_front(text):
         ("?scene=bridge", "there is no scene bridge", "bar"),
     ],
 )
-def test_a_bad_address_is_explained_and_gives_the_defaults_of_its_scene(query, words, scene):
+def test_a_bad_address_is_explained_and_gives_the_defaults_of_its_scene(
+    query, words, scene
+):
     place, complaint = read(query)
     assert words in complaint
     assert place["settings"].values() == default_settings(scene).values()

@@ -58,6 +58,8 @@ def test_every_setting_says_what_it_is():
 
 def test_a_saved_file_takes_changes_from_the_command_line(tmp_path):
     saved = tmp_path / "saved.toml"
-    saved.write_text(dump(BarSettings.checked({"peak": 700.0, "elements": 20})), encoding="utf-8")
+    saved.write_text(
+        dump(BarSettings.checked({"peak": 700.0, "elements": 20})), encoding="utf-8"
+    )
     found, _ = settings_from_command(str(saved), ["peak=800", "load=ramp"])
     assert (found.peak, found.elements, found.load) == (800.0, 20, "ramp")

@@ -30,7 +30,11 @@ def chosen(scene, **values):
 def run(scene, **values):
     settings = chosen(scene, **values)
     problem = discretise(settings)
-    return solve(problem, method_of(settings), distance=distance_to(reference_of(problem), problem))
+    return solve(
+        problem,
+        method_of(settings),
+        distance=distance_to(reference_of(problem), problem),
+    )
 
 
 @pytest.mark.parametrize("scene", list(SMALL))
@@ -67,7 +71,13 @@ def test_two_points_of_strength_are_friction_that_changes_with_slip(scene):
 
 def test_cohesion_alone_holds_its_length_and_slips_beyond():
     given = {
-        **{"gap": "flat", "friction": 0.0, "cohesion": 2e6, "poisson": 0.0, "plane": "stress"},
+        **{
+            "gap": "flat",
+            "friction": 0.0,
+            "cohesion": 2e6,
+            "poisson": 0.0,
+            "plane": "stress",
+        },
         **{"top_normal_displacement": -1e-5, "top_tangential_displacement": 4e-5},
     }
     result = run("block", **GENERAL, **given, top_tangential_load="ramp")
@@ -84,7 +94,9 @@ def test_a_block_is_refused_what_cohesion_and_cap_cannot_hold_and_only_that():
     assert "no friction" not in refusal(lambda: chosen("block", **pressed))
     assert run("block", **pressed, **GENERAL, cohesion=2.1e5).is_certified
     for values in ({"cohesion": 1.9e5}, {"cohesion": 1e6, "friction_cap": 1.9e5}):
-        text = refusal(lambda values=values: chosen("block", **pressed, **GENERAL, **values))
+        text = refusal(
+            lambda values=values: chosen("block", **pressed, **GENERAL, **values)
+        )
         assert "friction cannot hold it" in text
 
 
@@ -92,7 +104,9 @@ def test_a_broken_wire_is_held_by_cohesion_too():
     pulled = {"peak": 2000.0, "friction": 0.0, **GENERAL}
     assert "tensions below 0 N" in refusal(lambda: chosen("strand", **pulled))
     assert run("strand", **pulled, cohesion=3000.0).is_certified
-    text = refusal(lambda: chosen("strand", **pulled, cohesion=3000.0, friction_cap=1000.0))
+    text = refusal(
+        lambda: chosen("strand", **pulled, cohesion=3000.0, friction_cap=1000.0)
+    )
     assert "tensions below 1000 N" in text
 
 
@@ -114,16 +128,24 @@ def test_cohesion_and_cap_of_a_bar_are_a_bound_as_known_as_that_of_its_pressure(
 def test_no_point_of_a_bar_carries_more_than_the_cap():
     result = run("bar", **GENERAL, friction_cap=900.0)
     support = result.iterate.problem.friction
-    carried = np.abs(result.iterate.friction_force) / support.by_point(support.weights)[:, None]
+    carried = (
+        np.abs(result.iterate.friction_force)
+        / support.by_point(support.weights)[:, None]
+    )
     assert result.is_certified
     assert carried.max() == pytest.approx(900.0, rel=1e-9)
 
 
-@pytest.mark.parametrize(("scene", "stiffness"), [("bar", 1e8), ("block", 1e12), ("layers", 1e12)])
+@pytest.mark.parametrize(
+    ("scene", "stiffness"), [("bar", 1e8), ("block", 1e12), ("layers", 1e12)]
+)
 @pytest.mark.parametrize("cohesion", [0.0, 1.0])
 def test_softening_on_a_spring_is_certified(scene, stiffness, cohesion):
     size = cohesion * (300.0 if scene == "bar" else 3e5)
-    flat = {"gap": "flat"} if scene == "block" else {}
+    if scene == "block":
+        flat = {"gap": "flat"}
+    else:
+        flat = {}
     law = {"tangential_stiffness": stiffness, "strength": PEAK, "cohesion": size}
     result = run(scene, **GENERAL, **law, **flat)
     assert result.is_certified
@@ -134,16 +156,20 @@ def test_softening_on_a_spring_is_certified(scene, stiffness, cohesion):
 def test_a_bonded_bar_softens_as_in_closed_form():
     """theory: a zone of length s softens, P = N_0 cos(beta s) + (tau / beta) sin(beta s).
 
-    The strength is a factor over the slider's slip; over the bond's, the spring adds its own.
+    The strength is a factor over the slider's slip; over the bond's, the spring adds
+    its own.
     """
-    peak, stiffness, slope = 4000.0, 4e7, 4e6
+    peak = 4000.0
+    stiffness = 4e7
+    slope = 4e6
     axial = 210e9 * 3.14e-6
     bond = {
         **{"friction": 0.0, "cohesion": peak, "tangential_stiffness": stiffness},
         "strength": [[0.0, 1.0], [peak / slope, 0.0]],
     }
     falls = slope / (1.0 - slope / stiffness)
-    lag, beta = np.sqrt(stiffness / axial), np.sqrt(falls / axial)
+    lag = np.sqrt(stiffness / axial)
+    beta = np.sqrt(falls / axial)
     zone = 0.4
     first = peak / lag * np.tanh(lag * (1.0 - zone))
     pull = first * np.cos(beta * zone) + peak / beta * np.sin(beta * zone)
@@ -176,28 +202,46 @@ def test_a_strength_that_does_not_begin_at_one_is_refused_in_words(table, why):
     text = refusal(lambda: chosen("bar", **GENERAL, strength=table))
     assert_names(text, "strength", "", "")
     assert why in text
-    chosen("bar", strength=[[0.0, 2.0], [1e-3, 1.0]])  # where it does nothing nobody minds
+    chosen(
+        "bar", strength=[[0.0, 2.0], [1e-3, 1.0]]
+    )  # where it does nothing nobody minds
 
 
 def test_stiffnesses_without_digits_are_refused_with_what_is_possible():
     text = refusal(lambda: chosen("block", **GENERAL, tangential_stiffness=1e-12))
-    assert_names(text, "tangential_stiffness", "1e-12", "0, or from 2100 N/m^3 to 2.1e21 N/m^3")
+    assert_names(
+        text, "tangential_stiffness", "1e-12", "0, or from 2100 N/m^3 to 2.1e21 N/m^3"
+    )
 
 
 @pytest.mark.parametrize("scene", list(SMALL))
-def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_show(scene):
+def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_show(
+    scene,
+):
     definitions = CATALOGUE[scene].definitions()
     is_plane = CATALOGUE[scene].kind == "plane"
-    stiffness, pressure = ("N/m^3", "Pa") if is_plane else ("N/m^2", "N/m")
+    if is_plane:
+        stiffness = "N/m^3"
+        pressure = "Pa"
+    else:
+        stiffness = "N/m^2"
+        pressure = "N/m"
     assert about(definitions["tangential_stiffness"]).unit == stiffness
-    assert {about(definitions[name]).unit for name in ("cohesion", "friction_cap")} == {pressure}
+    assert {about(definitions[name]).unit for name in ("cohesion", "friction_cap")} == {
+        pressure
+    }
     assert unit_of(definitions["cohesion"]).name == ("MPa" if is_plane else "kN/m")
-    assert unit_of(definitions["tangential_stiffness"]).name == ("GN/m³" if is_plane else "MN/m²")
-    given, plain = chosen(scene, **GENERAL), chosen(scene)
+    assert unit_of(definitions["tangential_stiffness"]).name == (
+        "GN/m³" if is_plane else "MN/m²"
+    )
+    given = chosen(scene, **GENERAL)
+    plain = chosen(scene)
     for name in ("tangential_stiffness", "cohesion", "friction_cap", "strength"):
         assert given.applies(name)
         assert not plain.applies(name)
-        assert ("per length" in definitions[name].doc) is (name != "strength" and not is_plane)
+        assert ("per length" in definitions[name].doc) is (
+            name != "strength" and not is_plane
+        )
     has_across = "normal_stiffness" in definitions and given.applies("normal_stiffness")
     assert has_across is given.opens
     assert not given.applies("friction_ratio")
@@ -207,7 +251,9 @@ def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_s
 def test_a_strength_is_read_from_a_file(tmp_path):
     table = tmp_path / "bond.csv"
     table.write_text("slip [mm],factor\n0,1\n0.1,1.4\n1,0.3\n", encoding="utf-8")
-    settings, _ = settings_from_command("bar", ["friction_law=general", f"strength={table}"])
+    settings, _ = settings_from_command(
+        "bar", ["friction_law=general", f"strength={table}"]
+    )
     assert settings.strength == ((0.0, 1.0), (1e-4, 1.4), (1e-3, 0.3))
 
 
@@ -217,7 +263,11 @@ def test_what_is_known_of_coulombs_friction_alone_is_not_said_of_others():
     assert not has_a_limit(chosen("bar", **GENERAL, strength="linear", **cycles))
     bent = {"cycles": 3, "instants": 41, "bend_load": "cycle"}
     assert has_a_limit(chosen("layers", **GENERAL, **bent))
-    for law in ({"cohesion": 1e5}, {"friction_cap": 1e5}, {"tangential_stiffness": 1e12}):
+    for law in (
+        {"cohesion": 1e5},
+        {"friction_cap": 1e5},
+        {"tangential_stiffness": 1e12},
+    ):
         assert not has_a_limit(chosen("layers", **GENERAL, **law, **bent))
 
 
@@ -246,13 +296,22 @@ def test_mu_by_place_is_certified_and_one_of_factors_1_changes_nothing(scene, pr
 
 def test_a_sliding_block_carries_mu_of_each_place():
     given = {
-        **{"gap": "flat", "poisson": 0.0, "plane": "stress", "friction_profile": "rising"},
+        **{
+            "gap": "flat",
+            "poisson": 0.0,
+            "plane": "stress",
+            "friction_profile": "rising",
+        },
         **{"top_normal_displacement": -4e-6, "top_tangential_displacement": 1e-4},
     }
-    contact = run("block", **given, top_tangential_load="ramp").iterate.contact("support")
+    contact = run("block", **given, top_tangential_load="ramp").iterate.contact(
+        "support"
+    )
     share = np.abs(contact.tangential_force[:, -1]) / contact.normal_force[:, -1]
     pressed = contact.normal_force[:, -1] > 0.0
-    np.testing.assert_allclose(share[pressed], 0.3 * np.linspace(0.2, 1.8, 17)[pressed], rtol=1e-6)
+    np.testing.assert_allclose(
+        share[pressed], 0.3 * np.linspace(0.2, 1.8, 17)[pressed], rtol=1e-6
+    )
 
 
 def test_factors_on_mu_below_zero_are_refused():

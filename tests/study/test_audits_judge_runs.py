@@ -59,7 +59,11 @@ def changed(**changes):
         (GOOD, Verdict.RIGHT, Judge.REFERENCE),
         (changed(error_force=1e-5), Verdict.WRONG, Judge.REFERENCE),
         (changed(error_displacement=0.5), Verdict.WRONG, Judge.REFERENCE),
-        (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.UNSOLVED, Judge.NOTHING),
+        (
+            changed(error_force=0.5, ending=Ending.EXHAUSTED),
+            Verdict.UNSOLVED,
+            Judge.NOTHING,
+        ),
         (
             changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""),
             Verdict.WRONG,
@@ -68,7 +72,11 @@ def changed(**changes):
         (changed(ending=Ending.STALLED), Verdict.RIGHT, Judge.REFERENCE),
         (changed(error_force=math.nan), Verdict.WRONG, Judge.REFERENCE),
         (changed(error_displacement=math.nan), Verdict.WRONG, Judge.REFERENCE),
-        (changed(doubt="one of several", error_force=math.nan), Verdict.UNCLEAR, Judge.NOTHING),
+        (
+            changed(doubt="one of several", error_force=math.nan),
+            Verdict.UNCLEAR,
+            Judge.NOTHING,
+        ),
         (changed(doubt="one of several", ending=BROKEN), Verdict.WRONG, Judge.NOTHING),
         (Outcome(REFUSED, "load = 1 is refused"), Verdict.REFUSED, Judge.NOTHING),
         (Outcome(BROKEN, "RuntimeWarning: overflow"), Verdict.WRONG, Judge.NOTHING),
@@ -82,7 +90,11 @@ def changed(**changes):
             Verdict.WRONG,
             Judge.LAWS,
         ),
-        (changed(error_force=0.5, certified=True, laws=1e-13), Verdict.RIGHT, Judge.LAWS),
+        (
+            changed(error_force=0.5, certified=True, laws=1e-13),
+            Verdict.RIGHT,
+            Judge.LAWS,
+        ),
         (changed(laws=1e-13, doubt="no reference"), Verdict.RIGHT, Judge.LAWS),
         # A reference that breaks a law is no judge, and says so in its doubt.
         (
@@ -113,7 +125,9 @@ def rows_in(folder):
         return list(csv.DictReader(file))
 
 
-def test_the_command_writes_a_table_and_a_page_that_stands_alone(tmp_path, monkeypatch, capsys):
+def test_the_command_writes_a_table_and_a_page_that_stands_alone(
+    tmp_path, monkeypatch, capsys
+):
     given = [
         StabilityCase("zero <N>", "bar", {"peak": 0.0, **own}, method=method)
         for method, own in METHODS.items()
@@ -121,7 +135,10 @@ def test_the_command_writes_a_table_and_a_page_that_stands_alone(tmp_path, monke
     monkeypatch.setattr(report_commands, "extreme_cases", lambda scene, quick: given)
     folder = tmp_path / "made by" / "the command"
     assert main(["stability", "--quick", "--out", str(folder)]) == 0
-    assert {file.name for file in folder.iterdir()} == {"stability.csv", "stability.html"}
+    assert {file.name for file in folder.iterdir()} == {
+        "stability.csv",
+        "stability.html",
+    }
     found = rows_in(folder)
     assert [row["method"] for row in found] == list(METHODS)
     assert all(row["verdict"] == "right" for row in found)
@@ -137,9 +154,20 @@ def test_scenes_and_random_runs_can_be_asked(tmp_path, capsys):
     assert {case.scene for case in extreme_cases(["strand"])} == {"strand"}
     assert main(["stability", "cable", "--out", str(tmp_path)]) == 2
     assert ", ".join(CATALOGUE) in capsys.readouterr().err
-    command = ["stability", "bar", "--random", "3", "--seed", "1", "--out", str(tmp_path)]
+    command = [
+        "stability",
+        "bar",
+        "--random",
+        "3",
+        "--seed",
+        "1",
+        "--out",
+        str(tmp_path),
+    ]
     assert main(command) == 0
-    assert [row["case"] for row in rows_in(tmp_path)] == [f"row {n} of seed 1" for n in range(3)]
+    assert [row["case"] for row in rows_in(tmp_path)] == [
+        f"row {n} of seed 1" for n in range(3)
+    ]
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
@@ -193,4 +221,10 @@ def test_a_wrong_row_is_listed_with_what_repeats_it():
     judged = {name: runs for name, runs, _ in judges([wrong, right])[1:]}
     assert judged == {"laws": "0", "reference": "2", "nothing": "0"}
     counted = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
-    assert counted == {"right": "1", "unsolved": "0", "refused": "0", "unclear": "0", "wrong": "1"}
+    assert counted == {
+        "right": "1",
+        "unsolved": "0",
+        "refused": "0",
+        "unclear": "0",
+        "wrong": "1",
+    }

@@ -63,7 +63,8 @@ CHANGED: list[tuple[str, dict[str, Any], str, float, float]] = [
     ("crate", {"height": 0.7}, "peak_friction", 0.399 * 840, 0.401 * 840),
     ("fault", {"shear_stress": 4.8e6}, "slipped_share", 0.51, 1.0),
 ]
-"""What the cases say of their first changes: settings, quantity, and both ends of its value."""
+"""What the cases say of their first changes: settings, quantity, and both ends of its
+value."""
 
 
 @pytest.mark.parametrize(("name", "changes", "quantity", "low", "high"), CHANGED)
@@ -103,7 +104,9 @@ def test_the_proof_takes_a_case_of_ones_own(
     path = written(tmp_path)
     assert main(["proof", str(path), "--out", str(tmp_path / "proof")]) == 0
     assert "1 of 1 numbers hold." in capsys.readouterr().out
-    path.write_text(path.read_text(encoding="utf-8").replace("4.095e-4", "4.2e-4"), "utf-8")
+    path.write_text(
+        path.read_text(encoding="utf-8").replace("4.095e-4", "4.2e-4"), "utf-8"
+    )
     assert main(["proof", str(path), "--out", str(tmp_path / "proof")]) == 1
 
 

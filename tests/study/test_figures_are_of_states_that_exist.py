@@ -33,7 +33,12 @@ LOOSENED = {
     "instants": 21,
 }
 """A bar whose pressure goes, to three quarters, while its load stands."""
-WARM = {"right_end": "free", "load": [[0, 0], [1, 0]], "temperature": 30.0, "instants": 11}
+WARM = {
+    "right_end": "free",
+    "load": [[0, 0], [1, 0]],
+    "temperature": 30.0,
+    "instants": 11,
+}
 FALLS = {
     "top": "pulled",
     "traction": 8e5,
@@ -58,12 +63,17 @@ def given(changes: dict[str, Any]) -> list[str]:
     """Arguments of a command that give settings."""
     arguments = []
     for name, value in changes.items():
-        text = value if isinstance(value, str) else json.dumps(value)
+        if isinstance(value, str):
+            text = value
+        else:
+            text = json.dumps(value)
         arguments += ["--set", f"{name}={text}"]
     return arguments
 
 
-def printed(capsys: pytest.CaptureFixture[str], scene: str, *options: str, **changes: Any) -> Any:
+def printed(
+    capsys: pytest.CaptureFixture[str], scene: str, *options: str, **changes: Any
+) -> Any:
     main(["run", scene, *given(changes), "--json", *options])
     return json.loads(capsys.readouterr().out)
 
@@ -77,7 +87,9 @@ def test_a_block_on_a_slope_is_held_up_to_the_angle_of_friction(instants: int) -
 
 
 @pytest.mark.parametrize("instants", [12, 20, 33])
-def test_a_block_that_is_pulled_back_is_held_most_where_the_ground_is_level(instants: int) -> None:
+def test_a_block_that_is_pulled_back_is_held_most_where_the_ground_is_level(
+    instants: int,
+) -> None:
     run = ran("incline", instants=instants, **COARSE)
     assert reading("holding_force")(run) == pytest.approx(300.0, rel=1e-9)
 
@@ -86,8 +98,17 @@ def test_a_block_that_is_pulled_back_is_held_most_where_the_ground_is_level(inst
 def test_a_block_that_slides_while_it_is_pressed_is_held_by_all_that_presses_in_the_end(
     instants: int,
 ) -> None:
-    pushed = {"left": "pushed", "left_normal_displacement": 3e-4, "left_normal_load": "ramp"}
-    pressed = {"gap": "flat", "top": "traction", "top_normal_traction": -1e7, "friction": 0.3}
+    pushed = {
+        "left": "pushed",
+        "left_normal_displacement": 3e-4,
+        "left_normal_load": "ramp",
+    }
+    pressed = {
+        "gap": "flat",
+        "top": "traction",
+        "top_normal_traction": -1e7,
+        "friction": 0.3,
+    }
     run = ran("block", **pushed, **pressed, instants=instants, **COARSE)
     assert reading("holding_force")(run) == pytest.approx(0.3 * 1e7 * 0.1, rel=1e-6)
 
@@ -99,7 +120,9 @@ def test_of_friction_that_changes_with_slip_no_force_is_said_to_hold() -> None:
     assert math.isnan(reading("holding_friction")(run))
 
 
-def test_where_friction_goes_while_the_load_stands_the_displacement_is_that_of_the_end() -> None:
+def test_where_friction_goes_while_the_load_stands_the_displacement_is_that_of_the_end() -> (
+    None
+):
     """F^2 / (2 E A q), with the last q, for the bar that slips no farther than it would at once."""
     run = ran("bar", **LOOSENED)
     displacement, force = figures_of(run)
@@ -121,7 +144,9 @@ def test_the_key_figures_of_a_fault_that_slips_are_not_those_before_it_slips() -
 
 
 def test_a_bar_that_slips_as_a_whole_slips_at_all_points_that_can() -> None:
-    run = ran("bar", load="ramp", peak=1600.0, elements=20, substructures=1, instants=11)
+    run = ran(
+        "bar", load="ramp", peak=1600.0, elements=20, substructures=1, instants=11
+    )
     assert run.problem.is_held.any()
     assert reading("slipped_share")(run) == 1.0
 
@@ -134,7 +159,9 @@ def test_displacement_and_force_are_told_where_the_loop_has_them(
     assert "force" not in warm
     assert warm["quantities"]["force"] is None
     assert warm["strain"] == pytest.approx(1.2e-5 * 30.0, rel=0.1)
-    assert warm["displacement"] == pytest.approx(warm["quantities"]["peak_displacement"])
+    assert warm["displacement"] == pytest.approx(
+        warm["quantities"]["peak_displacement"]
+    )
     pulled = printed(capsys, "bar", "--no-reference", "--of", asked, **LOOSENED)
     for found in (warm, pulled):
         for name in asked.split(",")[:-1]:
@@ -186,7 +213,9 @@ def test_names_that_are_gone_are_told_by_their_new_ones() -> None:
 
 def shown(run: FinishedRun) -> Frame:
     sampler = Sampler(run.problem, run.settings, 1)
-    return sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
+    return sampler.frame(
+        run.iterate, run.solution.records, run.solution.status, Needs()
+    )
 
 
 def details(frame: Frame) -> str:
@@ -195,7 +224,9 @@ def details(frame: Frame) -> str:
     return status_line(state)
 
 
-def test_the_page_has_the_largest_and_the_last_value_beside_that_of_the_instant() -> None:
+def test_the_page_has_the_largest_and_the_last_value_beside_that_of_the_instant() -> (
+    None
+):
     frame = shown(ran("bar", **LOOSENED))
     line = figures_line(frame, Selection(phase=0.5))
     assert "End displacement <b>182 µm</b>" in line

@@ -21,7 +21,9 @@ CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
 
 
 def power(order: float, limit: float, share: float) -> Refinement:
-    coarse, middle, fine = (limit * (1.0 + share * size**order) for size in (1.0, 0.5, 0.25))
+    coarse, middle, fine = (
+        limit * (1.0 + share * size**order) for size in (1.0, 0.5, 0.25)
+    )
     return Refinement((coarse, middle, fine), 1)
 
 
@@ -69,7 +71,9 @@ def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     values = [float(line.split()[4]) for line in lines[:3]]
     found = Refinement((values[0], values[1], values[2]), 1)
     assert abs(found.limit - CYCLE) <= found.margin < 0.01 * CYCLE
-    assert lines[5].startswith(f"Elements: Its error goes with the power {found.order:.2f}")
+    assert lines[5].startswith(
+        f"Elements: Its error goes with the power {found.order:.2f}"
+    )
     assert lines[7].startswith("Refine elements first")
 
 
@@ -84,7 +88,9 @@ def test_it_is_said_which_to_refine(
     scene: str, asked: str, refined: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name, *changes = scene.split()
-    assert main(["mesh", name, "--of", asked, *(f"--set={one}" for one in changes)]) == 0
+    assert (
+        main(["mesh", name, "--of", asked, *(f"--set={one}" for one in changes)]) == 0
+    )
     assert f"Refine {refined} first" in capsys.readouterr().out
 
 

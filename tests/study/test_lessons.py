@@ -42,8 +42,16 @@ CLAIM: dict[str, str] = {
 
 def written(parts: dict[str, str | None], claim: dict[str, str | None]) -> str:
     """Give a small lesson with some parts changed, or left out where they are None."""
-    lines = [f"{key} = {value}" for key, value in {**PARTS, **parts}.items() if value is not None]
-    own = [f"{key} = {value}" for key, value in {**CLAIM, **claim}.items() if value is not None]
+    lines = [
+        f"{key} = {value}"
+        for key, value in {**PARTS, **parts}.items()
+        if value is not None
+    ]
+    own = [
+        f"{key} = {value}"
+        for key, value in {**CLAIM, **claim}.items()
+        if value is not None
+    ]
     return "\n".join([*lines, "[[checkpoints]]", *own, ""])
 
 
@@ -87,9 +95,17 @@ def test_a_lesson_is_what_its_file_says(tmp_path: Path) -> None:
         ("controls", '["peak", "friction", "pressure"]', ["at most 2 settings"]),
         ("instant", "1.5", ["instant = 1.5", "from 0 to 1"]),
         ("draw", '"peak"', ['draw = "peak"', "3 checkpoints"]),
-        ("text", '"{control:friction}"', ["text: placeholder", "{control:peak}, {value:"]),
+        (
+            "text",
+            '"{control:friction}"',
+            ["text: placeholder", "{control:peak}, {value:"],
+        ),
         ("text", '"{value:luck}"', ['quantity = "luck"', "iterations, seconds"]),
-        ("explanation", '"{value:indicator@x}"', ["explanation: quantity", "indicator@ and"]),
+        (
+            "explanation",
+            '"{value:indicator@x}"',
+            ["explanation: quantity", "indicator@ and"],
+        ),
     ],
 )
 def test_what_is_wrong_with_a_lesson_is_said_with_file_key_value_and_what_is_allowed(
@@ -129,7 +145,9 @@ def test_what_is_no_lesson_at_all_is_refused_in_a_line(tmp_path: Path) -> None:
         lesson_from_file(tmp_path / "none.toml")
 
 
-def run(folder: Path, capsys: pytest.CaptureFixture[str], **claim: Any) -> tuple[int, str, str]:
+def run(
+    folder: Path, capsys: pytest.CaptureFixture[str], **claim: Any
+) -> tuple[int, str, str]:
     path = folder / "small.toml"
     path.write_text(written({}, claim), encoding="utf-8")
     code = main(["lesson", str(path)])
@@ -184,11 +202,16 @@ def test_what_a_lesson_claims_is_measured(name: str, number: int) -> None:
 
 
 @each
-def test_what_a_lesson_shows_is_there_and_moves_only_after_the_choice(lesson: Lesson) -> None:
+def test_what_a_lesson_shows_is_there_and_moves_only_after_the_choice(
+    lesson: Lesson,
+) -> None:
     assert {lesson.interface} <= {"", *discretise(lesson.settings).rubbing}
-    shown = {kind.name for card in CARDS for kind in card if kind.applies(lesson.settings)}
+    shown = {
+        kind.name for card in CARDS for kind in card if kind.applies(lesson.settings)
+    }
     assert set(lesson.views) <= shown
-    before, after = " ".join(lesson.text), " ".join(lesson.explanation)
+    before = " ".join(lesson.text)
+    after = " ".join(lesson.explanation)
     assert "{control:" not in before
     assert set(re.findall(r"\{control:(.*?)\}", after)) == set(lesson.controls)
     assert "{value:" in after

@@ -17,7 +17,13 @@ from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
 from solver.study.fit import fit
 from solver.study.fit_report import messages
-from solver.study.measured_loop import CAN, LoopComparison, MeasuredLoop, branches, loop_in
+from solver.study.measured_loop import (
+    CAN,
+    LoopComparison,
+    MeasuredLoop,
+    branches,
+    loop_in,
+)
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.valley import Side
 
@@ -32,12 +38,19 @@ def run_of(scene: str) -> FinishedRun:
     return finished_run(settings, errors=False, indicators=False)
 
 
-def loop_from(run: FinishedRun, *, timed: bool = True, **changes: np.ndarray) -> MeasuredLoop:
+def loop_from(
+    run: FinishedRun, *, timed: bool = True, **changes: np.ndarray
+) -> MeasuredLoop:
     """Loop of a run as if it were measured, some of it changed."""
     loop = run.settings.structure().loop(run.problem)
     pair = {"displacement": run.displacement, "force": run.force} | changes
-    times = run.problem.instants if timed else None
-    return MeasuredLoop(*pair.values(), times, (loop.across[1], loop.up[1]), "made.csv", "")
+    if timed:
+        times = run.problem.instants
+    else:
+        times = None
+    return MeasuredLoop(
+        *pair.values(), times, (loop.across[1], loop.up[1]), "made.csv", ""
+    )
 
 
 def in_text(text: str, axes: tuple[tuple[str, str], tuple[str, str]]) -> MeasuredLoop:
@@ -45,10 +58,14 @@ def in_text(text: str, axes: tuple[tuple[str, str], tuple[str, str]]) -> Measure
 
 
 def beside(run: FinishedRun, measured: MeasuredLoop) -> LoopComparison:
-    return LoopComparison(measured, run.settings.structure().loop(run.problem), run.problem)
+    return LoopComparison(
+        measured, run.settings.structure().loop(run.problem), run.problem
+    )
 
 
-def made(values: dict, settings: Settings, noise: float = 0.0, seed: int = 0) -> MeasuredLoop:
+def made(
+    values: dict, settings: Settings, noise: float = 0.0, seed: int = 0
+) -> MeasuredLoop:
     """Displacement of a bar under other values, with noise as a share of its range."""
     run = finished_run(settings.replace(**values), errors=False, indicators=False)
     rng = np.random.default_rng(seed)
@@ -61,7 +78,10 @@ def test_what_a_run_finds_is_compared_with_or_without_times(scene: str) -> None:
     run = run_of(scene)
     finds_force = beside(run, loop_from(run)).finds_force
     assert finds_force == (scene not in ("bar", "strand", "fault"))
-    name = "force" if finds_force else "displacement"
+    if finds_force:
+        name = "force"
+    else:
+        name = "displacement"
     values = getattr(run, name)
     shifted = values + 0.1 * np.ptp(values)
     for timed in (True, False):
@@ -71,7 +91,8 @@ def test_what_a_run_finds_is_compared_with_or_without_times(scene: str) -> None:
 
 
 def test_rows_lie_anywhere_in_time_and_along_the_path() -> None:
-    run, rng = run_of("bar"), np.random.default_rng(2)
+    run = run_of("bar")
+    rng = np.random.default_rng(2)
     times = np.sort(rng.uniform(0.0, 1.0, 70))
     when = run.problem.instants
     pair = [np.interp(times, when, values) for values in (run.displacement, run.force)]
@@ -82,16 +103,23 @@ def test_rows_lie_anywhere_in_time_and_along_the_path() -> None:
     also = beside(run, MeasuredLoop(*later[1:], later[0], units, "a.csv", ""))
     assert (also.counted.sum(), also.of(run.iterate)) == (70, timed.of(run.iterate))
     # Between two instants around a reversal the path is cut.
-    assert beside(run, MeasuredLoop(*pair, None, units, "a.csv", "")).of(run.iterate) < 5e-3
+    assert (
+        beside(run, MeasuredLoop(*pair, None, units, "a.csv", "")).of(run.iterate)
+        < 5e-3
+    )
 
 
 def test_a_loop_of_the_last_cycle_lies_on_the_last_cycle_of_the_run() -> None:
-    settings = scene_settings("bar").checked({**BAR, "cycles": 3, "friction_law": "slip-dependent"})
+    settings = scene_settings("bar").checked(
+        {**BAR, "cycles": 3, "friction_law": "slip-dependent"}
+    )
     run = finished_run(settings, errors=False, indicators=False)
     begin, middle, end = branches(run.force)[-4:-1]
     last = slice(begin, end + 1)
     assert begin < middle < end
-    measured = MeasuredLoop(run.displacement[last], run.force[last], None, ("m", "N"), "a.csv", "")
+    measured = MeasuredLoop(
+        run.displacement[last], run.force[last], None, ("m", "N"), "a.csv", ""
+    )
     assert beside(run, measured).of(run.iterate) < 1e-12
 
 
@@ -101,7 +129,12 @@ def test_loops_that_the_run_cannot_meet_are_refused_in_words(timed: bool) -> Non
     if timed:
         measured = loop_from(run)
         late = MeasuredLoop(
-            measured.displacement, measured.force, measured.times + 5.0, ("m", "N"), "late.csv", ""
+            measured.displacement,
+            measured.force,
+            measured.times + 5.0,
+            ("m", "N"),
+            "late.csv",
+            "",
         )
         why = "late.csv.*5 s to 6 s.*leave the column of time out"
     else:
@@ -132,11 +165,17 @@ def test_heads_say_columns_and_units() -> None:
     ("text", "why"),
     [
         ("1,2\n2,3\n3,4\n4,5", "name its columns in the first line"),
-        ("time,force\n1,2\n2,3\n3,4\n4,5", "no displacement in m, .*End displacement, m"),
+        (
+            "time,force\n1,2\n2,3\n3,4\n4,5",
+            "no displacement in m, .*End displacement, m",
+        ),
         ("displacement,moment\n1,2\n2,3\n3,4\n4,5", "no force .*that of Force, N"),
         ("displacement,force [MPa]\n1,2\n2,3\n3,4\n4,5", "says MPa: give it in N"),
         ("displacement,force\n1,2\n2,3", "it has 2 rows: give at least 4"),
-        ("displacement,force\n1,2\n2,2\n3,2\n4,2", "Force has the same value in all rows"),
+        (
+            "displacement,force\n1,2\n2,2\n3,2\n4,2",
+            "Force has the same value in all rows",
+        ),
         ("displacement,force\n1,2\n2,x\n3,2\n4,2", "line 3 has 'x' as force"),
     ],
 )
@@ -192,20 +231,30 @@ def test_what_is_known_as_a_product_alone_stays_near_its_start(
 ) -> None:
     """Displacement under a given force knows mu p, and of E S mu p no more (theory of the bar)."""
     true = {"friction": 0.37, name: value}
-    settings = scene_settings("bar").checked({**BAR, "friction": 0.3, name: 0.8 * value})
+    settings = scene_settings("bar").checked(
+        {**BAR, "friction": 0.3, name: 0.8 * value}
+    )
     found = fit(settings, made(true, settings, noise), list(true))
     assert np.isinf(found.errors).all()
     assert np.prod(found.nearest.values) == pytest.approx(0.37 * value, rel=0.02)
     # Along what is not determined nothing moves: both change by the same factor.
-    assert np.divide(*(found.nearest.values / found.first.values)) == pytest.approx(1.0, rel=0.05)
+    assert np.divide(*(found.nearest.values / found.first.values)) == pytest.approx(
+        1.0, rel=0.05
+    )
     only, apart, *_ = messages(found)
     assert only.startswith(f"Only friction * {name} is known: ")
     assert "does not tell friction and" in apart
 
 
 def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
-    stuck = scene_settings("bar").checked({**SPRUNG, "friction": 1e5, "contact_stiffness": 20.0})
-    found = fit(stuck, made({"contact_stiffness": 8.0}, stuck), ["friction", "contact_stiffness"])
+    stuck = scene_settings("bar").checked(
+        {**SPRUNG, "friction": 1e5, "contact_stiffness": 20.0}
+    )
+    found = fit(
+        stuck,
+        made({"contact_stiffness": 8.0}, stuck),
+        ["friction", "contact_stiffness"],
+    )
     assert found.nearest.values == pytest.approx([1e5, 8.0], rel=1e-6)
     assert np.isinf(found.errors).tolist() == [True, False]
     assert messages(found)[0].startswith("The loop does not tell friction:")
@@ -213,10 +262,14 @@ def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
 
 def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
     law = {"friction_law": "general", "tangential_stiffness": 1e8, "cohesion": 600.0}
-    settings = scene_settings("bar").checked({**BAR, **law, "elements": 12, "instants": 21})
+    settings = scene_settings("bar").checked(
+        {**BAR, **law, "elements": 12, "instants": 21}
+    )
     found = fit(settings, made({"friction": 0.37}, settings), ["friction", "cohesion"])
     assert np.isinf(found.errors).all()
-    assert found.nearest.values @ [5000.0, 1.0] == pytest.approx(0.37 * 5000.0 + 600.0, rel=1e-6)
+    assert found.nearest.values @ [5000.0, 1.0] == pytest.approx(
+        0.37 * 5000.0 + 600.0, rel=1e-6
+    )
     assert messages(found)[0].startswith("Only friction * cohesion^0.")
 
 
@@ -256,7 +309,9 @@ def test_a_fit_leaves_a_valley_that_is_not_the_deepest() -> None:
     assert found.nearest.distance < 1.1 * from_truth
 
 
-def test_where_a_loop_is_straight_in_a_setting_its_profile_has_the_error_of_the_slope() -> None:
+def test_where_a_loop_is_straight_in_a_setting_its_profile_has_the_error_of_the_slope() -> (
+    None
+):
     settings = scene_settings("bar").checked({**FLAT, "friction_law": "compliant"})
     found = fit(settings, made({"friction": 0.37}, settings, 0.001), ["friction"])
     left = found.nearest.differences
@@ -287,8 +342,12 @@ def test_a_side_ends_where_the_misfit_last_rises_above_a_level() -> None:
 
 def test_too_short_a_loop_is_refused() -> None:
     settings = scene_settings("bar").checked(BAR)
-    four = MeasuredLoop(np.arange(4.0), 300.0 * np.arange(4.0), None, ("m", "N"), "a.csv", "")
-    with pytest.raises(SettingError, match="at least 5 rows for 3 settings; 4 are in the run"):
+    four = MeasuredLoop(
+        np.arange(4.0), 300.0 * np.arange(4.0), None, ("m", "N"), "a.csv", ""
+    )
+    with pytest.raises(
+        SettingError, match="at least 5 rows for 3 settings; 4 are in the run"
+    ):
         fit(settings, four, ["friction", "young", "pressure"])
 
 
@@ -304,7 +363,9 @@ def test_too_short_a_loop_is_refused() -> None:
         ("friction,pressure,young,section,peak", "one to 4 settings"),
     ],
 )
-def test_the_command_refuses_settings_that_no_loop_tells(vary, why, tmp_path, capsys) -> None:
+def test_the_command_refuses_settings_that_no_loop_tells(
+    vary, why, tmp_path, capsys
+) -> None:
     table, sizes = _written(tmp_path)
     options = ["--with", str(table), "--vary", vary, "--out", str(tmp_path / "out")]
     assert main(["fit", "bar", *sizes, *options]) == 2
@@ -320,7 +381,9 @@ def _written(folder):
     return table, [f"--set={name}={value}" for name, value in BAR.items()]
 
 
-def test_the_commands_compare_and_fit_and_write_what_they_found(tmp_path, capsys) -> None:
+def test_the_commands_compare_and_fit_and_write_what_they_found(
+    tmp_path, capsys
+) -> None:
     table, sizes = _written(tmp_path)
     law = [*sizes, "--set=friction_law=compliant", "--set=contact_stiffness=8"]
     assert main(["compare", "bar", *law, "--with", str(table), "--json"]) == 0
@@ -343,7 +406,9 @@ def test_the_commands_compare_and_fit_and_write_what_they_found(tmp_path, capsys
     assert main(["compare", str(out / "settings.toml"), "--with", str(table)]) == 0
     far = 100.0 * found["distance"]
     told = capsys.readouterr().out
-    assert told == f"End displacement: {far:.4g} % from measured.csv, at 41 of 41 rows\n"
+    assert (
+        told == f"End displacement: {far:.4g} % from measured.csv, at 41 of 41 rows\n"
+    )
     axes = saved.structure().axes
     fitted = in_text((out / "loop.csv").read_text(), axes)
     run = finished_run(saved, errors=False, indicators=False)

@@ -1,8 +1,9 @@
 """The paper's figures: `python -m solver figures` writes them, and they show what the paper says.
 
-The paper prints curves without numbers. The gains of Figs. 3 and 4 are those of another code for
-the same equations, within 20 %; the limits of Figs. 5 to 8 are set around what the engine gives for
-the default load, wide enough for another order of rounding and too tight for another answer.
+The paper prints curves without numbers. The gains of Figs. 3 and 4 are those of another
+code for the same equations, within 20 %; the limits of Figs. 5 to 8 are set around what
+the engine gives for the default load, wide enough for another order of rounding and too
+tight for another answer.
 """
 
 from __future__ import annotations
@@ -62,14 +63,21 @@ def test_the_page_stands_alone_and_shows_every_figure_with_claim_numbers_and_cap
             assert found.text in plain
 
 
-@pytest.mark.parametrize("obstacle", ["folder is a file", "page is a folder", "parent is a file"])
-def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(tmp_path, capsys, obstacle):
+@pytest.mark.parametrize(
+    "obstacle", ["folder is a file", "page is a folder", "parent is a file"]
+)
+def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(
+    tmp_path, capsys, obstacle
+):
     folder = tmp_path / "out"
     if obstacle == "page is a folder":
         (folder / "figures.html").mkdir(parents=True)
     else:
         folder.write_text("in the way", encoding="utf-8")
-    target = folder / "below" if obstacle == "parent is a file" else folder
+    if obstacle == "parent is a file":
+        target = folder / "below"
+    else:
+        target = folder
     assert main(["figures", "--out", str(target)]) == 2
     out, err = capsys.readouterr()
     assert out == ""
@@ -114,7 +122,8 @@ def test_both_versions_pass_a_level_where_an_independent_code_does(
     histories, name, limit, multi, mono
 ):
     found = {
-        multiscale: first_below(records, name, limit) for multiscale, records in histories.items()
+        multiscale: first_below(records, name, limit)
+        for multiscale, records in histories.items()
     }
     assert found[True] == pytest.approx(multi, rel=WITHIN)
     assert found[False] == pytest.approx(mono, rel=WITHIN)
@@ -150,8 +159,11 @@ def test_monoscale_without_relaxation_stalls_far_from_the_answer():
     assert solution.records[-1].error_force > 0.1
 
 
-def test_fig_5_stuck_substructures_need_a_mode_and_swept_ones_decay_like_a_steady_front(runs):
-    last, parts = runs.five.records[-1], runs.friction_forces
+def test_fig_5_stuck_substructures_need_a_mode_and_swept_ones_decay_like_a_steady_front(
+    runs,
+):
+    last = runs.five.records[-1]
+    parts = runs.friction_forces
     assert last.error_force < 1e-5
     assert last.error_displacement < 1e-6
     noise = last.error_force * max(part.values[0] for part in parts)
@@ -172,15 +184,24 @@ def test_fig_6_modes_of_substructures_4_and_5_are_alike_and_later_ones_more_loca
 
 
 def test_fig_7_the_displacement_is_far_more_reducible_than_the_friction_force(runs):
-    displacement, force = runs.displacements[-1], runs.friction_forces[-1]
-    assert displacement.errors[3] < 0.003 < displacement.errors[2] < 0.01 < displacement.errors[1]
+    displacement = runs.displacements[-1]
+    force = runs.friction_forces[-1]
+    assert (
+        displacement.errors[3]
+        < 0.003
+        < displacement.errors[2]
+        < 0.01
+        < displacement.errors[1]
+    )
     assert displacement.modes_for(0.01) <= 3
     assert force.modes_for(0.01) >= 10
 
 
 def test_fig_8_pgd_modes_orthonormalised_in_their_order_are_the_svd_modes(runs):
     texts = [finding.text for finding in figure_8(runs).findings]
-    ordered, kept = (list(map(float, re.findall(r"\d\.\d+", text))) for text in texts[:2])
+    ordered, kept = (
+        list(map(float, re.findall(r"\d\.\d+", text))) for text in texts[:2]
+    )
     assert min(ordered[:2]) > 0.99
     assert ordered[2] > 0.97
     assert max(kept[1:]) < 0.9 < 0.99 < kept[0]

@@ -20,7 +20,8 @@ from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, fate_of
 from solver.study.quantities.finished import FinishedRun, finished_run
 
-STIFFNESS, BOUND = 210e9 * 3.14e-6, 1500.0
+STIFFNESS = 210e9 * 3.14e-6
+BOUND = 1500.0
 SMALL = {"elements": 20, "instants": 21, "substructures": 2}
 DECIDED_BY_THE_LOAD = (
     "residual_displacement",
@@ -66,7 +67,9 @@ def test_the_bar_slips_as_far_as_its_load_reaches() -> None:
     assert taken("slipped_share", run) == pytest.approx(800.0 / BOUND, abs=0.02)
     assert taken("peak_friction", run) == pytest.approx(800.0, rel=1e-6)
     assert taken("stuck_share", run) == pytest.approx(1.0 - 800.0 / BOUND, abs=0.02)
-    assert taken("stiffness", run) == pytest.approx(2.0 * STIFFNESS * BOUND / 800.0, rel=1e-2)
+    assert taken("stiffness", run) == pytest.approx(
+        2.0 * STIFFNESS * BOUND / 800.0, rel=1e-2
+    )
     assert taken("first_slip_time", run) == run.problem.instants[1]
     reached = taken("first_slip_time@0.25", run)
     assert reached == pytest.approx(0.25 * BOUND / 800.0, abs=0.04)
@@ -81,7 +84,11 @@ def test_the_bar_slips_as_far_as_its_load_reaches() -> None:
     [
         ("bar", {"peak": 900.0}, 0.18),
         ("bar", {"peak": 1600.0}, math.nan),
-        ("incline", {"slope": 20.0, "friction": 0.5, "slack": 1.0}, math.tan(math.radians(20))),
+        (
+            "incline",
+            {"slope": 20.0, "friction": 0.5, "slack": 1.0},
+            math.tan(math.radians(20)),
+        ),
         ("incline", {"slope": 20.0, "friction": 0.3, "slack": 1e-3}, math.nan),
     ],
 )
@@ -89,7 +96,10 @@ def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
     scene: str, changes: dict[str, Any], exact: float
 ) -> None:
     """F / (p L) where the slip has not come to the clamp, and the tangent of a slope."""
-    sizes = SMALL if scene == "bar" else {"elements": 12, "elements_up": 4, "instants": 11}
+    if scene == "bar":
+        sizes = SMALL
+    else:
+        sizes = {"elements": 12, "elements_up": 4, "instants": 11}
     found = taken("holding_friction", ran(scene, **changes, **sizes))
     assert found == pytest.approx(exact, rel=1e-9, nan_ok=True)
 
@@ -106,24 +116,39 @@ def test_what_friction_could_hold_is_mu_times_all_that_presses(
     scene: str, changes: dict[str, Any], most: float
 ) -> None:
     """mu p L along the bar, mu W cos(slope) on the incline."""
-    sizes = SMALL if scene == "bar" else {"elements": 12, "elements_up": 4, "instants": 11}
-    assert taken("holding_force", ran(scene, **changes, **sizes)) == pytest.approx(most, rel=1e-3)
+    if scene == "bar":
+        sizes = SMALL
+    else:
+        sizes = {"elements": 12, "elements_up": 4, "instants": 11}
+    assert taken("holding_force", ran(scene, **changes, **sizes)) == pytest.approx(
+        most, rel=1e-3
+    )
 
 
 def test_what_holds_one_side_balances_the_other() -> None:
     """Layers that are bent at one end and held at the other carry nothing else along y."""
     run = ran("layers", elements=12, instants=11, substructures=2)
-    assert taken("left_force", run) == pytest.approx(taken("right_force", run), rel=1e-6)
+    assert taken("left_force", run) == pytest.approx(
+        taken("right_force", run), rel=1e-6
+    )
     assert taken("right_force", run) == pytest.approx(np.abs(run.force).max(), rel=1e-9)
     assert math.isnan(taken("top_force", run))
 
 
 def test_counts_to_an_error_are_where_the_records_pass_it() -> None:
     run = ran(
-        "bar", errors=True, method="paper", max_iterations=40, **{**SMALL, "substructures": 5}
+        "bar",
+        errors=True,
+        method="paper",
+        max_iterations=40,
+        **{**SMALL, "substructures": 5},
     )
     number = int(taken("iterations_to_force@0.2", run))
-    assert taken(f"error_force@{number}", run) <= 0.2 < taken(f"error_force@{number - 1}", run)
+    assert (
+        taken(f"error_force@{number}", run)
+        <= 0.2
+        < taken(f"error_force@{number - 1}", run)
+    )
     records = run.solution.records
     assert taken("seconds_to_force@0.2", run) == records[number - 1].seconds
     assert taken("error_force", run) == records[-1].error_force
@@ -147,31 +172,50 @@ def test_modes_are_those_of_the_largest_basis_and_a_smooth_field_needs_fewer() -
 
 
 def test_a_block_pressed_without_friction_has_one_pressure_stress_and_width() -> None:
-    pressed = {"gap": "flat", "top": "traction", "top_normal_traction": -1e7, "friction": 0.0}
+    pressed = {
+        "gap": "flat",
+        "top": "traction",
+        "top_normal_traction": -1e7,
+        "friction": 0.0,
+    }
     run = ran("block", plane="stress", **pressed, **SMALL_BLOCK)
     assert taken("peak_pressure", run) == pytest.approx(1e7, rel=1e-6)
     assert taken("peak_stress", run) == pytest.approx(1e7, rel=1e-6)
     assert taken("contact_width", run) == pytest.approx(0.1, rel=1e-9)
     bar = ran("bar", **SMALL)
-    assert all(math.isnan(taken(name, bar)) for name in ("peak_pressure", "peak_stress"))
+    assert all(
+        math.isnan(taken(name, bar)) for name in ("peak_pressure", "peak_stress")
+    )
 
 
 def test_the_largest_stress_below_a_contact_is_where_hertz_has_it() -> None:
     """Johnson, Contact Mechanics, 4.2: below the middle, at 0.70 of the half-width for nu = 0.3."""
     total = 2e7
-    pressed = {"gap": "parabola", "radius": 1.0, "length": 0.1, "height": 0.05, "friction": 0.0}
+    pressed = {
+        "gap": "parabola",
+        "radius": 1.0,
+        "length": 0.1,
+        "height": 0.05,
+        "friction": 0.0,
+    }
     loaded = {"top": "traction", "top_normal_traction": -total / 0.1, "instants": 1}
     run = ran("block", elements=80, elements_up=40, poisson=0.3, **pressed, **loaded)
     half_width = 0.5 * taken("contact_width", run)
     assert 0.008 < half_width < 0.02
     assert taken("peak_stress_x", run) == pytest.approx(0.05, abs=0.1 / 80)
-    assert taken("peak_stress_y", run) == pytest.approx(0.7 * half_width, abs=1.5 * 0.05 / 40)
+    assert taken("peak_stress_y", run) == pytest.approx(
+        0.7 * half_width, abs=1.5 * 0.05 / 40
+    )
     assert math.isnan(taken("peak_stress_x", ran("bar", **SMALL)))
 
 
 def test_the_spring_carries_a_weight_that_nothing_else_holds() -> None:
-    run = ran("incline", friction=0.0, elements=6, elements_up=4, instants=9, substructures=1)
-    assert taken("spring_force", run) == pytest.approx(1000.0 * math.sin(math.radians(40.0)))
+    run = ran(
+        "incline", friction=0.0, elements=6, elements_up=4, instants=9, substructures=1
+    )
+    assert taken("spring_force", run) == pytest.approx(
+        1000.0 * math.sin(math.radians(40.0))
+    )
     assert math.isnan(taken("stiffness", run))
 
 
@@ -202,7 +246,9 @@ def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
-def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(scene: str) -> None:
+def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(
+    scene: str,
+) -> None:
     """Also at iterates on the way, such as one at which nothing touches yet."""
     settings = CATALOGUE[scene].checked({"method": "paper"})
     for iterate in islice(iterations(discretise(settings), method_of(settings)), 2):
@@ -233,7 +279,9 @@ def cut(run: FinishedRun) -> LoadCycles:
     return cycles_of(run.settings, run.iterate)
 
 
-def of(slip: list[list[float]], net: list[list[float]] | None = None, **more: Any) -> LoadCycles:
+def of(
+    slip: list[list[float]], net: list[list[float]] | None = None, **more: Any
+) -> LoadCycles:
     """Make cycles of points whose slip, and what is left of it, is given."""
     slips = np.array(slip, dtype=float)
     values = {
@@ -291,18 +339,25 @@ def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> 
     cycles = cut(run)
     exact = 2.0 * peak**3 / (3.0 * STIFFNESS * BOUND)
     np.testing.assert_allclose(cycles.energy, exact, rtol=3e-3)
-    assert [reading(f"dissipation@{n}")(run) for n in range(1, 6)] == pytest.approx(cycles.energy)
+    assert [reading(f"dissipation@{n}")(run) for n in range(1, 6)] == pytest.approx(
+        cycles.energy
+    )
     assert math.isnan(reading("dissipation@6")(run))
     # The end moves by u to one side and the other, and so twice to and fro.
-    assert cycles.slip[-1] == pytest.approx(4.0 * peak**2 / (2.0 * STIFFNESS * BOUND), rel=1e-6)
+    assert cycles.slip[-1] == pytest.approx(
+        4.0 * peak**2 / (2.0 * STIFFNESS * BOUND), rel=1e-6
+    )
 
 
 def lesson(**changes: Any) -> FinishedRun:
-    return finished_run(lesson_from_file(LESSON).settings.replace(**changes), errors=False)
+    return finished_run(
+        lesson_from_file(LESSON).settings.replace(**changes), errors=False
+    )
 
 
 def test_the_lesson_on_shakedown_shows_slip_that_dies_and_slip_that_does_not() -> None:
-    dying, steady = cut(lesson()), cut(lesson(friction=0.15))
+    dying = cut(lesson())
+    steady = cut(lesson(friction=0.15))
     assert fate_of(dying) == "shakedown with slip that dies"
     assert fate_of(steady) == "steady slip"
     ratios = [one.slip[:, -1].max() / one.slip[:, -2].max() for one in (dying, steady)]

@@ -30,7 +30,16 @@ from solver.study.page import NO_CHARTS
 from solver.study.study_report import sizes_table, table
 from solver.study.sweep.executors import LIMITS
 
-TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
+TINY = [
+    "study",
+    "bar",
+    "--set",
+    "elements=12",
+    "--set",
+    "instants=11",
+    "--set",
+    "substructures=3",
+]
 TINY += ["--repeats", "1"]
 
 
@@ -59,7 +68,9 @@ def measured(tmp_path_factory):
 
 def course(method, seconds, errors):
     steps = np.arange(1.0, len(seconds) + 1.0)
-    return ErrorCurve(method, steps, np.array(seconds), np.array(errors), np.array(errors))
+    return ErrorCurve(
+        method, steps, np.array(seconds), np.array(errors), np.array(errors)
+    )
 
 
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
@@ -108,15 +119,21 @@ def test_what_was_measured_by_then_stays_when_a_study_is_ended(
     def end(*given, **options):
         raise trouble
 
-    monkeypatch.setattr(report_commands, "error_against_time", lambda *given: measured[1])
+    monkeypatch.setattr(
+        report_commands, "error_against_time", lambda *given: measured[1]
+    )
     monkeypatch.setattr(report_commands, "times_at_sizes", end)
-    assert main([*TINY, "--out", str(tmp_path)]) == (130 if trouble is KeyboardInterrupt else 3)
+    assert main([*TINY, "--out", str(tmp_path)]) == (
+        130 if trouble is KeyboardInterrupt else 3
+    )
     for name in ("curves.csv", "levels.csv"):
         assert rows(tmp_path / name) == rows(measured[0] / name)
 
 
 def test_a_page_without_who_draws_it_says_so(tmp_path, monkeypatch, capsys, measured):
-    monkeypatch.setattr(report_commands, "error_against_time", lambda *given: measured[1])
+    monkeypatch.setattr(
+        report_commands, "error_against_time", lambda *given: measured[1]
+    )
     monkeypatch.setattr("solver.study.page.entry_points", lambda group: ())
     assert main([*TINY, "--out", str(tmp_path)]) == 0
     assert NO_CHARTS in capsys.readouterr().out.splitlines()
@@ -128,7 +145,9 @@ PROGRAM = "import solver.__main__, solver.study.sweep.executors as found; print(
 
 
 def test_the_report_states_the_threads_as_given_and_one_where_the_command_line_sets_them():
-    surroundings = {name: value for name, value in os.environ.items() if name not in LIMITS}
+    surroundings = {
+        name: value for name, value in os.environ.items() if name not in LIMITS
+    }
     surroundings[LIMITS[1]] = "2"
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM],
@@ -150,7 +169,8 @@ SMALL_ONES: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("scene", ["bar", "layers"])
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
     settings = CATALOGUE[scene].checked(SMALL_ONES[scene])
-    measured, name = times_at_sizes(settings), CATALOGUE[scene].GROWS[0]
+    measured = times_at_sizes(settings)
+    name = CATALOGUE[scene].GROWS[0]
     sizes = [round(factor * getattr(settings, name)) for factor in FACTORS]
     instants = [round(factor * (settings.instants - 1)) + 1 for factor in FACTORS]
     at = {(times.size, times.instants): times for times in measured}
@@ -169,4 +189,6 @@ def test_what_would_take_too_long_or_is_no_size_is_left_out_and_said(
     assert list(said) == [1, 2, 4]
     assert said[1] == "there is no such size"
     assert said[2].startswith("left out: it would take about")
-    assert any(row[0] == "4" and "left out" in row[-1] for row in sizes_table(settings, found))
+    assert any(
+        row[0] == "4" and "left out" in row[-1] for row in sizes_table(settings, found)
+    )

@@ -36,8 +36,13 @@ def here(monkeypatch: pytest.MonkeyPatch) -> Here:
 
 
 def command(folder: Path, *more: str, vary: str = "peak=300:900:4") -> int:
-    of = [] if "--of" in more else ["--of", "peak_displacement,iterations"]
-    return main(["sweep", "bar", *SMALL, "--vary", vary, *of, "--out", str(folder), *more])
+    if "--of" in more:
+        of = []
+    else:
+        of = ["--of", "peak_displacement,iterations"]
+    return main(
+        ["sweep", "bar", *SMALL, "--vary", vary, *of, "--out", str(folder), *more]
+    )
 
 
 def table(folder: Path) -> list[dict[str, str]]:
@@ -52,7 +57,9 @@ def test_the_table_holds_what_varies_what_is_asked_and_what_is_fixed(
     assert command(tmp_path) == 0
     rows = table(tmp_path)
     assert [float(row["peak"]) for row in rows] == [300.0, 500.0, 700.0, 900.0]
-    expected = [run.values for run in rows_of(tiny(["peak=300:900:4"], ["peak_displacement"]))]
+    expected = [
+        run.values for run in rows_of(tiny(["peak=300:900:4"], ["peak_displacement"]))
+    ]
     assert [(float(row["peak_displacement"]),) for row in rows] == expected
     head = (tmp_path / "sweep.csv").read_text(encoding="utf-8")
     assert "# elements = 20\n" in head
@@ -62,7 +69,9 @@ def test_the_table_holds_what_varies_what_is_asked_and_what_is_fixed(
 
 
 @pytest.mark.usefixtures("here")
-def test_the_page_needs_nothing_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_needs_nothing_beside_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(report_commands, "write_page", write_page)
     assert command(tmp_path, "--vary", "friction=0.2,0.3,0.4") == 0
     page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
@@ -84,7 +93,8 @@ def test_a_sweep_that_was_killed_while_it_wrote_a_row_goes_on_where_it_was(
     tmp_path: Path, here: Here
 ) -> None:
     assert command(tmp_path) == 0
-    whole, calls = table(tmp_path), here.calls
+    whole = table(tmp_path)
+    calls = here.calls
     rewrite(tmp_path, lambda rows: [*rows[:2], rows[2][:20]])
     assert command(tmp_path) == 0
     assert here.calls == calls + 2
@@ -97,14 +107,18 @@ def test_a_sweep_that_was_killed_while_it_wrote_a_row_goes_on_where_it_was(
     assert here.calls == calls + 2
 
 
-def test_runs_whose_process_was_ended_are_tried_again(tmp_path: Path, here: Here) -> None:
+def test_runs_whose_process_was_ended_are_tried_again(
+    tmp_path: Path, here: Here
+) -> None:
     assert command(tmp_path) == 0
     calls = here.calls
     rewrite(
         tmp_path,
         lambda rows: [
             row.replace("converged", ending)
-            for row, ending in zip(rows, ["stuck", "lost", "refused", "broken"], strict=True)
+            for row, ending in zip(
+                rows, ["stuck", "lost", "refused", "broken"], strict=True
+            )
         ],
     )
     assert command(tmp_path) == 1
@@ -115,7 +129,8 @@ def test_runs_whose_process_was_ended_are_tried_again(tmp_path: Path, here: Here
 
 @pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(
-    "more", [["--vary", "friction=0.2,0.3"], ["--set", "friction=0.2"], ["--of", "stiffness"]]
+    "more",
+    [["--vary", "friction=0.2,0.3"], ["--set", "friction=0.2"], ["--of", "stiffness"]],
 )
 def test_the_folder_of_another_sweep_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], more: list[str]
@@ -218,7 +233,11 @@ def test_a_range_holds_its_ends_and_what_is_between_and_a_list_each_value_once(
 
 
 FOOLISH = [
-    (["frction=0.1:0.6:3"], ["iterations"], "did you mean friction (Coefficient of friction"),
+    (
+        ["frction=0.1:0.6:3"],
+        ["iterations"],
+        "did you mean friction (Coefficient of friction",
+    ),
     (["friction"], ["iterations"], "name a setting and its values"),
     (["friction=0.1:0.6"], ["iterations"], "three numbers"),
     (["friction=0.1:0.6:1"], ["iterations"], "whole number from 2"),
@@ -229,15 +248,23 @@ FOOLISH = [
     (["friction=0.1,,0.2"], ["iterations"], "write a number"),
     (["friction=0.1,0.2", "friction=0.3,0.4"], ["iterations"], "each of them once"),
     (["friction=0.1:1:150", "peak=1:900:150"], ["iterations"], "22500"),
-    (["friction=0.1,0.2", "peak=1,2", "elements=9,10"], ["iterations"], "vary one or two"),
+    (
+        ["friction=0.1,0.2", "peak=1,2", "elements=9,10"],
+        ["iterations"],
+        "vary one or two",
+    ),
     (["friction=0.1,0.2"], [], "at least one"),
     (["friction=0.1,0.2"], ["dissipated"], "choose one of these"),
     (["friction=0.1,0.2"], ["iterations@3"], "takes no parameter"),
 ]
 
 
-@pytest.mark.parametrize(("vary", "of", "words"), FOOLISH, ids=lambda value: str(value)[:40])
-def test_a_foolish_plan_is_refused_in_a_line(vary: list[str], of: list[str], words: str) -> None:
+@pytest.mark.parametrize(
+    ("vary", "of", "words"), FOOLISH, ids=lambda value: str(value)[:40]
+)
+def test_a_foolish_plan_is_refused_in_a_line(
+    vary: list[str], of: list[str], words: str
+) -> None:
     with pytest.raises(SettingError) as refusal:
         plan_of(BAR, vary, of)
     assert words in str(refusal.value)
@@ -250,7 +277,10 @@ def test_the_path_goes_through_every_point_once_from_neighbour_to_neighbour(
     shape: list[int],
 ) -> None:
     path = snake(shape)
-    size = shape[0] * shape[-1] if len(shape) == 2 else shape[0]
+    if len(shape) == 2:
+        size = shape[0] * shape[-1]
+    else:
+        size = shape[0]
     assert sorted(path) == list(range(size))
     for one, next_one in pairwise(path):
         places = [divmod(number, shape[-1]) for number in (one, next_one)]

@@ -31,7 +31,9 @@ from solver.study.sweep.run import sweep
 
 
 def test_every_point_has_one_row_whose_values_are_those_of_its_run() -> None:
-    plan = tiny(["peak=300:900:3", "friction=0.2,0.3"], ["peak_displacement", "iterations"])
+    plan = tiny(
+        ["peak=300:900:3", "friction=0.2,0.3"], ["peak_displacement", "iterations"]
+    )
     rows = rows_of(plan)
     assert [row.number for row in rows] == list(range(6))
     assert all(row.holds and not row.reason for row in rows)
@@ -49,7 +51,9 @@ def test_processes_give_the_same_rows_as_this_one() -> None:
     assert np.array([row.values for row in rows]) == pytest.approx(expected, rel=1e-9)
 
 
-def test_a_run_that_fails_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_fails_is_a_row_with_its_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     plan = tiny(["substructures=2,30"], ["iterations"])
     fits, refused = rows_of(plan)
     assert fits.holds
@@ -62,11 +66,16 @@ def test_a_run_that_fails_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(runs, "finished_run", broken)
     row = rows_of(plan)[0]
-    assert (row.ending, row.reason) == ("broken", "ZeroDivisionError: at the third turn")
+    assert (row.ending, row.reason) == (
+        "broken",
+        "ZeroDivisionError: at the third turn",
+    )
 
 
 def test_what_a_run_had_come_to_is_kept_and_marked() -> None:
-    plan = tiny(["max_iterations=2,1000"], ["iterations", "peak_displacement"], method="paper")
+    plan = tiny(
+        ["max_iterations=2,1000"], ["iterations", "peak_displacement"], method="paper"
+    )
     short, whole = rows_of(plan)
     assert (short.ending, short.holds, short.values[0]) == ("exhausted", False, 2)
     assert short.reason
@@ -82,19 +91,31 @@ def test_a_run_ends_itself_when_its_time_is_up() -> None:
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> None:
-    changes = {"elements_up": 8} if "elements_up" in CATALOGUE[scene].param else {}
+    if "elements_up" in CATALOGUE[scene].param:
+        changes = {"elements_up": 8}
+    else:
+        changes = {}
     if scene == "wall":  # of so few bricks that a step is soon worth a trial
         changes = {"elements_up": 2, "bricks": 3, "courses": 3, "displacement": 5e-5}
-    plan = tiny(["friction=0.4:0.5:6"], ["peak_displacement", "dissipation"], scene, **changes)
-    warm, cold = rows_of(plan), rows_of(plan, warm=False)
+    plan = tiny(
+        ["friction=0.4:0.5:6"], ["peak_displacement", "dissipation"], scene, **changes
+    )
+    warm = rows_of(plan)
+    cold = rows_of(plan, warm=False)
     assert all(row.was_warm for row in warm[1:])
     assert not any(row.was_warm for row in cold)
-    apart = np.array([row.values for row in warm]) - np.array([row.values for row in cold])
-    assert (np.abs(apart) <= 1e-9 * np.abs([row.values for row in cold]).max(axis=0)).all()
+    apart = np.array([row.values for row in warm]) - np.array(
+        [row.values for row in cold]
+    )
+    assert (
+        np.abs(apart) <= 1e-9 * np.abs([row.values for row in cold]).max(axis=0)
+    ).all()
 
 
 @pytest.mark.parametrize("of", ["iterations", "seconds", "error_force", "indicator@2"])
-def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of: str) -> None:
+def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(
+    of: str,
+) -> None:
     plan = tiny(["friction=0.4:0.42:6"], ["peak_displacement", of])
     assert not any(row.was_warm for row in rows_of(plan))
 
@@ -110,7 +131,9 @@ def test_a_process_that_is_killed_takes_one_row_with_it_and_says_so() -> None:
             calls[0].result()
 
 
-def test_after_a_process_is_killed_that_did_nothing_the_next_sweep_has_all_rows() -> None:
+def test_after_a_process_is_killed_that_did_nothing_the_next_sweep_has_all_rows() -> (
+    None
+):
     plan = tiny(["peak=300:900:6"], ["stiffness"])
     with opened("processes:1") as executor:
         idle = executor.submit(os.getpid).result()
@@ -125,11 +148,13 @@ class Ending(Here):
 
     def __init__(self, point: int, trouble: Exception) -> None:
         super().__init__()
-        self.point, self.trouble = point, trouble
+        self.point = point
+        self.trouble = trouble
 
     def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
         if args[0] == self.point:
-            fn, args = _raise, (self.trouble,)
+            fn = _raise
+            args = (self.trouble,)
         return super().submit(fn, *args, **kwargs)
 
 
@@ -139,13 +164,18 @@ def _raise(trouble: Exception) -> None:
 
 @pytest.mark.parametrize(
     ("trouble", "ending", "words"),
-    [(TimeoutError(), "stuck", "--limit"), (ProcessExpired("killed"), "lost", "killed")],
+    [
+        (TimeoutError(), "stuck", "--limit"),
+        (ProcessExpired("killed"), "lost", "killed"),
+    ],
 )
 def test_only_the_run_whose_process_was_ended_has_no_answer(
     trouble: Exception, ending: str, words: str
 ) -> None:
     rows = rows_of(tiny(["peak=300:900:6"], ["iterations"]), Ending(2, trouble))
-    assert [row.ending for row in rows] == ["converged"] * 2 + [ending] + ["converged"] * 3
+    assert [row.ending for row in rows] == ["converged"] * 2 + [ending] + [
+        "converged"
+    ] * 3
     assert words in rows[2].reason
 
 
@@ -214,9 +244,18 @@ def test_a_program_that_is_killed_leaves_no_process_whatever_these_do() -> None:
         wait_for(lambda: not in_session(program.pid))
 
 
-def test_a_sweep_that_is_killed_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sweep_that_is_killed_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked = ["sweep", "bar", "--vary", "peak=300:900:24", "--of", "iterations"]
-    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
+    asked += [
+        "--set",
+        "elements=20",
+        "--set",
+        "substructures=2",
+        "--set",
+        "instants=21",
+    ]
     asked += ["--on", "processes:2", "--out", str(tmp_path)]
     table = tmp_path / "sweep.csv"
     with started([sys.executable, "-m", "solver", *asked]):
@@ -233,17 +272,30 @@ def in_session(leader: int) -> list[int]:
     found = []
     for process in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
-            state, _, _, session = process.read_text("utf-8").rpartition(")")[2].split()[:4]
+            state, _, _, session = (
+                process.read_text("utf-8").rpartition(")")[2].split()[:4]
+            )
             if int(session) == leader and state not in "ZX":
                 found.append(int(process.parent.name))
     return found
 
 
 @pytest.mark.parametrize(
-    "on", ["", "process", "processes:0", "processes:x", "processes:2:2", "processes:1000", "dask"]
+    "on",
+    [
+        "",
+        "process",
+        "processes:0",
+        "processes:x",
+        "processes:2:2",
+        "processes:1000",
+        "dask",
+    ],
 )
 def test_a_foolish_executor_is_refused_in_a_line(on: str) -> None:
-    with pytest.raises(SettingError, match=r"processes:COUNT, or dask://HOST:PORT") as refusal:
+    with pytest.raises(
+        SettingError, match=r"processes:COUNT, or dask://HOST:PORT"
+    ) as refusal:
         opened(on).__enter__()
     assert "\n" not in str(refusal.value)
 
@@ -270,10 +322,19 @@ def seen_at_its(moment: str, folder: Path) -> bool:
 
 
 @pytest.mark.parametrize("moment", ["first process", "first row"])
-def test_an_interrupt_from_a_terminal_ends_a_sweep_in_a_line(moment: str, tmp_path: Path) -> None:
+def test_an_interrupt_from_a_terminal_ends_a_sweep_in_a_line(
+    moment: str, tmp_path: Path
+) -> None:
     folder = tmp_path / "out"
     command = [sys.executable, "-m", "solver", "sweep", "bar", "--out", str(folder)]
-    command += ["--vary", "friction=0.1:0.6:5000", "--of", "dissipation", "--on", "processes:1"]
+    command += [
+        "--vary",
+        "friction=0.1:0.6:5000",
+        "--of",
+        "dissipation",
+        "--on",
+        "processes:1",
+    ]
     options = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL}
     with started(command, start_new_session=True, **options) as process:
         wait_for(lambda: seen_at_its(moment, folder))
@@ -298,5 +359,7 @@ runpy.run_module("solver", run_name="__main__")
 
 
 def test_an_interrupt_while_libraries_are_imported_ends_in_silence() -> None:
-    done = subprocess.run([sys.executable, "-c", INTERRUPTED_IMPORT], capture_output=True)
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED_IMPORT], capture_output=True
+    )
     assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")

@@ -35,9 +35,17 @@ class Cluster:
         self._processes: list[subprocess.Popen[bytes]] = []
         file = folder / "scheduler.json"
         self._start(
-            "scheduler", "--port", "0", "--host", "127.0.0.1", "--scheduler-file", str(file)
+            "scheduler",
+            "--port",
+            "0",
+            "--host",
+            "127.0.0.1",
+            "--scheduler-file",
+            str(file),
         )
-        wait_for(lambda: file.exists() and file.read_text(encoding="utf-8").endswith("}"))
+        wait_for(
+            lambda: file.exists() and file.read_text(encoding="utf-8").endswith("}")
+        )
         self.address = json.loads(file.read_text(encoding="utf-8"))["address"]
 
     @property
@@ -91,8 +99,12 @@ def executor(cluster: Cluster) -> Iterator[Executor]:
 
 
 def test_workers_give_the_same_rows_as_this_process(executor: Executor) -> None:
-    plan = tiny(["peak=300:900:3", "friction=0.2,0.3"], ["peak_displacement", "dissipation"])
-    here, there = ([row.values for row in rows_of(plan, place)] for place in (None, executor))
+    plan = tiny(
+        ["peak=300:900:3", "friction=0.2,0.3"], ["peak_displacement", "dissipation"]
+    )
+    here, there = (
+        [row.values for row in rows_of(plan, place)] for place in (None, executor)
+    )
     assert np.array(there) == pytest.approx(np.array(here), rel=1e-9)
 
 
@@ -104,8 +116,11 @@ def test_workers_of_other_versions_are_refused(
         rows_of(tiny(["peak=300,900"], ["iterations"]), executor)
 
 
-def test_a_worker_that_is_killed_takes_no_row_with_it(cluster: Cluster, executor: Executor) -> None:
-    plan, rows = tiny(["peak=300:900:20"], ["peak_displacement"]), []
+def test_a_worker_that_is_killed_takes_no_row_with_it(
+    cluster: Cluster, executor: Executor
+) -> None:
+    plan = tiny(["peak=300:900:20"], ["peak_displacement"])
+    rows = []
     for row in sweep(plan, executor):
         rows.append(row)
         if len(rows) == 1:
@@ -143,7 +158,14 @@ def test_a_scheduler_that_is_gone_is_told(
     monkeypatch.setattr("solver.study.sweep.executors.PATIENCE", 1.0)
     table = tmp_path / "sweep.csv"
     asked = ["sweep", "bar", "--vary", "peak=300:900:2000", "--of", "iterations"]
-    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
+    asked += [
+        "--set",
+        "elements=20",
+        "--set",
+        "substructures=2",
+        "--set",
+        "instants=21",
+    ]
 
     def end() -> None:
         with suppress(AssertionError):

@@ -58,13 +58,18 @@ def test_an_address_opens_the_run_of_its_row(case: KnownCase) -> None:
 
 
 def test_each_scene_is_proven() -> None:
-    found = {dict(parse_qsl(case.address.removeprefix("?"))).get("scene") for case in CASES}
+    found = {
+        dict(parse_qsl(case.address.removeprefix("?"))).get("scene") for case in CASES
+    }
     assert found >= set(CATALOGUE)
 
 
 @pytest.mark.parametrize("number", [2])
 def test_a_wrong_number_fails_and_says_so(
-    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    number: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(proof, "cases", lambda: [CASES[number], wrong(CASES[number])])
     assert main(["proof", "--out", str(tmp_path)]) == 1
@@ -91,9 +96,11 @@ KNOWN = {
 }
 """What the run of a case of the proof is drawn over."""
 APART = {"friction": 0.03, "pressure": 0.08, "loop": 0.01}
-"""Mean distance to the reference's curve over its mean size, that the meshes of the proof leave."""
+"""Mean distance to the reference's curve over its mean size, that the meshes of the
+proof leave."""
 PRESSED = 0.1
-"""Friction summed along a parabola, over mu P: pressing what is no half-plane leaves some."""
+"""Friction summed along a parabola, over mu P: pressing what is no half-plane leaves
+some."""
 
 
 def settings_of(title: str) -> Any:
@@ -129,7 +136,10 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
         else:
             (name, law), *_ = problem.rubbing.items()
             contact = found.contact(name)
-            own = contact.normal_force if curve.of == "pressure" else contact.tangential_force
+            if curve.of == "pressure":
+                own = contact.normal_force
+            else:
+                own = contact.tangential_force
             weights = law.by_point(law.weights)[:, None]
             if curve.of == "friction" and contact.normal_force is not None:
                 missing = np.cumsum(curve.up * weights - own, axis=0)
@@ -159,7 +169,9 @@ def test_traction_of_a_shear_that_turns_begins_as_cattaneos_and_carries_the_forc
     "settings",
     [
         BarSettings.checked({"body_force": 100.0}),
-        BarSettings.checked({"friction_law": "compliant", "pressure_load": "loosening"}),
+        BarSettings.checked(
+            {"friction_law": "compliant", "pressure_load": "loosening"}
+        ),
         BlockSettings.checked({"gap": "flat"}),
         BlockSettings.checked({"radius": 500.0, "elements": 12, "elements_up": 6}),
     ],

@@ -22,15 +22,16 @@ class Brick(NamedTuple):
 
     def nodes(self) -> tuple[slice, slice]:
         """Its nodes along and up, among those of the grid."""
-        x, y = self.x, self.y
+        x = self.x
+        y = self.y
         return slice(x, x + self.columns + 1), slice(y, y + self.rows + 1)
 
 
 class Joint(NamedTuple):
     """Where two rectangles touch, or one its support, between two ends on the grid, in elements.
 
-    Of numbers of the one above, or to the right, and of the other; None is the support. One between
-    neighbours of a course is upright.
+    Of numbers of the one above, or to the right, and of the other; None is the support.
+    One between neighbours of a course is upright.
     """
 
     above: int
@@ -42,15 +43,26 @@ class Joint(NamedTuple):
     @property
     def sides(self) -> list[tuple[int, str]]:
         """Rectangles of the joint and their sides there, the one above or to the right first."""
-        above, below = ("left", "right") if self.is_upright else ("bottom", "top")
-        return [(self.above, above), *([] if self.below is None else [(self.below, below)])]
+        if self.is_upright:
+            above = "left"
+            below = "right"
+        else:
+            above = "bottom"
+            below = "top"
+        return [
+            (self.above, above),
+            *([] if self.below is None else [(self.below, below)]),
+        ]
 
 
-def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> list[Brick]:
+def bonded(
+    bond: Bond, columns: int, courses: int, size: tuple[int, int]
+) -> list[Brick]:
     """Bricks of a wall, course by course from below: of so many in a course, and courses.
 
-    In a running bond every second course begins and ends with a half, in a stack bond all joints
-    are one above the other. `size` is elements of a brick along, even in a running bond, and up.
+    In a running bond every second course begins and ends with a half, in a stack bond
+    all joints are one above the other. `size` is elements of a brick along, even in a
+    running bond, and up.
     """
     along, up = size
     bricks = []
@@ -65,13 +77,16 @@ def bonded(bond: Bond, columns: int, courses: int, size: tuple[int, int]) -> lis
 
 
 def with_opening(
-    bricks: Sequence[Brick], size: tuple[int, int], bricks_along: tuple[int, int], courses: int
+    bricks: Sequence[Brick],
+    size: tuple[int, int],
+    bricks_along: tuple[int, int],
+    courses: int,
 ) -> list[Brick]:
     """Bricks round an opening that stands on the ground, so many courses high, with a lintel.
 
-    Of the bricks of the whole wall and the elements of one, even along it; `bricks_along` are the
-    first of the lowest course that is left out, and the first behind these. The lintel is the next
-    course, and lies on half a brick at each end.
+    Of the bricks of the whole wall and the elements of one, even along it;
+    `bricks_along` are the first of the lowest course that is left out, and the first
+    behind these. The lintel is the next course, and lies on half a brick at each end.
     """
     along, up = size
     left, right = (number * along for number in bricks_along)
@@ -79,10 +94,13 @@ def with_opening(
     lintel = Brick(left - half, courses * up, right - left + 2 * half, up)
     found = [lintel]
     for brick in bricks:
-        course, end = brick.y // up, brick.x + brick.columns
-        first, last = left, right
+        course = brick.y // up
+        end = brick.x + brick.columns
+        first = left
+        last = right
         if course == courses:
-            first, last = lintel.x, lintel.x + lintel.columns
+            first = lintel.x
+            last = lintel.x + lintel.columns
         elif course > courses:
             first = last = end
         for start, stop in ((brick.x, min(end, first)), (max(brick.x, last), end)):

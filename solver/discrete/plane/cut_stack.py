@@ -1,7 +1,7 @@
 """Bodies in the plane, cut into rectangles: meshes, joints, boundary rows, and what loads them.
 
-Lengths are scaled by the length of a body, stresses by E. Tractions act on the substructures
-themselves, and need no interface.
+Lengths are scaled by the length of a body, stresses by E. Tractions act on the
+substructures themselves, and need no interface.
 """
 
 from __future__ import annotations
@@ -48,12 +48,19 @@ def _pieces(stack: Stack) -> Iterator[_Piece]:
     """All substructures, body by body and row by row."""
     spans = [brick.columns for brick in stack.rectangles]
     for body, brick in enumerate(stack.rectangles):
-        cuts, most = stack.substructures, brick.columns
-        others = spans if stack.is_pile else [most]
+        cuts = stack.substructures
+        most = brick.columns
+        if stack.is_pile:
+            others = spans
+        else:
+            others = [most]
         ends = ends_along(max(others), cuts[0], others)
         across = [0, *ends[ends <= most].tolist()]
         up = np.cumsum([0, *substructure_sizes(brick.rows, cuts[1])]).tolist()
-        of_body = f" of {body + 1}" if body else ""
+        if body:
+            of_body = f" of {body + 1}"
+        else:
+            of_body = ""
         for row, (low, high) in enumerate(pairwise(up), start=1):
             for column, (left, right) in enumerate(pairwise(across), start=1):
                 own = Brick(brick.x + left, brick.y + low, right - left, high - low)
@@ -63,8 +70,8 @@ def _pieces(stack: Stack) -> Iterator[_Piece]:
 class _Trace(NamedTuple):
     """Boundary rows along a side of a substructure, from its first node to before the last.
 
-    Of components 0 along x and 1 along y. Parts share no operator that differ in whether macro
-    forces are to balance there.
+    Of components 0 along x and 1 along y. Parts share no operator that differ in
+    whether macro forces are to balance there.
     """
 
     side: str
@@ -82,12 +89,14 @@ class _Trace(NamedTuple):
 class CutStack:
     """Bodies, cut into rectangles.
 
-    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's sides, for cuts,
-    contacts and supports alike (the paper's ES / l_sub). Equal parts share their operator.
+    Search direction: E / l_sub per area, with l_sub the geometric mean of a part's
+    sides, for cuts, contacts and supports alike (the paper's ES / l_sub). Equal parts
+    share their operator.
 
-    All nodes have scaled `positions`, body by body, shape (n_nodes, 2). The `parts` come body by
-    body and row by row; boundary rows are numbered part by part and side by side. The `pairs` of a
-    joint are their numbers on the grid of all nodes, and the scaled length of each.
+    All nodes have scaled `positions`, body by body, shape (n_nodes, 2). The `parts`
+    come body by body and row by row; boundary rows are numbered part by part and side
+    by side. The `pairs` of a joint are their numbers on the grid of all nodes, and the
+    scaled length of each.
     """
 
     def __init__(self, stack: Stack) -> None:
@@ -97,7 +106,9 @@ class CutStack:
         self._element = 1.0 / stack.elements[0], height / stack.elements[1]
         x = np.linspace(0.0, columns / stack.elements[0], columns + 1)
         y = np.linspace(0.0, rows * height / stack.elements[1], rows + 1)
-        nodes, positions, first = list[Indices](), list[Array](), 0
+        nodes = list[Indices]()
+        positions = list[Array]()
+        first = 0
         for brick in stack.rectangles:
             along, up = brick.nodes()
             everywhere = np.stack(np.meshgrid(x[along], y[up]), axis=-1)
@@ -120,9 +131,12 @@ class CutStack:
             modulus = stack.modulus(body)
             mesh = self._mesh(own.columns, own.rows, modulus)
             force = self._force(number, mesh)
-            # Members of a group have body forces on all or on none, and see the same macro forces.
+            # Members of a group have body forces on all or on none, and see the same
+            # macro forces.
             kinds = tuple(traces.values())
-            condensed, operator = self._operator(mesh, modulus, kinds, force is not None)
+            condensed, operator = self._operator(
+                mesh, modulus, kinds, force is not None
+            )
             numbers: dict[Hashable, Indices] = {}
             for name, trace in traces.items():
                 shape = trace.dofs(mesh).shape
@@ -131,7 +145,15 @@ class CutStack:
             brick = stack.rectangles[body]
             along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes()
             self.parts.append(
-                Part(mesh, condensed, operator, nodes[body][up, along], body, numbers, force)
+                Part(
+                    mesh,
+                    condensed,
+                    operator,
+                    nodes[body][up, along],
+                    body,
+                    numbers,
+                    force,
+                )
             )
 
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
@@ -145,13 +167,19 @@ class CutStack:
         condensed = SchurComplement(mesh.outline, np.unique(dofs))
         density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
         weights = [mesh.edge_weights(one.side)[one.first : one.last] for one in traces]
-        k = [w.repeat(len(one.components)) for w, one in zip(weights, traces, strict=True)]
+        k = [
+            w.repeat(len(one.components))
+            for w, one in zip(weights, traces, strict=True)
+        ]
         trace = np.searchsorted(condensed.kept, dofs)
-        return condensed, Elasticity(condensed.stiffness, trace, density * np.concatenate(k))
+        return condensed, Elasticity(
+            condensed.stiffness, trace, density * np.concatenate(k)
+        )
 
     def _outer(self, number: int) -> Iterator[str]:
         """Sides of a substructure on which nothing is but what is given for such a side."""
-        own, (columns, _) = self._pieces[number].rectangle, self.stack.grid
+        own = self._pieces[number].rectangle
+        (columns, _) = self.stack.grid
         is_end = {"left": own.x == 0, "right": own.x + own.columns == columns}
         for side in SIDES:
             if (number, side) not in self._touched and is_end.get(side, True):
@@ -159,12 +187,16 @@ class CutStack:
 
     def bodies(self, joint: Joint) -> tuple[int, int | None]:
         """Body above, or to the right of, a joint, and the other one; None is the support."""
-        below = None if joint.below is None else self._pieces[joint.below].body
+        if joint.below is None:
+            below = None
+        else:
+            below = self._pieces[joint.below].body
         return self._pieces[joint.above].body, below
 
     def has_macro(self, joint: Joint) -> bool:
         """Whether macro forces are to balance on a joint: not within a group of bodies."""
-        (above, below), groups = self.bodies(joint), self.stack.groups
+        (above, below) = self.bodies(joint)
+        groups = self.stack.groups
         if below is None or groups is None or above == below:
             return below is not None
         return bool(groups[above] != groups[below])
@@ -175,15 +207,21 @@ class CutStack:
         if joint.below is not None and above == below:
             return f"cut {self._pieces[joint.below].name} to {self._pieces[joint.above].name}"
         if self.stack.is_pile:
-            return "support" if below is None else f"contact {above}-{above + 1}"
-        other = "support" if below is None else f"brick {below + 1}"
+            if below is None:
+                return "support"
+            return f"contact {above}-{above + 1}"
+        if below is None:
+            other = "support"
+        else:
+            other = f"brick {below + 1}"
         return f"{other} and brick {above + 1}"
 
     def basis(self, joint: Joint, which: int) -> Array:
         """Macro basis of one component on a side of a joint, (n_points, n_macro); above is 0."""
         number, side = joint.sides[which]
         part = self.parts[number]
-        mesh, count = part.rectangle, len(part.rows[joint])
+        mesh = part.rectangle
+        count = len(part.rows[joint])
         return side_basis(mesh, side, count, self.stack.macro_degree)
 
     def _is_known(self, joint: Joint) -> bool:
@@ -204,44 +242,59 @@ class CutStack:
     def _left_out(self, joint: Joint) -> tuple[bool, bool]:
         """Whether the node at the first, and at the last end of a joint has no pair.
 
-        None has at an end where the left or right side prescribes the normal displacement: any
-        pressing force would be a solution there, and so would any friction up to it. Nor has an
-        upright joint: three contacts would meet in a corner, of whose forces only sums are
-        determined, and which of them slips would depend on how they share.
+        None has at an end where the left or right side prescribes the normal
+        displacement: any pressing force would be a solution there, and so would any
+        friction up to it. Nor has an upright joint: three contacts would meet in a
+        corner, of whose forces only sums are determined, and which of them slips would
+        depend on how they share.
         """
         above, below = self.bodies(joint)
         if above == below or self._is_known(joint):
             return False, False
         if joint.is_upright:
-            bodies = [self.stack.rectangles[self._pieces[one].body] for one, _ in joint.sides]
+            bodies = [
+                self.stack.rectangles[self._pieces[one].body] for one, _ in joint.sides
+            ]
             first = joint.first == max(brick.y for brick in bodies)
             return first, joint.last == min(brick.y + brick.rows for brick in bodies)
-        left, right = (self.stack.sides[side].y.prescribed for side in ("left", "right"))
+        left, right = (
+            self.stack.sides[side].y.prescribed for side in ("left", "right")
+        )
         return joint.first == 0 and left, joint.last == self.stack.grid[0] and right
 
     def _traces(self) -> Iterator[dict[Hashable, _Trace]]:
         """Rows of every substructure, by joint, or by the name of a side: "spring" at a foot.
 
-        All at an interface, or those of prescribed components. A support of known bound has the
-        component along it.
+        All at an interface, or those of prescribed components. A support of known bound
+        has the component along it.
         """
         stack = self.stack
         traces: list[list[tuple[Hashable, _Trace]]] = [[] for _ in self._pieces]
         for joint, (nodes, _) in self.pairs.items():
-            held = (0,) if self._is_known(joint) else (0, 1)
+            held: tuple[int, ...] = (0, 1)
+            if self._is_known(joint):
+                held = (0,)
             for number, side in joint.sides:
                 own = self._pieces[number].rectangle
                 first = int(nodes[0]) - (own.y if joint.is_upright else own.x)
-                trace = _Trace(side, held, first, first + len(nodes), self.has_macro(joint))
+                trace = _Trace(
+                    side, held, first, first + len(nodes), self.has_macro(joint)
+                )
                 traces[number].append((joint, trace))
         for number, named in enumerate(traces):
             own, body, _ = self._pieces[number]
             for side in self._outer(number):
                 given = enumerate(stack.sides[side])
-                components = tuple(component for component, one in given if one.prescribed)
+                components = tuple(
+                    component for component, one in given if one.prescribed
+                )
                 if components:
                     named.append((side, _Trace(side, components)))
-                elif side == "right" and stack.spring is not None and (own.y, body) == (0, 0):
+                elif (
+                    side == "right"
+                    and stack.spring is not None
+                    and (own.y, body) == (0, 0)
+                ):
                     named.append(("spring", _Trace(side, (0, 1), 0, 1)))
             yield dict(sorted(named, key=lambda each: SIDES.index(each[1].side)))
 
@@ -263,14 +316,20 @@ class CutStack:
             areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
             density = stack.body_force * stack.length / stack.young
             total += areas.reshape(-1, 1, 1) * density
-        return total.reshape(-1, len(stack.instants)) if total.any() else None
+        if total.any():
+            return total.reshape(-1, len(stack.instants))
+        return None
 
     def values(self, number: int, side: str, given: Given) -> Array:
         """What is given at the nodes of a substructure on an outer side, (n_nodes, n_instants)."""
         own, body, _ = self._pieces[number]
-        first, count, whole = own.x, own.columns, self.stack.grid[0]
+        first = own.x
+        count = own.columns
+        whole = self.stack.grid[0]
         if side in ("left", "right"):
             brick = self.stack.rectangles[body]
-            first, count, whole = own.y - brick.y, own.rows, brick.rows
+            first = own.y - brick.y
+            count = own.rows
+            whole = brick.rows
         nodes = np.arange(first, first + count + 1)[:, None]
         return np.asarray(given.mean + (2.0 * nodes / whole - 1.0) * given.slope)

@@ -46,7 +46,8 @@ from solver.refusal import RefusedError
 
 SIDES = "left", "right", "top", "bottom"
 MOST_POISSON = 0.4999
-"""Poisson's ratio from which on a body keeps its volume to the digits of its strains."""
+"""Poisson's ratio from which on a body keeps its volume to the digits of its
+strains."""
 DRIVEN = "top", "left", "right"
 """Sides of a body on a support, in the order in which one looks for what drives it."""
 
@@ -60,8 +61,8 @@ class Given:
     prescribed
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
-        Over time, shape (n_instants,); no slope is 0. On the left and the right s runs over each
-        body anew.
+        Over time, shape (n_instants,); no slope is 0. On the left and the right s runs
+        over each body anew.
     """
 
     prescribed: bool
@@ -70,7 +71,9 @@ class Given:
 
     def __post_init__(self) -> None:
         over_time = Numbers(((None,),))
-        check(self, prescribed=FLAG, mean=over_time, slope=Either(ANY_NUMBER, over_time))
+        check(
+            self, prescribed=FLAG, mean=over_time, slope=Either(ANY_NUMBER, over_time)
+        )
 
     @property
     def is_zero(self) -> bool:
@@ -92,16 +95,16 @@ class Support:
     Attributes
     ----------
     gap, friction
-        Opening at the nodes of the lowest side, m, shape (nodes along,), and coefficient mu there,
-        or of all.
+        Opening at the nodes of the lowest side, m, shape (nodes along,), and
+        coefficient mu there, or of all.
     bound
-        Largest friction force per area where it is known, shape (nodes along, n_instants), Pa; the
-        support then presses as much as that takes, and adds no pressure of its own. None where
-        contact decides, and may open.
+        Largest friction force per area where it is known, shape (nodes along,
+        n_instants), Pa; the support then presses as much as that takes, and adds no
+        pressure of its own. None where contact decides, and may open.
     is_image
-        Whether below lies the image of the stack, turned by half a turn, which moves along as much
-        the other way: slip is between both, twice what the stack moves, and so is that of the
-        friction law. The bound has to be known.
+        Whether below lies the image of the stack, turned by half a turn, which moves
+        along as much the other way: slip is between both, twice what the stack moves,
+        and so is that of the friction law. The bound has to be known.
     """
 
     gap: Array
@@ -112,7 +115,9 @@ class Support:
     def __post_init__(self) -> None:
         along = Numbers(((None,),))
         friction = Either(NON_NEGATIVE, Numbers(along.shapes, low=0.0))
-        check(self, gap=along, friction=friction, bound=Numbers(((None, None),), low=0.0))
+        check(
+            self, gap=along, friction=friction, bound=Numbers(((None, None),), low=0.0)
+        )
         if self.is_image and self.bound is None:
             raise RefusedError(
                 "Support.bound",
@@ -126,7 +131,8 @@ class Support:
 class Spring:
     """A spring along x at the foot of the right side of the lowest body, slack at first.
 
-    Before it is pulled back, the foot may move to the left by the slack, m; stiffness in N/m.
+    Before it is pulled back, the foot may move to the left by the slack, m; stiffness
+    in N/m.
     """
 
     slack: float
@@ -140,7 +146,8 @@ class Spring:
 class Stack:
     """Rectangular bodies that lie on each other, or stand beside each other; one metre thick.
 
-    They are in contact wherever sides meet, and where they stand at y = 0 with the support.
+    They are in contact wherever sides meet, and where they stand at y = 0 with the
+    support.
 
     They have one friction law, also on the support; times are in s.
 
@@ -149,42 +156,45 @@ class Stack:
     length, height
         Of one body, m.
     bricks
-        Where bodies are and how large, on the grid of the elements of one; None is a single one.
-        What is given on the left and the right holds for those which reach farthest, and on top and
-        bottom for all that lies open there.
+        Where bodies are and how large, on the grid of the elements of one; None is a
+        single one. What is given on the left and the right holds for those which reach
+        farthest, and on top and bottom for all that lies open there.
     groups
-        Number of the group of each body, shape (bodies,), or None: bodies of one group pass no
-        macro forces to each other.
+        Number of the group of each body, shape (bodies,), or None: bodies of one group
+        pass no macro forces to each other.
     elements, substructures
-        Of one body, along and up. Bodies on each other that all begin at the left are also cut
-        where any of them ends.
+        Of one body, along and up. Bodies on each other that all begin at the left are
+        also cut where any of them ends.
     macro_degree
-        Of the macro basis on each side of a substructure; long sides get more in proportion.
+        Of the macro basis on each side of a substructure; long sides get more in
+        proportion.
     young, poisson, state
         Elasticity, Pa; `state` is "strain" or "stress".
     stiffness
         Young's modulus of every body over `young`, shape (bodies,), where they differ.
     friction
-        Coefficient mu between the bodies, that of the nodes along them, shape (nodes along,), or
-        that of each interface, shape (bodies - 1, 1) or (bodies - 1, nodes along).
+        Coefficient mu between the bodies, that of the nodes along them, shape (nodes
+        along,), or that of each interface, shape (bodies - 1, 1) or (bodies - 1, nodes
+        along).
     support
         Below the lowest body, or None.
     sides
-        What is given along the outer sides, by "left", "right", "top", "bottom"; others are free. A
-        support replaces "bottom". `left` and `right` run over the sides of all bodies.
+        What is given along the outer sides, by "left", "right", "top", "bottom"; others
+        are free. A support replaces "bottom". `left` and `right` run over the sides of
+        all bodies.
     body_force
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
     spring
         At the right side, of which nothing is prescribed then; or None.
     tilt
-        Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
-        `body_force` has turned the other way already. None where it does not.
+        Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever
+        draws it: `body_force` has turned the other way already. None where it does not.
 
     Raises
     ------
     RefusedError
-        For a number that is not above zero or none, a field of another shape, instants that do not
-        increase, bodies that overlap, or a side that there is not.
+        For a number that is not above zero or none, a field of another shape, instants
+        that do not increase, bodies that overlap, or a side that there is not.
     """
 
     length: float
@@ -231,7 +241,9 @@ class Stack:
         self._check_bodies()
         self._check_fields()
         free = Given(False, np.zeros_like(self.instants))
-        others = dict.fromkeys([side for side in SIDES if side not in self.sides], Side(free, free))
+        others = dict.fromkeys(
+            [side for side in SIDES if side not in self.sides], Side(free, free)
+        )
         object.__setattr__(self, "sides", {**self.sides, **others})
 
     def _check_bodies(self) -> None:
@@ -256,8 +268,11 @@ class Stack:
 
     def _check_fields(self) -> None:
         """Refuse what does not fit the numbers of bodies, nodes and instants."""
-        instants, bodies, nodes = len(self.instants), len(self.rectangles), self.grid[0] + 1
-        over_time, along = Numbers(((instants,),)), Numbers(((nodes,),))
+        instants = len(self.instants)
+        bodies = len(self.rectangles)
+        nodes = self.grid[0] + 1
+        over_time = Numbers(((instants,),))
+        along = Numbers(((nodes,),))
         joints = (bodies - 1, 1), (bodies - 1, nodes)
         check(
             self,
@@ -272,11 +287,15 @@ class Stack:
                 where = f"Stack.sides[{side!r}].{component}"
                 check_value(where, given, Part(Given))
                 check_value(f"{where}.mean", given.mean, over_time)
-                check_value(f"{where}.slope", given.slope, Either(ANY_NUMBER, over_time))
+                check_value(
+                    f"{where}.slope", given.slope, Either(ANY_NUMBER, over_time)
+                )
         support = self.support
         if support is not None:
             check_value("Stack.support.gap", support.gap, along)
-            check_value("Stack.support.friction", support.friction, Either(NON_NEGATIVE, along))
+            check_value(
+                "Stack.support.friction", support.friction, Either(NON_NEGATIVE, along)
+            )
             if support.bound is not None:
                 by_time = Numbers(((nodes, instants),), low=0.0)
                 check_value("Stack.support.bound", support.bound, by_time)
@@ -284,7 +303,9 @@ class Stack:
     @cached_property
     def rectangles(self) -> Sequence[Brick]:
         """Every body on the grid of elements."""
-        return [Brick(0, 0, *self.elements)] if self.bricks is None else self.bricks
+        if self.bricks is None:
+            return [Brick(0, 0, *self.elements)]
+        return self.bricks
 
     @cached_property
     def is_pile(self) -> bool:
@@ -294,20 +315,25 @@ class Stack:
     @cached_property
     def grid(self) -> tuple[int, int]:
         """Elements of all bodies together, along and up."""
-        ends = [(brick.x + brick.columns, brick.y + brick.rows) for brick in self.rectangles]
+        ends = [
+            (brick.x + brick.columns, brick.y + brick.rows) for brick in self.rectangles
+        ]
         return max(end for end, _ in ends), max(end for _, end in ends)
 
     @property
     def size(self) -> tuple[float, float]:
         """Length and height of all bodies together, m."""
-        (along, up), (columns, rows) = self.elements, self.grid
+        (along, up) = self.elements
+        (columns, rows) = self.grid
         return columns / along * self.length, rows / up * self.height
 
     @property
     def weight(self) -> Array:
         """Resultant of the body force, shape (2, n_instants), N."""
         elements = sum(brick.columns * brick.rows for brick in self.rectangles)
-        area = elements / (self.elements[0] * self.elements[1]) * self.length * self.height
+        area = (
+            elements / (self.elements[0] * self.elements[1]) * self.length * self.height
+        )
         if self.body_force is None:
             return np.zeros((2, len(self.instants)))
         return np.asarray(self.body_force * area)
@@ -330,7 +356,9 @@ class Stack:
 
     def modulus(self, body: int) -> float:
         """Young's modulus of a body over `young`."""
-        return 1.0 if self.stiffness is None else float(self.stiffness[body])
+        if self.stiffness is None:
+            return 1.0
+        return float(self.stiffness[body])
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
@@ -342,7 +370,10 @@ class Stack:
         if self.tilt is not None and self.spring is not None:
             return ("Angle of the slope", "°"), ("Spring force", "N")
         if self.support is not None:
-            return (f"Displacement of the {self._shown_side}", "m"), ("Shear force", "N")
+            return (f"Displacement of the {self._shown_side}", "m"), (
+                "Shear force",
+                "N",
+            )
         if self._is_turned:
             return ("Rotation of the end", "rad"), ("Moment", "N·m")
         return ("Deflection of the end", "m"), ("Transverse force", "N")
@@ -360,7 +391,9 @@ class Stack:
             return "right"
         if len(self.rectangles) > 1:
             return "top"
-        driven = (name for name in DRIVEN if not all(one.is_zero for one in self.sides[name]))
+        driven = (
+            name for name in DRIVEN if not all(one.is_zero for one in self.sides[name])
+        )
         return next(driven, DRIVEN[0])
 
     def loop(self, problem: Problem) -> Loop:
@@ -375,8 +408,11 @@ class Stack:
         rests = self.support is not None
         if self._is_turned:
             size = self.longest * self.height**2
-            moment = np.broadcast_to(-size / 6.0 * self.sides["right"].x.slope, self.instants.shape)
-            rotation, force = end_rotation(problem), constant(moment).of
+            moment = np.broadcast_to(
+                -size / 6.0 * self.sides["right"].x.slope, self.instants.shape
+            )
+            rotation = end_rotation(problem)
+            force = constant(moment).of
             return Loop(*self.axes, rotation, force)
         side = self._shown_side
         component = 0 if rests else 1
@@ -386,8 +422,13 @@ class Stack:
         elif given.prescribed:
             force = reaction(problem, side, component).of
         else:
-            whole = self.size[0] if rests else self.longest * self.height
-            force = constant(np.broadcast_to(given.mean * whole, self.instants.shape)).of
+            if rests:
+                whole = self.size[0]
+            else:
+                whole = self.longest * self.height
+            force = constant(
+                np.broadcast_to(given.mean * whole, self.instants.shape)
+            ).of
         return Loop(*self.axes, side_mean(problem, side, component), force)
 
     def described(self) -> Description:
@@ -415,11 +456,18 @@ class Stack:
 
     def _given(self, given: Given, side: str, component: int) -> Act:
         """What is given along a side: evenly in the middle, unevenly at both ends."""
-        towards, along = ((1.0, 0.0), (0.0, 1.0))[component], "xy"[component]
+        towards = ((1.0, 0.0), (0.0, 1.0))[component]
+        along = "xy"[component]
         unit = "m" if given.prescribed else "Pa"
         is_normal = OUTWARD[side][component] != 0.0
-        symbol = f"u_{along}" if given.prescribed else "σ" if is_normal else "τ"
-        shares, values = [0.7 if is_normal else 0.15], given.mean
+        if given.prescribed:
+            symbol = f"u_{along}"
+        elif is_normal:
+            symbol = "σ"
+        else:
+            symbol = "τ"
+        shares = [0.7 if is_normal else 0.15]
+        values = given.mean
         if np.any(given.slope):
             shares = [0.0, 1.0]
             values = np.stack([given.mean - given.slope, given.mean + given.slope])
@@ -431,10 +479,12 @@ class Stack:
     def _open(self, side: str, places: Array) -> Array:
         """Places on a side of all bodies, brought to those bodies that are there."""
         x, y, columns, rows = np.array(self.rectangles).T
-        places, (along, up) = places.copy(), self.grid
+        places = places.copy()
+        (along, up) = self.grid
         for place in places:
             is_there = (x <= place[0] * along) & (place[0] * along <= x + columns)
-            low, high = y[is_there].min() / up, (y + rows)[is_there].max() / up
+            low = y[is_there].min() / up
+            high = (y + rows)[is_there].max() / up
             ends = {"top": (high, high), "bottom": (low, low)}.get(side, (low, high))
             place[1] = ends[0] + place[1] * (ends[1] - ends[0])
         return places

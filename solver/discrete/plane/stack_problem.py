@@ -1,7 +1,7 @@
 """Bodies in the plane as a discrete problem: the laws of the joints and sides of cut bodies.
 
-Substructures of one body are glued where they meet; other bodies, and the support, are in contact.
-Contact forces are lumped at the nodes.
+Substructures of one body are glued where they meet; other bodies, and the support, are
+in contact. Contact forces are lumped at the nodes.
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ def problem_of(stack: Stack) -> Problem:
                 elasticity=part.elasticity,
                 dofs=dofs,
                 rows=np.concatenate([own.ravel() for own in part.rows.values()]),
-                body_force=None if part.force is None else part.condensed.condense(part.force),
+                body_force=None
+                if part.force is None
+                else part.condensed.condense(part.force),
             )
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
         ),
@@ -69,20 +71,28 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     rigid = rigid_rest(stack)
     if rigid is None:
         return None
-    (x, y), components = inside.places.T, inside.components
+    (x, y) = inside.places.T
+    components = inside.components
     modes = np.stack([components, np.where(components == 1, x, -y)], axis=1)
     rest = np.asarray(modes @ (rigid / np.array([[stack.length], [1.0]])))
     if stack.spring is not None:
-        rest += np.outer(components == 0, rigid_slide(stack, stack.spring) / stack.length)
+        rest += np.outer(
+            components == 0, rigid_slide(stack, stack.spring) / stack.length
+        )
     return rest
 
 
 def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed sides."""
-    stack, contacts, cuts = cut.stack, dict[str, list[Joint]](), list[Joint]()
+    stack = cut.stack
+    contacts = dict[str, list[Joint]]()
+    cuts = list[Joint]()
     for joint in cut.pairs:
         above, below = cut.bodies(joint)
-        joints = cuts if above == below else contacts.setdefault(cut.name(joint), [])
+        if above == below:
+            joints = cuts
+        else:
+            joints = contacts.setdefault(cut.name(joint), [])
         joints.append(joint)
     for name, joints in contacts.items():
         yield name, _contact(cut, joints)
@@ -101,17 +111,26 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
 
 def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
     """Law of a body on what is below or to the left of it."""
-    stack, axis, (body, under) = cut.stack, int(joints[0].is_upright), cut.bodies(joints[0])
-    node, weights = map(np.concatenate, zip(*(cut.pairs[one] for one in joints), strict=True))
+    stack = cut.stack
+    axis = int(joints[0].is_upright)
+    (body, under) = cut.bodies(joints[0])
+    node, weights = map(
+        np.concatenate, zip(*(cut.pairs[one] for one in joints), strict=True)
+    )
     touching, points = np.unique(node, return_inverse=True)
     support = stack.support if under is None else None
-    gap = np.zeros(len(node)) if support is None else support.gap[node] / stack.length
+    if support is None:
+        gap = np.zeros(len(node))
+    else:
+        gap = support.gap[node] / stack.length
     rows = _rows_of(cut, joints)
     along, *across = (
-        Component(*(own[:, one] for own in rows)) for one in (axis, 1 - axis)[: rows[0].shape[1]]
+        Component(*(own[:, one] for own in rows))
+        for one in (axis, 1 - axis)[: rows[0].shape[1]]
     )
     areas = stack.length * weights
-    law, scales = stack.friction_law, (stack.length, stack.young * stack.length)
+    law = stack.friction_law
+    scales = (stack.length, stack.young * stack.length)
     is_image = support is not None and support.is_image
     if is_image:
         law = law.of_one_side()
@@ -120,7 +139,10 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         friction = law.at(along, areas, scales, known=known)
     else:
         mu = np.asarray(stack.friction if support is None else support.friction)
-        of_each = mu[body - 1] if mu.ndim == 2 else mu
+        if mu.ndim == 2:
+            of_each = mu[body - 1]
+        else:
+            of_each = mu
         mu = np.broadcast_to(of_each[node] if of_each.size > 1 else of_each, node.shape)
         friction = law.at(along, areas, scales, friction=mu)
         # Nothing is bonded across a gap.
@@ -142,7 +164,10 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         positions=touching * (size / stack.elements[axis]),
         weights=areas,
         around=Bodies(
-            moduli=(stack.modulus(body), np.inf if under is None else stack.modulus(under)),
+            moduli=(
+                stack.modulus(body),
+                np.inf if under is None else stack.modulus(under),
+            ),
             depth=stack.height * (stack.rectangles[body].rows / stack.elements[1]),
         ),
         macro=macro,
@@ -162,7 +187,8 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
     """Law of a spring: it pushes to the right, as if from the left."""
     stack = cut.stack
     (part,) = (part for part in cut.parts if "spring" in part.rows)
-    rows, sides = part.rows["spring"], part.rectangle.edge_weights("right")
+    rows = part.rows["spring"]
+    sides = part.rectangle.edge_weights("right")
     return Contact(
         normal=Unilateral(
             component=Component(rows[:, 0]),
@@ -178,19 +204,25 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
     )
 
 
-def _prescribed(cut: CutStack, side: str, given: Side) -> Iterator[tuple[str, Dirichlet]]:
+def _prescribed(
+    cut: CutStack, side: str, given: Side
+) -> Iterator[tuple[str, Dirichlet]]:
     """Law of a side whose displacement is given.
 
     A corner has the displacement of the top or bottom, if both sides prescribe one.
     """
-    rows, values = [], []
+    rows = []
+    values = []
     components = [component for component, one in enumerate(given) if one.prescribed]
     for number, part in enumerate(cut.parts):
         if side not in part.rows:
             continue
         for column, component in enumerate(components):
             moved = cut.values(number, side, given[component])
-            corners = {"bottom": 0, "top": -1} if side in ("left", "right") else {}
+            if side in ("left", "right"):
+                corners = {"bottom": 0, "top": -1}
+            else:
+                corners = {}
             for level, corner in corners.items():
                 other = cut.stack.sides[level][component]
                 if level in part.rows and other.prescribed:

@@ -26,12 +26,21 @@ from solver.checks import (
 from solver.discrete.probes import Probe, Reaction, constant, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import SIDES, CutRods
-from solver.discrete.structure import OUTWARD, Act, Axes, Description, Hold, Loop, on_side
+from solver.discrete.structure import (
+    OUTWARD,
+    Act,
+    Axes,
+    Description,
+    Hold,
+    Loop,
+    on_side,
+)
 from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
 SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-"""Where a body force that changes along the rods is shown, and the pressure where anything rubs."""
+"""Where a body force that changes along the rods is shown, and the pressure where
+anything rubs."""
 SEVERAL = 8
 """Wires up to which the load of each is shown."""
 Side = Literal["left", "right"]
@@ -44,16 +53,19 @@ class End:
     Attributes
     ----------
     force
-        Axial force on it, positive to the right, shape (n_instants,), N; None where it is held.
+        Axial force on it, positive to the right, shape (n_instants,), N; None where it
+        is held.
     displacement
         Of what holds it, shape (n_instants,), m; None where nothing does.
     spring
-        Stiffness of the spring by which that holds it, N/m; infinite where it does so itself.
+        Stiffness of the spring by which that holds it, N/m; infinite where it does so
+        itself.
 
     Raises
     ------
     RefusedError
-        For a force and a displacement, a spring that is not stiffer than zero, or no numbers.
+        For a force and a displacement, a spring that is not stiffer than zero, or no
+        numbers.
     """
 
     force: Array | None = None
@@ -66,7 +78,10 @@ class End:
         check(self, spring=spring, force=over_time, displacement=over_time)
         if self.force is not None and self.displacement is not None:
             raise RefusedError(
-                "End.force", "given, with a displacement", "either of them", "leave out the other"
+                "End.force",
+                "given, with a displacement",
+                "either of them",
+                "leave out the other",
             )
 
     @property
@@ -89,42 +104,46 @@ class Rods:
     Attributes
     ----------
     length, stiffness
-        Length L, m, and axial stiffness ES of one rod, N; where that varies, of the uniform rod
-        that the same force at both ends stretches by as much.
+        Length L, m, and axial stiffness ES of one rod, N; where that varies, of the
+        uniform rod that the same force at both ends stretches by as much.
     elements, substructures
-        Of one rod: numbers of equal linear elements, and of parts that they are dealt to.
+        Of one rod: numbers of equal linear elements, and of parts that they are dealt
+        to.
     bound
-        Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or where it changes
-        with time (n_nodes, n_instants).
+        Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or
+        where it changes with time (n_nodes, n_instants).
     factors
-        On the bound of each interface between several rods, shape (wires - 1,), or of all.
+        On the bound of each interface between several rods, shape (wires - 1,), or of
+        all.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
     wires
-        Number of the rods, from 1: a single one rubs on its support, several on their neighbours.
+        Number of the rods, from 1: a single one rubs on its support, several on their
+        neighbours.
     broken
         Number of the broken rod and of the node where it is broken, of several rods.
     body_force
-        Axial force per length, N/m: uniform along the rods, shape (n_instants,), or at the nodes of
-        each, (n_nodes, n_instants).
+        Axial force per length, N/m: uniform along the rods, shape (n_instants,), or at
+        the nodes of each, (n_nodes, n_instants).
     strain
-        Strain e_0 that the rods would have without any force, as by heat, shape (n_elements,
-        n_instants), 1.
+        Strain e_0 that the rods would have without any force, as by heat, shape
+        (n_elements, n_instants), 1.
     settlement
-        Displacement s of the support itself, at the nodes of a single rod, shape (n_nodes,
-        n_instants), m. Ends are not on it.
+        Displacement s of the support itself, at the nodes of a single rod, shape
+        (n_nodes, n_instants), m. Ends are not on it.
     section
-        Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
-        of the inverse is 1.
+        Stiffness of every element over `stiffness`, shape (n_elements,), where it
+        varies; the mean of the inverse is 1.
     pressure
-        p behind the bound over time, shape (n_instants,), N/m, for whoever draws it, where one
-        number says it at every instant.
+        p behind the bound over time, shape (n_instants,), N/m, for whoever draws it,
+        where one number says it at every instant.
 
     Raises
     ------
     RefusedError
-        For a number that is not above zero or none, a field of another shape, instants that do not
-        increase, a bound below zero, a settlement under several rods, or a break of a single one.
+        For a number that is not above zero or none, a field of another shape, instants
+        that do not increase, a bound below zero, a settlement under several rods, or a
+        break of a single one.
     """
 
     length: float
@@ -162,12 +181,16 @@ class Rods:
         self._check_fields()
         if self.wires > 1 and self.settlement is not None:
             raise RefusedError(
-                "Rods.settlement", self.wires, "a single rod", "several rods rub on each other"
+                "Rods.settlement",
+                self.wires,
+                "a single rod",
+                "several rods rub on each other",
             )
 
     def _check_fields(self) -> None:
         """Refuse what does not fit the numbers of elements, rods and instants."""
-        nodes, instants = self.elements + 1, len(self.instants)
+        nodes = self.elements + 1
+        instants = len(self.instants)
         over_time = Numbers(((instants,),))
         contacts = max(self.wires - 1, 1)
         check(
@@ -183,7 +206,10 @@ class Rods:
             broken=Each(COUNT, 2),
         )
         for side, end in self.ends.items():
-            for what, values in (("force", end.force), ("displacement", end.displacement)):
+            for what, values in (
+                ("force", end.force),
+                ("displacement", end.displacement),
+            ):
                 if values is not None:
                     check_value(f"Rods.{side}.{what}", values, over_time)
         if self.broken is not None:
@@ -199,7 +225,9 @@ class Rods:
     @property
     def bounds(self) -> Array:
         """The bound, shape (n_nodes, n_instants), or (n_nodes, 1) where it stays the same, N/m."""
-        return self.bound if self.bound.ndim == 2 else self.bound[:, None]
+        if self.bound.ndim == 2:
+            return self.bound
+        return self.bound[:, None]
 
     @property
     def ends(self) -> dict[Side, End]:
@@ -212,35 +240,47 @@ class Rods:
         if self.right.is_prescribed:
             assert self.right.displacement is not None
             return self.right.displacement * (self.stiffness / self.length)
-        return np.zeros(len(self.instants)) if self.right.force is None else self.right.force
+        if self.right.force is None:
+            return np.zeros(len(self.instants))
+        return self.right.force
 
     @property
     def is_only_pulled(self) -> bool:
         """Whether nothing but a force at the right ends moves the rods, and the left ones rest."""
         held = self.left.is_prescribed and not np.any(self.left.displacement)
         moved = self.body_force, self.strain, self.settlement
-        return held and self.right.force is not None and all(each is None for each in moved)
+        return (
+            held
+            and self.right.force is not None
+            and all(each is None for each in moved)
+        )
 
     @property
     def rubbing_sides(self) -> int:
         """Neighbours of the broken rod."""
-        return 0 if self.broken is None else 1 + (1 < self.broken[0] < self.wires)
+        if self.broken is None:
+            return 0
+        return 1 + (1 < self.broken[0] < self.wires)
 
     def discretise(self) -> Problem:
         """Make the discrete problem.
 
-        On the support the interface is "friction"; "contact 1-2" lies between rods 1 and 2, the
-        second being the body above. Its points run along the rods; at the break of either there are
-        two, one for each of the parts that have come apart.
+        On the support the interface is "friction"; "contact 1-2" lies between rods 1
+        and 2, the second being the body above. Its points run along the rods; at the
+        break of either there are two, one for each of the parts that have come apart.
 
-        Between rods held ends do not rub: nothing slips there, and friction could not be told from
-        the reactions.
+        Between rods held ends do not rub: nothing slips there, and friction could not
+        be told from the reactions.
         """
-        names, rub_at_ends = ["friction"], (True, True)
+        names = ["friction"]
+        rub_at_ends = (True, True)
         if self.wires > 1:
-            names = [f"contact {number}-{number + 1}" for number in range(1, self.wires)]
+            names = [
+                f"contact {number}-{number + 1}" for number in range(1, self.wires)
+            ]
             rub_at_ends = not self.left.is_prescribed, not self.right.is_prescribed
-        rods, places = [self] * self.wires, [self.nodes] * self.wires
+        rods = [self] * self.wires
+        places = [self.nodes] * self.wires
         return CutRods(rods, places, names, rub_at_ends).problem()
 
     @property
@@ -250,7 +290,10 @@ class Rods:
         if self.driven_end is None and drive is not None:
             title, unit, _ = drive
             is_held = self.ends["right"].displacement is not None
-            return (title, unit), ("Force", "N") if is_held else ("End displacement", "m")
+            return (title, unit), ("Force", "N") if is_held else (
+                "End displacement",
+                "m",
+            )
         if self.wires == 1:
             return ("End displacement", "m"), ("Force", "N")
         return ("Mean end displacement", "m"), ("Tension", "N")
@@ -258,10 +301,13 @@ class Rods:
     def loop(self, problem: Problem) -> Loop:
         """Mean force on the ends that are driven over their mean displacement.
 
-        Where no end is: what a right end does, or the force that holds it, over what drives.
+        Where no end is: what a right end does, or the force that holds it, over what
+        drives.
         """
-        side, drive = self.driven_end or "right", self._drive
-        moved, force = self._moved(problem, side), self.end_force(problem, side).of
+        side = self.driven_end or "right"
+        drive = self._drive
+        moved = self._moved(problem, side)
+        force = self.end_force(problem, side).of
         if self.driven_end is None and drive is not None:
             _, _, values = drive
             if self.ends[side].displacement is None:
@@ -273,24 +319,36 @@ class Rods:
         """Mean axial force at the ends of a side, N, positive to the right."""
         end = self.ends[side]
         if end.displacement is None:
-            return constant(np.zeros(len(self.instants)) if end.force is None else end.force)
+            return constant(
+                np.zeros(len(self.instants)) if end.force is None else end.force
+            )
         if end.is_prescribed:
             return reaction(problem, SIDES[side]).times(1.0 / self.wires)
-        moved, spring = self._moved(problem, side).times(-end.spring), end.spring
+        moved = self._moved(problem, side).times(-end.spring)
+        spring = end.spring
         return replace(moved, constant=moved.constant + spring * end.displacement)
 
     def _moved(self, problem: Problem, side: Side) -> Probe:
         """Mean displacement of the ends of a side, which stand on no support, m."""
         rows = problem.interfaces[SIDES[side]].rows
         node = 0 if side == "left" else -1
-        settled = 0.0 if self.settlement is None else self.settlement[node]
-        return Probe(problem.row_dofs[rows], np.full(len(rows), 1.0 / len(rows)), settled)
+        if self.settlement is None:
+            settled = 0.0
+        else:
+            settled = self.settlement[node]
+        return Probe(
+            problem.row_dofs[rows], np.full(len(rows), 1.0 / len(rows)), settled
+        )
 
     @property
     def driven_end(self) -> Side | None:
         """The end that is pulled or moved, the right one before the left one, or None."""
         for side, end in self.ends.items():
-            if np.any(end.force) if end.displacement is None else np.any(end.displacement):
+            if (
+                np.any(end.force)
+                if end.displacement is None
+                else np.any(end.displacement)
+            ):
                 return side
         return None
 
@@ -322,18 +380,24 @@ class Rods:
         )
 
     def _acts(self) -> Iterator[Act]:
-        right, pulled = OUTWARD["right"], self.wires if self.wires <= SEVERAL else 1
+        right = OUTWARD["right"]
+        pulled = self.wires if self.wires <= SEVERAL else 1
         heights = (np.arange(pulled) + 0.5) / pulled
         for side, end in self.ends.items():
             if end.displacement is not None:
                 places = on_side(side, heights[:1] if side == "left" else heights)
                 yield Act(f"{side} x", "u", places, right, end.displacement, "m")
             elif end.force is not None:
-                yield Act(f"{side} x", "F", on_side(side, heights), right, end.force, "N")
+                yield Act(
+                    f"{side} x", "F", on_side(side, heights), right, end.force, "N"
+                )
         shown = np.rint(SHOWN * self.elements).astype(np.intp)
         if self.body_force is not None:
             is_uniform = self.body_force.ndim == 1
-            values = self.body_force if is_uniform else self.body_force[shown]
+            if is_uniform:
+                values = self.body_force
+            else:
+                values = self.body_force[shown]
             places = on_side("body", [0.5] if is_uniform else SHOWN)
             yield Act("body", "b", places, right, values, "N/m")
         if self.strain is not None:
@@ -342,7 +406,9 @@ class Rods:
         if self.settlement is not None:
             places = on_side("bottom", SHOWN)
             yield Act("bottom x", "s", places, right, self.settlement[shown], "m")
-        rubs = SHOWN[np.interp(SHOWN, self.nodes / self.length, self.bounds.max(axis=1)) > 0.0]
+        rubs = SHOWN[
+            np.interp(SHOWN, self.nodes / self.length, self.bounds.max(axis=1)) > 0.0
+        ]
         if self.pressure is not None and len(rubs):
             places = on_side("top", rubs)
             yield Act("top y", "p", places, OUTWARD["bottom"], self.pressure, "N/m")

@@ -1,8 +1,8 @@
 """The cross-section of a strand: a core and layers of helical wires, and what it says alone.
 
-Sections of the strand stay plane and wires are long beside their diameter, so that each of them is
-a bar along its helix (G. A. Costello, Theory of Wire Rope, 2nd ed., Springer 1997, without
-Poisson's effect; K.-O. Papailiou, IEEE Trans. Power Delivery 12, 1997).
+Sections of the strand stay plane and wires are long beside their diameter, so that each
+of them is a bar along its helix (G. A. Costello, Theory of Wire Rope, 2nd ed., Springer
+1997, without Poisson's effect; K.-O. Papailiou, IEEE Trans. Power Delivery 12, 1997).
 """
 
 from __future__ import annotations
@@ -16,16 +16,18 @@ import numpy as np
 from solver.arrays import Array
 from solver.refusal import RefusedError, plain
 
-STEEL, ALUMINIUM = 200e9, 69e9
+STEEL = 200e9
+ALUMINIUM = 69e9
 """Young's moduli of wires, Pa."""
 PRESTRESSING = 195e9
 """The same of prestressing steel, Pa (EN 1992-1-1, 3.3.6)."""
 MOST_LAYERS = 5
 TIGHT = 1.01
-"""Radius that wires beside each other need, over that of their helix, up to which they fit: those
-of real strands touch each other, and are pressed a little out of round."""
+"""Radius that wires beside each other need, over that of their helix, up to which they
+fit: those of real strands touch each other, and are pressed a little out of round."""
 LEAST_LAY = 0.1
-"""Of a layer, degrees: a wire that is hardly laid goes round once in hundreds of diameters."""
+"""Of a layer, degrees: a wire that is hardly laid goes round once in hundreds of
+diameters."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,9 @@ class CrossSection:
 
     def __post_init__(self) -> None:
         if remedy := self._remedy():
-            allowed = "rows (wires, diameter, lay angle, modulus) from the core outwards"
+            allowed = (
+                "rows (wires, diameter, lay angle, modulus) from the core outwards"
+            )
             raise RefusedError("CrossSection", self.rows, allowed, remedy)
 
     def _remedy(self) -> str:
@@ -94,7 +98,8 @@ class CrossSection:
                 least = plain(LEAST_LAY)
                 return f"row {row}: give a lay angle of {least}° or more in size, less than 90°"
         for layer, (count, diameter, lay, _) in enumerate(self.rows[1:]):
-            needed, radius = self.least_radius(layer), self.radii[layer]
+            needed = self.least_radius(layer)
+            radius = self.radii[layer]
             if needed > TIGHT * radius:
                 return (
                     f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do not fit "
@@ -106,7 +111,8 @@ class CrossSection:
     @cached_property
     def radii(self) -> tuple[float, ...]:
         """Radius of the helix of every layer, m: each lies on what is below."""
-        radii, outer = [], 0.5 * self.core.diameter
+        radii = []
+        outer = 0.5 * self.core.diameter
         for layer in self.layers:
             radii.append(outer + 0.5 * layer.diameter)
             outer += layer.diameter
@@ -115,7 +121,8 @@ class CrossSection:
     def least_radius(self, layer: int) -> float:
         """Radius of the helix on which the wires of a layer would touch each other, m.
 
-        Cut across the strand a wire is an ellipse, wider by 1 / cos(alpha) (Costello, chapter 2).
+        Cut across the strand a wire is an ellipse, wider by 1 / cos(alpha) (Costello,
+        chapter 2).
         """
         one = self.layers[layer]
         if one.wires == 1:
@@ -127,7 +134,12 @@ class CrossSection:
     def rows(self) -> tuple[tuple[float, float, float, float], ...]:
         """Wires, diameter, m, lay angle, in degrees, and Young's modulus, Pa, inside out."""
         return tuple(
-            (float(one.wires), one.diameter, float(f"{np.degrees(one.lay):.12g}"), one.young)
+            (
+                float(one.wires),
+                one.diameter,
+                float(f"{np.degrees(one.lay):.12g}"),
+                one.young,
+            )
             for one in (self.core, *self.layers)
         )
 
@@ -151,7 +163,9 @@ class CrossSection:
     def slipping_bending(self) -> float:
         """Bending stiffness E I cos(alpha) of wires that slip, each about its own axis, N m^2."""
         return sum(
-            float(one.wires * one.young * np.pi * one.diameter**4 / 64.0 * np.cos(one.lay))
+            float(
+                one.wires * one.young * np.pi * one.diameter**4 / 64.0 * np.cos(one.lay)
+            )
             for one in (self.core, *self.layers)
         )
 
@@ -167,19 +181,24 @@ class CrossSection:
     def wire_tension(self, layer: int, tension: Array) -> Array:
         """Force in a wire of a layer under a tension of the strand, of its shape, N."""
         one = self.layers[layer]
-        return np.asarray(one.stiffness * np.cos(one.lay) ** 2 / self.stiffness * tension)
+        return np.asarray(
+            one.stiffness * np.cos(one.lay) ** 2 / self.stiffness * tension
+        )
 
     def line_pressures(self, tension: Array) -> tuple[Array, Array]:
         """What presses the wires of every layer on what is below, and on it from above.
 
-        A wire presses with N sin^2(alpha) / R per length. What a layer and all outside it press is
-        spread over the wires below; each layer passes it on. Inner and outer faces, shape
-        (n_layers, n_instants) each, N per metre of wire, under the tension, (n_instants,), N.
+        A wire presses with N sin^2(alpha) / R per length. What a layer and all outside
+        it press is spread over the wires below; each layer passes it on. Inner and
+        outer faces, shape (n_layers, n_instants) each, N per metre of wire, under the
+        tension, (n_instants,), N.
         """
-        below, above = [], []
+        below = []
+        above = []
         passed = np.zeros_like(tension)
         for number in reversed(range(len(self.layers))):
-            layer, radius = self.layers[number], self.radii[number]
+            layer = self.layers[number]
+            radius = self.radii[number]
             # Per length of wire, of what acts per length of strand.
             share = np.cos(layer.lay) / layer.wires
             above.append(share * passed)
@@ -191,8 +210,9 @@ class CrossSection:
     def friction_bounds(self, tension: Array, friction: float, factors: Array) -> Array:
         """Friction that the wires of every layer can take, from below and from above, N/m.
 
-        Shape (n_layers, n_instants), per metre of wire, under the tension of the strand,
-        (n_instants,), N; `factors` are mu of every layer on what it lies on over `friction`.
+        Shape (n_layers, n_instants), per metre of wire, under the tension of the
+        strand, (n_instants,), N; `factors` are mu of every layer on what it lies on
+        over `friction`.
         """
         below, above = self.line_pressures(tension)
         outer = np.append(factors[1:], 1.0)
@@ -211,7 +231,8 @@ def laid(rows: Iterable[Sequence[float]]) -> CrossSection:
 def seven_wire() -> CrossSection:
     """Seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.
 
-    Six wires of 5.2 mm on one of 5.4 mm, with a lay length of 16 diameters (14 to 18 are allowed).
+    Six wires of 5.2 mm on one of 5.4 mm, with a lay length of 16 diameters (14 to 18
+    are allowed).
     """
     lay = np.degrees(np.arctan(2.0 * np.pi * 5.3e-3 / (16.0 * 15.7e-3)))
     return laid([(1, 5.4e-3, 0.0, PRESTRESSING), (6, 5.2e-3, lay, PRESTRESSING)])
@@ -220,24 +241,31 @@ def seven_wire() -> CrossSection:
 def mooring(layers: int) -> CrossSection:
     """Spiral strand as it moors platforms and stays bridges: 6, 12, 18, ... wires.
 
-    Wires of 5 mm and lay angles of 17 degrees are usual sizes, of no one product; the core wire is
-    so much thicker that the wires of a layer have room beside each other. Three layers are 35 mm
-    thick, and break at some 1100 kN.
+    Wires of 5 mm and lay angles of 17 degrees are usual sizes, of no one product; the
+    core wire is so much thicker that the wires of a layer have room beside each other.
+    Three layers are 35 mm thick, and break at some 1100 kN.
     """
-    around = ((6 * number, 5e-3, -17.0 * (-1) ** number, STEEL) for number in range(1, layers + 1))
+    around = (
+        (6 * number, 5e-3, -17.0 * (-1) ** number, STEEL)
+        for number in range(1, layers + 1)
+    )
     return laid([(1, 5.3e-3, 0.0, STEEL), *around])
 
 
 def conductor() -> CrossSection:
     """Overhead conductor of aluminium on steel: Drake, 26 and 7 wires, 28.1 mm (ASTM B232).
 
-    Seven steel wires of 3.454 mm, then 10 and 16 of aluminium of 4.442 mm. Lay lengths are 25, 13
-    and 11 times the diameter over the layer, within what the standard allows. It breaks at 140 kN.
+    Seven steel wires of 3.454 mm, then 10 and 16 of aluminium of 4.442 mm. Lay lengths
+    are 25, 13 and 11 times the diameter over the layer, within what the standard
+    allows. It breaks at 140 kN.
     """
-    steel, aluminium = 3.454e-3, 4.442e-3
+    steel = 3.454e-3
+    aluminium = 4.442e-3
     wires = np.array([steel, aluminium, aluminium])
     over = steel + 2.0 * np.cumsum(wires)
-    lays = np.degrees(np.arctan(np.pi * (over - wires) / (np.array([25.0, 13.0, 11.0]) * over)))
+    lays = np.degrees(
+        np.arctan(np.pi * (over - wires) / (np.array([25.0, 13.0, 11.0]) * over))
+    )
     return laid(
         [
             (1, steel, 0.0, STEEL),

@@ -1,15 +1,17 @@
 """A strand of helical wires that is bent: rods, each on a support that is stretched with it.
 
-Plane sections of the strand stay plane, so a curvature kappa stretches what a wire lies on by
-kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at which the wire stands.
-Of the wire's displacement only what it slips on its support is unknown, and that is a rod's on a
-rigid support under the body force that the support's stretch brings about (K.-O. Papailiou, On the
-bending stiffness of transmission line conductors, IEEE Trans. Power Delivery 12, 1997). Its growth
-of tension by friction (the capstan term) is left out, as are wires beside each other.
+Plane sections of the strand stay plane, so a curvature kappa stretches what a wire lies
+on by kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at
+which the wire stands. Of the wire's displacement only what it slips on its support is
+unknown, and that is a rod's on a rigid support under the body force that the support's
+stretch brings about (K.-O. Papailiou, On the bending stiffness of transmission line
+conductors, IEEE Trans. Power Delivery 12, 1997). Its growth of tension by friction (the
+capstan term) is left out, as are wires beside each other.
 
-Degrees of freedom run along wire after wire; each is what the wire slips on its support. Ends are
-held: neither an extreme fibre slips, nor what a clamp grips. So friction there could not be told
-from the reactions, and they are no points of the interfaces, one a wire, "wire LAYER.NUMBER".
+Degrees of freedom run along wire after wire; each is what the wire slips on its
+support. Ends are held: neither an extreme fibre slips, nor what a clamp grips. So
+friction there could not be told from the reactions, and they are no points of the
+interfaces, one a wire, "wire LAYER.NUMBER".
 """
 
 from __future__ import annotations
@@ -40,7 +42,15 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.rods import End, Rods
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
-from solver.discrete.structure import OUTWARD, Act, Axes, Description, Hold, Loop, on_side
+from solver.discrete.structure import (
+    OUTWARD,
+    Act,
+    Axes,
+    Description,
+    Hold,
+    Loop,
+    on_side,
+)
 from solver.laws import FrictionLaw
 
 
@@ -55,10 +65,11 @@ class RopeWire:
     made
         Of what, and how it is laid: all wires of its layer.
     radius, start, length
-        Of the helix of its centre line, R, m; polar angle theta at its beginning, from the
-        outermost fibre, rad; and length of the wire, m.
+        Of the helix of its centre line, R, m; polar angle theta at its beginning, from
+        the outermost fibre, rad; and length of the wire, m.
     bound
-        Friction bound per length of wire, N/m: a number, or over time, shape (n_instants,).
+        Friction bound per length of wire, N/m: a number, or over time, shape
+        (n_instants,).
     curvature
         Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
     tension
@@ -122,16 +133,19 @@ class RopeWire:
     def _stuck_force(self, columns: slice | Indices) -> Array:
         """The same at the nodes."""
         stretch = self.made.stiffness * self.radius * np.cos(self.made.lay) ** 2
-        return np.asarray((stretch * np.cos(self.angle))[:, None] * self.curvature[:, columns])
+        return np.asarray(
+            (stretch * np.cos(self.angle))[:, None] * self.curvature[:, columns]
+        )
 
     def body_force(self) -> Array:
         """Force per length that stands for the stretch of what it lies on.
 
-        It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the wire
-        included, in differences of the elements' forces: equilibrium holds exactly on the mesh.
-        Shape (n_nodes, n_instants), N/m.
+        It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the
+        wire included, in differences of the elements' forces: equilibrium holds exactly
+        on the mesh. Shape (n_nodes, n_instants), N/m.
         """
-        stuck, arc = self._stuck_force(slice(None)), self.arc
+        stuck = self._stuck_force(slice(None))
+        arc = self.arc
         force = np.concatenate([stuck[:1], 0.5 * (stuck[1:] + stuck[:-1]), stuck[-1:]])
         length = np.concatenate([arc[:1], 0.5 * (arc[1:] + arc[:-1]), arc[-1:]])
         return np.asarray(np.diff(force, axis=0) / np.diff(length)[:, None])
@@ -139,11 +153,12 @@ class RopeWire:
     def levers(self, *, at_beginning: bool) -> Array:
         """What a newton in each element adds to the moment of the strand, (n_elements,), N m.
 
-        Either to that at the wire's beginning, where the force follows from the first two elements,
-        in whose middles it is known; or to the mean, which as many wires, evenly laid, have
-        together at every section.
+        Either to that at the wire's beginning, where the force follows from the first
+        two elements, in whose middles it is known; or to the mean, which as many wires,
+        evenly laid, have together at every section.
         """
-        arc, arm = self.arc, self.radius * np.cos(self.made.lay)
+        arc = self.arc
+        arm = self.radius * np.cos(self.made.lay)
         if not at_beginning:
             around = np.diff(np.sin(self.angle)) * self.radius / np.sin(self.made.lay)
             return np.asarray(arm * around / (arc[-1] - arc[0]))
@@ -164,10 +179,11 @@ class Rope:
     substructures
         Parts that the elements of a wire are dealt to.
     tension, curvature
-        Of the strand, N, for whoever draws it; and, uniform or at its clamp, 1/m: (n_instants,).
+        Of the strand, N, for whoever draws it; and, uniform or at its clamp, 1/m:
+        (n_instants,).
     is_clamped
-        Whether the curvature falls away from a clamp, so that every wire is there; or it is the
-        same all along, and the wires of a layer differ by their phase alone.
+        Whether the curvature falls away from a clamp, so that every wire is there; or
+        it is the same all along, and the wires of a layer differ by their phase alone.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
 
@@ -218,13 +234,15 @@ class Rope:
     def seen_length(self) -> float:
         """Of the strand that is drawn, m: what is bent, or a turn of its outermost wires."""
         longest = max(float(wire.along[-1]) for wire in self.wires)
-        return longest if self.is_clamped else 2.0 * longest
+        if self.is_clamped:
+            return longest
+        return 2.0 * longest
 
     def discretise(self) -> Problem:
         """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.
 
-        Positions are those along the strand. Where a wire stands for its layer, over half a turn
-        of it, so does its interface, over the strand that is drawn.
+        Positions are those along the strand. Where a wire stands for its layer, over
+        half a turn of it, so does its interface, over the strand that is drawn.
         """
         problem = CutRods(
             [self._rod(wire) for wire in self.wires],
@@ -259,10 +277,11 @@ class Rope:
     def moment(self) -> Probe:
         """Bending moment of the strand, N m, from what its wires slip.
 
-        At the clamp, or the mean along the strand, which is that of every section; with the wires
-        bent each about their own axis.
+        At the clamp, or the mean along the strand, which is that of every section; with
+        the wires bent each about their own axis.
         """
-        weights, stuck = [], self.section.slipping_bending * self.curvature
+        weights = []
+        stuck = self.section.slipping_bending * self.curvature
         for wire in self.wires:
             levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
             spring = wire.made.stiffness * levers / np.diff(wire.arc)
@@ -275,12 +294,16 @@ class Rope:
     @property
     def axes(self) -> Axes:
         """Titles and units of the loop."""
-        title = "Curvature at the clamp" if self.is_clamped else "Curvature"
+        if self.is_clamped:
+            title = "Curvature at the clamp"
+        else:
+            title = "Curvature"
         return (title, "1/m"), ("Moment", "N·m")
 
     def loop(self, problem: Problem) -> Loop:
         """Moment over the curvature, which drives it."""
-        across, moment = constant(self.curvature), self.moment().of
+        across = constant(self.curvature)
+        moment = self.moment().of
         return Loop(*self.axes, across, moment)
 
     def described(self) -> Description:

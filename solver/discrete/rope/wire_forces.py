@@ -14,9 +14,10 @@ from solver.discrete.rope.rope import Rope
 class CutWires:
     """All wires of the layers at one section, inside out and around, shape (n_cut,) each.
 
-    A wire is cut at its centre, sideways and towards the outermost fibre, (n_cut, 2), m. The one
-    that stands for it has this place in `Rope.wires`, and is there at this arc length, m; the side
-    is -1 where a wire slips the other way, on the other side of the plane of bending, else 1.
+    A wire is cut at its centre, sideways and towards the outermost fibre, (n_cut, 2),
+    m. The one that stands for it has this place in `Rope.wires`, and is there at this
+    arc length, m; the side is -1 where a wire slips the other way, on the other side of
+    the plane of bending, else 1.
     """
 
     wire: Indices
@@ -28,8 +29,9 @@ class CutWires:
 def cut_at(rope: Rope, place: float) -> CutWires:
     """Cut all wires at a place along the strand, m.
 
-    Under a uniform curvature the one wire of a layer passes half a turn, from the outermost fibre
-    to the innermost; the other half is its mirror image in the plane of bending.
+    Under a uniform curvature the one wire of a layer passes half a turn, from the
+    outermost fibre to the innermost; the other half is its mirror image in the plane of
+    bending.
     """
     cuts = []
     for number, wire in enumerate(rope.wires):
@@ -39,7 +41,8 @@ def cut_at(rope: Rope, place: float) -> CutWires:
         if rope.is_clamped:
             arc = min(arc, wire.length)
         angles = starts + arc * np.sin(lay) / wire.radius
-        arcs, sides = np.full(len(angles), arc), np.ones(len(angles))
+        arcs = np.full(len(angles), arc)
+        sides = np.ones(len(angles))
         if not rope.is_clamped:
             turned = np.sign(lay) * angles
             sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
@@ -54,8 +57,8 @@ def cut_at(rope: Rope, place: float) -> CutWires:
 def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
     """Forces in the elements of all wires: their tension and what bending adds.
 
-    Shape (n_wires, n_elements, n_columns), N, from the displacement of the problem's degrees of
-    freedom, (n_dofs, n_instants), m, at some of the instants.
+    Shape (n_wires, n_elements, n_columns), N, from the displacement of the problem's
+    degrees of freedom, (n_dofs, n_instants), m, at some of the instants.
     """
     slips = np.split(displacement[:, columns], len(rope.wires))
     forces = []
@@ -75,25 +78,29 @@ def wire_stresses(rope: Rope, displacement: Array, columns: slice | Indices) -> 
 def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
     """Mean stress of every wire that is cut, from `wire_stresses`.
 
-    Shape (n_cut, n_columns), Pa; linear between the middles of elements, and beyond the first and
-    the last of them.
+    Shape (n_cut, n_columns), Pa; linear between the middles of elements, and beyond the
+    first and the last of them.
     """
     sizes = np.array([wire.length / rope.elements for wire in rope.wires])
     at = cut.arc / sizes[cut.wire] - 0.5
     first = np.clip(np.floor(at).astype(np.intp), 0, max(rope.elements - 2, 0))
     share = (at - first)[:, None]
-    low, high = stress[cut.wire, first], stress[cut.wire, np.minimum(first + 1, rope.elements - 1)]
+    low = stress[cut.wire, first]
+    high = stress[cut.wire, np.minimum(first + 1, rope.elements - 1)]
     return np.asarray((1.0 - share) * low + share * high)
 
 
 def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
     """How far the stress of every wire swings where it swings most, shape (n_wires,), Pa.
 
-    At the fibre of the wire where its bending about its own axis adds to it; over some instants.
+    At the fibre of the wire where its bending about its own axis adds to it; over some
+    instants.
     """
     axial = wire_stresses(rope, displacement, some)
     curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
-    outer = np.array([0.5 * wire.made.young * wire.made.diameter for wire in rope.wires])
+    outer = np.array(
+        [0.5 * wire.made.young * wire.made.diameter for wire in rope.wires]
+    )
     bent = outer[:, None, None] * 0.5 * (curvature[:, 1:] + curvature[:, :-1])
     swings = [np.ptp(axial + way * bent, axis=2).max(axis=1) for way in (-1.0, 1.0)]
     return np.asarray(np.maximum(*swings))

@@ -14,28 +14,34 @@ from solver.latin.direction.directions import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
 
-SETTLED, CALM = 0.1, 25
-"""The status has settled when no larger share of all points and instants than this changed, so many
-iterations on end. Sooner, 1 % is reached later; at a smaller share some loads wait past 100."""
+SETTLED = 0.1
+CALM = 25
+"""The status has settled when no larger share of all points and instants than this
+changed, so many iterations on end. Sooner, 1 % is reached later; at a smaller share
+some loads wait past 100."""
 SLIDING = 0.3
-"""Factor on the automatic k of a point that always slips; at one that sticks for a share of the
-instants, this to the power of the other share. With 0.1 it is worse than no update (measured)."""
+"""Factor on the automatic k of a point that always slips; at one that sticks for a
+share of the instants, this to the power of the other share. With 0.1 it is worse than
+no update (measured)."""
 TRIAL = 20
-"""Iterations after which the new k must have made the k-free indicator smaller, again and again."""
+"""Iterations after which the new k must have made the k-free indicator smaller, again
+and again."""
 
 
 @dataclass(frozen=True)
 class FromStatus:
     """A search direction that follows the contact status, once that has settled.
 
-    k(x, t) in separated form: a profile in x from the status, constant in t. A slipping point
-    carries its bound whatever its place, so the small k that leaves its place free is the better
-    one; at a point that never slips any k serves. The profile multiplies the automatic k, whatever
-    k was before. It is constant in time, so each substructure keeps one operator for all instants.
+    k(x, t) in separated form: a profile in x from the status, constant in t. A slipping
+    point carries its bound whatever its place, so the small k that leaves its place
+    free is the better one; at a point that never slips any k serves. The profile
+    multiplies the automatic k, whatever k was before. It is constant in time, so each
+    substructure keeps one operator for all instants.
 
-    It never diverges where the constant k converges: at every `TRIAL` iterations the k-free
-    indicator of W and F must be below that of the trial before, the update being the first.
-    Otherwise the run goes back to W, F of that trial and to the old k, and stays there.
+    It never diverges where the constant k converges: at every `TRIAL` iterations the
+    k-free indicator of W and F must be below that of the trial before, the update being
+    the first. Otherwise the run goes back to W, F of that trial and to the old k, and
+    stays there.
 
     Attributes
     ----------
@@ -59,12 +65,16 @@ class FromStatus:
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
         """As `SearchDirection.begin`; without contact there is no status to follow."""
-        return UpdateProgress("first" if problem.rubbing else "returned", self.of(problem))
+        return UpdateProgress(
+            "first" if problem.rubbing else "returned", self.of(problem)
+        )
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
         """Progress by what sticks and slips in the local stage, or by what an update has made."""
         problem = iterate.problem
-        status, count, is_calm = None, progress.count + 1, True
+        status = None
+        count = progress.count + 1
+        is_calm = True
         if progress.phase == "first":
             status = _crept(iterate)
             before = progress.status
@@ -73,7 +83,10 @@ class FromStatus:
             return replace(progress, status=status, count=count if is_calm else 0)
         moved = iterate.boundary_displacement
         fields = moved, iterate.k[:, None] * (iterate.outgoing - moved)
-        k = progress.k if status is None else _profile(problem, status)
+        if status is None:
+            k = progress.k
+        else:
+            k = _profile(problem, status)
         violation = behaviour_of(problem, *fields)
         if status is not None or violation < progress.violation:
             return UpdateProgress("updated", k, fields=fields, violation=violation)
@@ -82,9 +95,12 @@ class FromStatus:
 
 def _crept(iterate: Iterate) -> NDArray[np.int8]:
     """Contact status of the local stage, (n_points, n_instants): what creeps has not settled."""
-    groups, moved, force = iterate.problem.contact_groups, iterate.local_displacement, None
+    groups = iterate.problem.contact_groups
+    moved = iterate.local_displacement
+    force = None
     if any(group.law.tangential.softness is not None for group in groups):
-        # A point that gives way moves while it sticks: its force tells whether it slips.
+        # A point that gives way moves while it sticks: its force tells whether it
+        # slips.
         force = iterate.boundary_local_force
     n_points = sum(len(group.points) for group in groups)
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)

@@ -21,28 +21,33 @@ from solver.reference.distance import LEAST_SHARE, VANISHING
 from solver.reference.incremental import Incremental, incremental_solver
 
 SETTLED = 0.04
-"""Relative change of the whole contact force at which most statuses are right. If friction and
-pressure each had to settle, four layers would wait for 22 iterations instead of 8 (measured)."""
+"""Relative change of the whole contact force at which most statuses are right. If
+friction and pressure each had to settle, four layers would wait for 22 iterations
+instead of 8 (measured)."""
 SOLVED = 1e-20
 """LATIN indicator, a ratio of squares, of a run that begins with its solution."""
 LONG = 100
-"""Iterations from which on a status step is tried at every doubling, whatever has changed: a
-contact force that dies out changes by much of itself for ever."""
+"""Iterations from which on a status step is tried at every doubling, whatever has
+changed: a contact force that dies out changes by much of itself for ever."""
 LAST = 10.0
 """Times more that a run's last trial may cost: without it the run has no answer."""
 AGAIN = 2.0
-"""Ratio of the iterations at which a failed status step is tried again, its cost is estimated anew,
-and which forces count as none: rough numbers, and dear beside a small iteration."""
+"""Ratio of the iterations at which a failed status step is tried again, its cost is
+estimated anew, and which forces count as none: rough numbers, and dear beside a small
+iteration."""
 LOOK_BACK = 0.7
-"""A change of the contact force is that since the iterate at this share of the iterations."""
+"""A change of the contact force is that since the iterate at this share of the
+iterations."""
 SAFETY = 4.0
-"""On what is left, if the changes go on to fall by the slower of their last two ratios, which a
-power of the iterations has as well as a power of a number: of 20 iterates of bars and strands one
-had a larger error, by five times (measured)."""
+"""On what is left, if the changes go on to fall by the slower of their last two ratios,
+which a power of the iterations has as well as a power of a number: of 20 iterates of
+bars and strands one had a larger error, by five times (measured)."""
 SLOWEST = 0.97
-"""Ratio at most: that of a force that converges as the iterations to the power of -0.085."""
+"""Ratio at most: that of a force that converges as the iterations to the power of
+-0.085."""
 FEW = 10
-"""Iterations up to which changes foretell nothing: a nested start makes them small at once."""
+"""Iterations up to which changes foretell nothing: a nested start makes them small at
+once."""
 SPACING = 1.1
 """Ratio of the iterations whose contact forces are kept to look back at."""
 
@@ -50,15 +55,17 @@ SPACING = 1.1
 class ErrorEstimate:
     """The relative error of the contact force, iterate after iterate.
 
-    Once a status step is certified it is the distance to that solution. Before, and where the step
-    costs more than it saves, it is what the last changes let expect, with a factor for safety.
+    Once a status step is certified it is the distance to that solution. Before, and
+    where the step costs more than it saves, it is what the last changes let expect,
+    with a factor for safety.
 
-    With `needs_proof` a certified solution alone counts, whatever it costs: bases that are too
-    small converge to something else, which no change shows. The `certificate` is None until it is
-    known; for ever, where the problem has no reference. A status step is given up at the
-    `deadline`, by `time.perf_counter`, and none begins that would take longer. Where `interrupted`
-    returns True it is given up, too, and tried again after the next iteration. The `ending` is that
-    of a run whose last status step came to where no equilibrium goes on.
+    With `needs_proof` a certified solution alone counts, whatever it costs: bases that
+    are too small converge to something else, which no change shows. The `certificate`
+    is None until it is known; for ever, where the problem has no reference. A status
+    step is given up at the `deadline`, by `time.perf_counter`, and none begins that
+    would take longer. Where `interrupted` returns True it is given up, too, and tried
+    again after the next iteration. The `ending` is that of a run whose last status step
+    came to where no equilibrium goes on.
     """
 
     def __init__(
@@ -68,19 +75,22 @@ class ErrorEstimate:
         needs_proof: bool = False,
         interrupted: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._accuracy, self.needs_proof = accuracy, needs_proof
+        self._accuracy = accuracy
+        self.needs_proof = needs_proof
         self._changes = ForceChanges()
         self._next_trial = 1
         self._solver: Incremental | None = None
         self._costs: tuple[int, Costs] | None = None
         self._has_solver = True
         self.certificate: Certificate | None = None
-        self.deadline, self._interrupted = math.inf, interrupted
+        self.deadline = math.inf
+        self._interrupted = interrupted
         self.ending: Status | None = None
 
     def __call__(self, iterate: Iterate) -> float:
         """The estimate for the next iterate of a run; NaN where there is none."""
-        number, worst = iterate.number, math.nan
+        number = iterate.number
+        worst = math.nan
         if self.certificate is None:
             worst, whole = self._changes.left(iterate)
             ends_soon = worst <= self._accuracy or whole <= self._accuracy
@@ -107,7 +117,9 @@ class ErrorEstimate:
         errors = distance.of_friction_force(iterate), distance.of_displacement(iterate)
         return max(errors) <= share
 
-    def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
+    def can_be_proven(
+        self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
+    ) -> bool:
         """Whether a status step is worth its cost by now.
 
         It may cost `patience` times more than usual, and in any case `least` seconds.
@@ -119,14 +131,18 @@ class ErrorEstimate:
             return False
         return self.needs_proof or costs.afford(patience * iterate.number, least)
 
-    def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> None:
+    def try_step(
+        self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
+    ) -> None:
         """Try the status step, unless it costs too much, as above."""
         if not self.can_be_proven(iterate, patience, least):
             return
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
         systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
-            self._solver = self._solver or incremental_solver(iterate.problem, self._stops)
+            self._solver = self._solver or incremental_solver(
+                iterate.problem, self._stops
+            )
             solution, certificate = status_step(
                 self._solver,
                 iterate.problem,
@@ -188,19 +204,24 @@ class ForceChanges:
 
     def __init__(self) -> None:
         self._past: list[_Past] = []
-        self._least, self._least_next = 0.0, 0.0
+        self._least = 0.0
+        self._least_next = 0.0
         self.last = Change()
 
     def left(self, iterate: Iterate) -> Change:
         """The relative error that is left, if changes go on to fall as they did, or NaN."""
-        number, (rows, _) = iterate.number, iterate.problem.sought_rows
-        outgoing, incoming = iterate.outgoing.T[:, rows], iterate.incoming.T[:, rows]
+        number = iterate.number
+        (rows, _) = iterate.problem.sought_rows
+        outgoing = iterate.outgoing.T[:, rows]
+        incoming = iterate.incoming.T[:, rows]
         force = np.ascontiguousarray(outgoing - incoming)
         force *= 0.5 * iterate.k[rows]
         before = self._at(LOOK_BACK * number)
         self.last = Change()
         if before is not None:
-            self.last = _change(iterate.problem, force - before.force, force, self._least)
+            self.last = _change(
+                iterate.problem, force - before.force, force, self._least
+            )
         earlier = before and self._at(LOOK_BACK * before.number)
         if not self._past or number >= SPACING * self._past[-1].number:
             oldest = earlier.number if earlier else 0
@@ -208,32 +229,44 @@ class ForceChanges:
             self._past.append(_Past(number, force, self.last))
             if number >= self._least_next:
                 around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
-                blurred = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
-                self._least, self._least_next = max(around, blurred), AGAIN * number
+                blurred = ROUNDING * float(
+                    np.linalg.norm(iterate.k[:, None] * iterate.outgoing)
+                )
+                self._least = max(around, blurred)
+                self._least_next = AGAIN * number
         if before is None or earlier is None or number <= FEW:
             return Change(*(0.0 if last == 0.0 else math.nan for last in self.last))
         return Change(*map(_left, self.last, before.change, earlier.change))
 
     def _at(self, number: float) -> _Past | None:
         """What was last kept up to a number of iterations."""
-        return next((entry for entry in reversed(self._past) if entry.number <= number), None)
+        return next(
+            (entry for entry in reversed(self._past) if entry.number <= number), None
+        )
 
 
 def _left(last: float, before: float, earlier: float) -> float:
     """What is left of a force, of which these are the last three changes."""
     fall = max(ratio(last, before), ratio(before, earlier))
-    fall = SLOWEST if math.isnan(fall) else min(fall, SLOWEST)
+    if math.isnan(fall):
+        fall = SLOWEST
+    else:
+        fall = min(fall, SLOWEST)
     return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
 
 
 def _change(problem: Problem, change: Array, force: Array, least: float) -> Change:
     """A change relative to what `solver.reference.distance` divides an error by."""
     _, kinds = problem.sought_rows
-    changes, squares = (np.einsum("ij,ij->j", field, field) for field in (change, force))
+    changes, squares = (
+        np.einsum("ij,ij->j", field, field) for field in (change, force)
+    )
 
     def share(kind: Flags | slice, least: float) -> float:
         size = max(math.sqrt(float(squares[kind].sum())), least)
-        return math.sqrt(float(changes[kind].sum())) / size if size > 0.0 else 0.0
+        if size > 0.0:
+            return math.sqrt(float(changes[kind].sum())) / size
+        return 0.0
 
     hidden = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
     worst = max((share(kind, hidden) for kind in kinds), default=0.0)

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 UNPROVEN = "The contact force is not known to be accurate enough"
 FAR = 0.1
-"""Error of the contact force from which on what a status step finds is not LATIN's own."""
+"""Error of the contact force from which on what a status step finds is not LATIN's
+own."""
 
 
 class Ending(StrEnum):
@@ -36,8 +37,8 @@ class Ending(StrEnum):
 class Status:
     """The end of a run, in a word, and what to try next in a sentence.
 
-    `lost_from` is the first instant that has no solution, where some are known to have none: what
-    an iterate shows from there on is no state of the structure.
+    `lost_from` is the first instant that has no solution, where some are known to have
+    none: what an iterate shows from there on is no state of the structure.
     """
 
     ending: Ending
@@ -49,9 +50,9 @@ class Status:
 class Decision:
     """What the stop rules make of an iterate after so many seconds, their own included.
 
-    The estimated error is NaN where it was not needed, the status None where the run goes on, the
-    certificate None until a status step has found the solution. Where the run ends with that,
-    `finished` is the iterate that it makes, and the decision on it.
+    The estimated error is NaN where it was not needed, the status None where the run
+    goes on, the certificate None until a status step has found the solution. Where the
+    run ends with that, `finished` is the iterate that it makes, and the decision on it.
     """
 
     seconds: float
@@ -61,7 +62,9 @@ class Decision:
     finished: tuple[Iterate, Decision] | None = None
 
 
-CANCELLED = Status(Ending.CANCELLED, "The run was stopped before its end; start it again.")
+CANCELLED = Status(
+    Ending.CANCELLED, "The run was stopped before its end; start it again."
+)
 PROVEN = Status(
     Ending.CONVERGED,
     "Accurate enough: the contact force of this iterate is within the accuracy of the exact "
@@ -108,10 +111,15 @@ _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a l
 
 def collapses(problem: Problem, collapse: Collapse) -> Status:
     """Status of a run whose loads no contact forces balance from a point of a path on."""
-    way, remedy = "slides away", "Lower the load, or raise friction or pressure."
+    way = "slides away"
+    remedy = "Lower the load, or raise friction or pressure."
     if collapse.tips:
-        way, remedy = "tips over", "Lower the load, or make it wider, or press it more."
-    mesh = f" {OF_MESH}" if problem.has_short_joints else ""
+        way = "tips over"
+        remedy = "Lower the load, or make it wider, or press it more."
+    if problem.has_short_joints:
+        mesh = f" {OF_MESH}"
+    else:
+        mesh = ""
     return Status(
         Ending.STALLED,
         f"There is no equilibrium {limit_of(problem, collapse)}: no contact forces within friction "
@@ -124,14 +132,18 @@ def limit_of(problem: Problem, collapse: Collapse) -> str:
     """Words on where an equilibrium ends: the loads that are carried, and when."""
     loads = beyond(problem.drives, collapse.instant, collapse.share)
     time = f"from {collapse.time:.4g} s on"
-    return f"{loads}, {time}" if loads else time
+    if loads:
+        return f"{loads}, {time}"
+    return time
 
 
 def jump_of(problem: Problem, instant: int) -> str:
     """Words on where a structure jumps: the loads at the instant after it, and when."""
     loads = loads_at(problem.drives, instant)
     time = f"{problem.instants[instant]:.4g} s"
-    return f"{time}, with {loads}," if loads else time
+    if loads:
+        return f"{time}, with {loads},"
+    return time
 
 
 def lost_jump(problem: Problem, instant: int, lost_from: int) -> Status:
@@ -154,14 +166,18 @@ def certified(
 ) -> Status:
     """Status of a run that ends with a certified solution.
 
-    `error` is that of the contact force of the last iterate before it, NaN without one; `advice`
-    what to try, of a search that had to end earlier.
+    `error` is that of the contact force of the last iterate before it, NaN without one;
+    `advice` what to try, of a search that had to end earlier.
     """
     message = f"{_CERTIFIED} (residual {finish.residual or 0.0:.0e})."
     if not math.isnan(error):
-        away, before = float(f"{100.0 * error:.2g}"), finish.number - 1
+        away = float(f"{100.0 * error:.2g}")
+        before = finish.number - 1
         if error > FAR:
-            shown = f"{away:g}" if error <= 1.0 else "more than 100"
+            if error <= 1.0:
+                shown = f"{away:g}"
+            else:
+                shown = "more than 100"
             message += _BY_INCREMENTS.format(before, shown)
         elif finish.is_answer:
             message += _SEARCHED.format(away)
@@ -181,7 +197,9 @@ def unprovable(status: Status, problem: Problem, latin: Latin) -> Status:
     return replace(status, advice=advice)
 
 
-def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:
+def with_jump(
+    status: Status, problem: Problem, certificate: Certificate | None
+) -> Status:
     """Status that also says when the certified solution jumps, if it does."""
     if certificate is None or certificate.solution.jumps_at is None:
         return status
@@ -203,7 +221,8 @@ def exhausted(latin: Latin, iterate: Iterate, *, is_proven: bool) -> Status:
 
     `is_proven` says whether the solution, and so the distance to it, is known.
     """
-    stop, lack = latin.stop, "The run has come to its limit"
+    stop = latin.stop
+    lack = "The run has come to its limit"
     searches = latin.finish is not None and not latin.finish.at_once
     if math.isfinite(stop.accuracy) and searches and is_proven:
         lack = "The contact force of the iterates is not accurate enough"
@@ -214,7 +233,8 @@ def exhausted(latin: Latin, iterate: Iterate, *, is_proven: bool) -> Status:
     of_k, of_bases = _remedies(latin)
     remedy = of_bases or f"Raise max_iterations, or {of_k}."
     return Status(
-        Ending.EXHAUSTED, f"{lack}. {_LONGER if iterate.number < stop.iterations else remedy}"
+        Ending.EXHAUSTED,
+        f"{lack}. {_LONGER if iterate.number < stop.iterations else remedy}",
     )
 
 
@@ -237,9 +257,12 @@ def stalled(latin: Latin, lowest: float) -> Status:
 
 def _remedies(latin: Latin) -> tuple[str, str]:
     """What helps against an unsuitable k, as part of a sentence, and bases that are too small."""
-    of_k, also = "set finish=at-once, for which k does not matter", ", or set finish=at-once"
+    of_k = "set finish=at-once, for which k does not matter"
+    also = ", or set finish=at-once"
     if latin.finish is not None:
-        of_k = "try a k_scale ten times smaller, and if that is no better ten times larger"
+        of_k = (
+            "try a k_scale ten times smaller, and if that is no better ten times larger"
+        )
         also = ""
     has_bases = isinstance(latin.linear, PGD)
     return of_k, f"{_FEW_MODES}{also}." if has_bases else ""

@@ -12,11 +12,12 @@ import scipy.linalg  # noqa: F401  # brings its own BLAS, which is looked for be
 from threadpoolctl import ThreadpoolController
 
 VALUES = 100_000
-"""Least numbers of a boundary field in a block: of less, handing it to a thread costs a share of
-the work (each of the seven hand-overs of an iteration takes some 0.05 ms)."""
+"""Least numbers of a boundary field in a block: of less, handing it to a thread costs a
+share of the work (each of the seven hand-overs of an iteration takes some 0.05 ms)."""
 MOST = 8
-"""Blocks at most: enough for an even share among four threads. More make the matrix products of a
-block small: 51 blocks instead of 8 take 6 % longer on one thread (measured)."""
+"""Blocks at most: enough for an even share among four threads. More make the matrix
+products of a block small: 51 blocks instead of 8 take 6 % longer on one thread
+(measured)."""
 
 ALL = slice(None)
 
@@ -32,7 +33,9 @@ class Blocks:
         ends = (number * n_instants // count for number in range(count + 1))
         self.slices = [slice(first, last) for first, last in pairwise(ends)]
         workers = min(threads, count)
-        self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
+        self._pool: ThreadPoolExecutor | None = None
+        if workers > 1:
+            self._pool = ThreadPoolExecutor(workers)
 
     def each(self, work: Callable[[slice], None]) -> None:
         """Do some work for every block of instants."""
@@ -49,13 +52,16 @@ class OneBlasThread:
     """BLAS on one thread while anybody is inside: products of few rows take longer on several."""
 
     def __init__(self) -> None:
-        self._lock, self._inside = Lock(), 0
+        self._lock = Lock()
+        self._inside = 0
         self._libraries = ThreadpoolController().select(user_api="blas")
         self._limits = ExitStack()
 
     def __enter__(self) -> None:
         with self._lock:
-            if not self._inside and any(b.num_threads > 1 for b in self._libraries.lib_controllers):
+            if not self._inside and any(
+                b.num_threads > 1 for b in self._libraries.lib_controllers
+            ):
                 self._limits.enter_context(self._libraries.limit(limits=1))
             self._inside += 1
 

@@ -32,20 +32,32 @@ class Full:
 class LinearStage:
     """Elasticity along the search direction E-, factored for one problem and one k, (n_rows,).
 
-    With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1 B^T and W_f
-    comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2). Its state is y: it is what
-    relaxation mixes, and everything else follows from it. How y is held is the groups' business:
-    in full, block by block of instants, or on separated bases.
+    With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1
+    B^T and W_f comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2).
+    Its state is y: it is what relaxation mixes, and everything else follows from it.
+    How y is held is the groups' business: in full, block by block of instants, or on
+    separated bases.
     """
 
     def __init__(
-        self, problem: Problem, k: Array, form: Full | PGD, blocks: Blocks, *, multiscale: bool
+        self,
+        problem: Problem,
+        k: Array,
+        form: Full | PGD,
+        blocks: Blocks,
+        *,
+        multiscale: bool,
     ) -> None:
         self.groups = [form.group(problem, alike, k) for alike in _alike(problem, k)]
         self.is_full = isinstance(form, Full)
-        self._blocks = blocks if self.is_full else Blocks(1, problem.n_instants)
+        if self.is_full:
+            self._blocks = blocks
+        else:
+            self._blocks = Blocks(1, problem.n_instants)
         self._coarse = None
-        meets = problem.cuts or any(law.macro is not None for law in problem.rubbing.values())
+        meets = problem.cuts or any(
+            law.macro is not None for law in problem.rubbing.values()
+        )
         if multiscale and meets:
             self._coarse = CoarseProblem(problem, self.groups, self._blocks)
         self._shape = (problem.n_rows, problem.n_instants)
@@ -80,7 +92,9 @@ class LinearStage:
     def incoming(self) -> Array:
         """W - F/k, shape (n_rows, n_instants)."""
         boundary = np.empty(self._shape, order="F")
-        self._each(lambda group, some: group.scatter(group.reflect(some), boundary, some))
+        self._each(
+            lambda group, some: group.scatter(group.reflect(some), boundary, some)
+        )
         return boundary
 
     def _each(self, work: Callable[[Group, slice], None]) -> None:
@@ -96,15 +110,17 @@ class LinearStage:
 class Group:
     """Identical substructures with the same k, which share one operator.
 
-    Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous in space: the
-    `state` y in full, changed in place; the `target` that it is brought to; and `body`, W_f, None
-    without body forces. `rows` are the boundary rows, (n_boundary, n_substructures).
+    Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous
+    in space: the `state` y in full, changed in place; the `target` that it is brought
+    to; and `body`, W_f, None without body forces. `rows` are the boundary rows,
+    (n_boundary, n_substructures).
     """
 
     state: Array
 
     def __init__(self, problem: Problem, numbers: list[int], k: Array) -> None:
-        self.numbers, parts = numbers, [problem.substructures[number] for number in numbers]
+        self.numbers = numbers
+        parts = [problem.substructures[number] for number in numbers]
         self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
         self.k: Array = k[self.rows[:, 0]]
         self._n_instants = problem.n_instants
@@ -130,7 +146,9 @@ class Group:
 
     def scatter(self, values: Array, field: Array, instants: slice = ALL) -> None:
         """Write a field of the group into the rows of a boundary field, at some instants."""
-        field.T[instants, self._order] = values.T.reshape(self._n_instants, -1)[instants]
+        field.T[instants, self._order] = values.T.reshape(self._n_instants, -1)[
+            instants
+        ]
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the state of a checkpoint, or that in which all is zero."""
@@ -144,7 +162,8 @@ class Group:
 
     def relax(self, relaxation: float, instants: slice) -> None:
         """Mix the target into the state, at some instants."""
-        old, target = self.state[:, :, instants], self.target[:, :, instants]
+        old = self.state[:, :, instants]
+        target = self.target[:, :, instants]
         if relaxation == 1.0:
             np.copyto(old, target)
             return
@@ -157,7 +176,8 @@ class Group:
         flat = (len(self.k), -1)
         reflected = self._reflected[:, :, instants]
         self.response.reflect(
-            self.state[:, :, instants].reshape(flat, order="F"), reflected.reshape(flat, order="F")
+            self.state[:, :, instants].reshape(flat, order="F"),
+            reflected.reshape(flat, order="F"),
         )
         if self.body is not None:
             reflected += 2.0 * self.body[:, :, instants]
@@ -172,5 +192,7 @@ def _alike(problem: Problem, k: Array) -> list[list[int]]:
     """Numbers of substructures with one elasticity and one k, together."""
     groups: dict[tuple[int, bytes], list[int]] = {}
     for number, part in enumerate(problem.substructures):
-        groups.setdefault((id(part.elasticity), k[part.rows].tobytes()), []).append(number)
+        groups.setdefault((id(part.elasticity), k[part.rows].tobytes()), []).append(
+            number
+        )
     return list(groups.values())

@@ -13,13 +13,13 @@ from solver.latin.stages.sliding_body import slide_of
 class LocalStage:
     """Interface laws along the search direction E+, ready for one problem and one k, (n_rows,).
 
-    It reads z = W - F/k of the linear stage alone, and its result is read as
-    W^ + F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together, and what is
+    It reads z = W - F/k of the linear stage alone, and its result is read as W^ + F^/k
+    = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together, and what is
     local in time block by block of instants.
 
-    A call leaves W^ as `displacement`, a new field (n_rows, n_instants), and as `incoming` the z
-    with which it obeyed: as read, but for the shift of a body that slides, along a `motion` of its
-    rows, (n_rows,), or None.
+    A call leaves W^ as `displacement`, a new field (n_rows, n_instants), and as
+    `incoming` the z with which it obeyed: as read, but for the shift of a body that
+    slides, along a `motion` of its rows, (n_rows,), or None.
     """
 
     def __init__(self, problem: Problem, k: Array, blocks: Blocks) -> None:
@@ -28,8 +28,12 @@ class LocalStage:
         self.displacement = self.incoming = space_time(*shape)
         self._outgoing = space_time(*shape)
         self._slide = slide_of(problem, k)
-        self.motion = None if self._slide is None else self._slide.motion
-        laws, n_instants = problem.laws, problem.n_instants
+        if self._slide is None:
+            self.motion = None
+        else:
+            self.motion = self._slide.motion
+        laws = problem.laws
+        n_instants = problem.n_instants
         self._remembering = [law.rule(k, n_instants) for law in laws if law.remembers]
         self._instant = [law.rule(k, n_instants) for law in laws if not law.remembers]
 
@@ -46,7 +50,8 @@ class LocalStage:
 
     def _at(self, incoming: Array, instants: slice) -> None:
         """Obey the laws that are local in time, at some instants, and reflect."""
-        displacement, outgoing = self.displacement[:, instants], self._outgoing[:, instants]
+        displacement = self.displacement[:, instants]
+        outgoing = self._outgoing[:, instants]
         for rule in self._instant:
             rule(incoming, displacement, instants)
         np.multiply(displacement, 2.0, out=outgoing)

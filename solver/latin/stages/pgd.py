@@ -1,8 +1,9 @@
 """The linear stage on separated bases (paper, section 2.2; solver/README.md, 3).
 
-With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G = k (u - Z)
-(paper, eq. 3), whose G + k Z is k u. So the search direction is met as well as modes can: the
-residual of problem 2.3 is k times what the new y has outside the modes.
+With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G =
+k (u - Z) (paper, eq. 3), whose G + k Z is k u. So the search direction is met as well
+as modes can: the residual of problem 2.3 is k times what the new y has outside the
+modes.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from solver.reduction.basis import SeparatedBasis, SharedBasis, nearest_mode
 SHARE_EVERY = 10
 """Iterations between two looks for bases that can be shared."""
 NOTHING_LEFT = 1e-13
-"""Share of the field's squared norm below which a difference of squares is only rounding."""
+"""Share of the field's squared norm below which a difference of squares is only
+rounding."""
 
 
 @dataclass(frozen=True)
@@ -34,15 +36,16 @@ class PGD:
     modes
         Most modes of a substructure; the smallest are dropped.
     tolerance
-        Share of a substructure's field that may be lost with them; no mode is added for a residual
-        below it. It is that of W + F/k, most of which is displacement, and far below the share of
-        the force: 1e-4 left 15 % of it in layers whatever `modes` was (solver/study/README.md, 8).
+        Share of a substructure's field that may be lost with them; no mode is added for
+        a residual below it. It is that of W + F/k, most of which is displacement, and
+        far below the share of the force: 1e-4 left 15 % of it in layers whatever
+        `modes` was (solver/study/README.md, 8).
     pairs
         Most modes that one iteration adds to a substructure.
     sharing
-        Equal substructures use the same modes if these miss at most this share of each one's field;
-        0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
-        (solver/study/README.md, 8).
+        Equal substructures use the same modes if these miss at most this share of each
+        one's field; 0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does
+        where modes are few (solver/study/README.md, 8).
     """
 
     modes: int = 10
@@ -51,7 +54,8 @@ class PGD:
     sharing: float = 1e-5
 
     def __post_init__(self) -> None:
-        count, share = Count(1, 1000), Number(0.0, 1.0)
+        count = Count(1, 1000)
+        share = Number(0.0, 1.0)
         check(self, modes=count, tolerance=share, pairs=count, sharing=share)
 
     def group(self, problem: Problem, numbers: list[int], k: Array) -> PGDGroup:
@@ -64,17 +68,25 @@ class PGDGroup(Group):
 
     shared: list[SharedBasis]
 
-    def __init__(self, problem: Problem, numbers: list[int], k: Array, pgd: PGD) -> None:
+    def __init__(
+        self, problem: Problem, numbers: list[int], k: Array, pgd: PGD
+    ) -> None:
         super().__init__(problem, numbers, k)
-        self._pgd, self._weights = pgd, problem.time_weights
+        self._pgd = pgd
+        self._weights = problem.time_weights
         self._place = {number: place for place, number in enumerate(numbers)}
         self.iterations = 0
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
         """Take on the bases of a checkpoint, or the nearest ones to its fields, or none."""
-        self.iterations = checkpoint.number if checkpoint else 0
+        if checkpoint:
+            self.iterations = checkpoint.number
+        else:
+            self.iterations = 0
         if checkpoint is not None and checkpoint.bases:
-            self.shared = list(dict.fromkeys(checkpoint.bases[number] for number in self.numbers))
+            self.shared = list(
+                dict.fromkeys(checkpoint.bases[number] for number in self.numbers)
+            )
             return
         field = self.field()
         if checkpoint is not None:
@@ -130,17 +142,22 @@ class PGDGroup(Group):
         field[:, places] = columns.reshape(len(field), len(places), -1, order="F")
 
     def _advanced(self, shared: SharedBasis, relaxation: float) -> SharedBasis:
-        basis, incoming, pgd = shared.basis, shared.incoming, self._pgd
+        basis = shared.basis
+        incoming = shared.incoming
+        pgd = self._pgd
         target = self._columns(shared.members, self.target)
         wanted = basis.coefficients(target)
         # What was last reflected is read already, and its place is free.
         whole = basis.squared(target, self._columns(shared.members, self._reflected))
         left = whole - basis.squared_of(wanted)
         change = wanted - basis.time_functions
-        basis = replace(basis, time_functions=basis.time_functions + relaxation * change)
+        basis = replace(
+            basis, time_functions=basis.time_functions + relaxation * change
+        )
         if left > max(pgd.tolerance**2, NOTHING_LEFT) * whole:
             rest = target - basis.modes @ wanted
-            added, explained = 0, 0.0
+            added = 0
+            explained = 0.0
             while added < pgd.pairs and left - explained > pgd.tolerance**2 * whole:
                 mode = basis.orthonormal(nearest_mode(rest, self.k, basis.weights))
                 if mode is None:
@@ -159,7 +176,10 @@ class PGDGroup(Group):
         joined: list[SharedBasis] = []
         for shared in self.shared:
             for place, other in enumerate(joined):
-                apart = shared.basis.outside(other.basis), other.basis.outside(shared.basis)
+                apart = (
+                    shared.basis.outside(other.basis),
+                    other.basis.outside(shared.basis),
+                )
                 if max(apart) <= self._pgd.sharing:
                     field = self.field()
                     for part in (other, shared):
@@ -173,9 +193,12 @@ class PGDGroup(Group):
 
     def _of_field(self, members: tuple[int, ...], field: Array) -> SharedBasis:
         """Basis of some members' part of a group field."""
-        columns, pgd = self._columns(members, field), self._pgd
+        columns = self._columns(members, field)
+        pgd = self._pgd
         weights = np.repeat(self._weights, len(members))
-        basis = SeparatedBasis.of_field(columns, self.k, weights, pgd.tolerance, pgd.modes)
+        basis = SeparatedBasis.of_field(
+            columns, self.k, weights, pgd.tolerance, pgd.modes
+        )
         return SharedBasis(members, basis, self._incoming(basis))
 
     def _incoming(self, basis: SeparatedBasis) -> Array:

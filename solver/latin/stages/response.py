@@ -13,13 +13,15 @@ from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete.substructure import Elasticity
 
 DENSE_UP_TO = 150
-"""Boundary rows up to which a dense product is no slower than a sparse solution: of 101 instants it
-takes 0.17 against 0.13 ms at 200 rows, 4.2 against 0.7 ms at 1000 (measured)."""
+"""Boundary rows up to which a dense product is no slower than a sparse solution: of 101
+instants it takes 0.17 against 0.13 ms at 200 rows, 4.2 against 0.7 ms at 1000
+(measured)."""
 DENSE_FROM_SHARE = 0.1
-"""Share of nonzero entries from which a stiffness is dense, and so would be its factor."""
+"""Share of nonzero entries from which a stiffness is dense, and so would be its
+factor."""
 BLOCK = 12_000
-"""Numbers that a sparse solution takes at once: larger intermediate fields come from fresh memory,
-whose first touch costs up to ten times the solution (measured)."""
+"""Numbers that a sparse solution takes at once: larger intermediate fields come from
+fresh memory, whose first touch costs up to ten times the solution (measured)."""
 
 
 class Response:
@@ -29,7 +31,9 @@ class Response:
     """
 
     def __init__(self, elasticity: Elasticity, k: Array) -> None:
-        self._elasticity, self._trace, self._k = elasticity, elasticity.trace, k
+        self._elasticity = elasticity
+        self._trace = elasticity.trace
+        self._k = k
         self._solve = _solver(elasticity, k)
         self._n_dofs = elasticity.stiffness.shape[0]
 
@@ -43,7 +47,9 @@ class Response:
         n_columns = max(BLOCK // self._n_dofs, 4)
         for first in range(0, outgoing.shape[1], n_columns):
             columns = slice(first, first + n_columns)
-            displacement = self._solve(np.asfortranarray(self._load @ outgoing[:, columns]))
+            displacement = self._solve(
+                np.asfortranarray(self._load @ outgoing[:, columns])
+            )
             np.multiply(displacement[self._trace], 2.0, out=out[:, columns])
         np.subtract(out, outgoing, out=out)
 
@@ -87,8 +93,9 @@ def response_of(elasticity: Elasticity, k: Array) -> Response:
     is_dense = isinstance(stiffness, np.ndarray) or bool(
         stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
     )
-    kind = DenseResponse if is_dense or len(k) <= DENSE_UP_TO else Response
-    return kind(elasticity, k)
+    if is_dense or len(k) <= DENSE_UP_TO:
+        return DenseResponse(elasticity, k)
+    return Response(elasticity, k)
 
 
 def _solver(elasticity: Elasticity, k: Array) -> Callable[[Array], Array]:

@@ -17,14 +17,15 @@ class ExactCurve:
     Attributes
     ----------
     of
-        The quantity: friction on the body above and pressure, of the interface that all of it is
-        about; axial force in a rod; how far slip has spread; or the loop that the scene shows.
+        The quantity: friction on the body above and pressure, of the interface that all
+        of it is about; axial force in a rod; how far slip has spread; or the loop that
+        the scene shows.
     across
-        Places, shape (n_places,), m; of a front where it is, of a loop what it is over, shape
-        (n_instants,).
+        Places, shape (n_places,), m; of a front where it is, of a loop what it is over,
+        shape (n_instants,).
     up
-        Shape (n_places, n_instants), N/m or Pa of tractions, N of an axial force; of a front the
-        instants, s, of a loop its force, shape (n_instants,).
+        Shape (n_places, n_instants), N/m or Pa of tractions, N of an axial force; of a
+        front the instants, s, of a loop its force, shape (n_instants,).
     """
 
     of: Of

@@ -1,11 +1,12 @@
 """Closed form: the moment of a strand of helical wires, and of one wire, under uniform curvature.
 
-Slip of a wire starts at the neutral axis and spreads to an angle phi on both sides of it, with
-kappa / kappa_0 = phi / sin(phi), until all slips at (pi / 2) kappa_0. It follows from equilibrium
-of the part that slips, with sections of the strand that stay plane (the model of Papailiou, IEEE
-Trans. Power Delivery 12, 1997, without growth of tension along the wire). Layers do not tie each
-other, so that the moment of a strand is the sum over all wires, and of the bending of each about
-its own axis. Back and forth both follow Masing's rule.
+Slip of a wire starts at the neutral axis and spreads to an angle phi on both sides of
+it, with kappa / kappa_0 = phi / sin(phi), until all slips at (pi / 2) kappa_0. It
+follows from equilibrium of the part that slips, with sections of the strand that stay
+plane (the model of Papailiou, IEEE Trans. Power Delivery 12, 1997, without growth of
+tension along the wire). Layers do not tie each other, so that the moment of a strand is
+the sum over all wires, and of the bending of each about its own axis. Back and forth
+both follow Masing's rule.
 """
 
 from __future__ import annotations
@@ -43,7 +44,10 @@ class BentWire:
     def first_slip(self) -> float:
         """Curvature kappa_0 at which the first point slips, 1/m."""
         wire = self.wire
-        return float(self.bound / (wire.stiffness * np.cos(wire.lay) ** 2 * abs(np.sin(wire.lay))))
+        return float(
+            self.bound
+            / (wire.stiffness * np.cos(wire.lay) ** 2 * abs(np.sin(wire.lay)))
+        )
 
     def moment(self, curvature: Array) -> Array:
         """Mean share of the wire in the strand's moment as it is first bent, N m.
@@ -66,7 +70,11 @@ class BentWire:
             return 0.5 * ratio
         phi = 0.5 * np.pi
         if ratio < phi:
-            phi = float(brentq(lambda angle: angle - ratio * np.sin(angle), 1e-9, phi, xtol=1e-14))
+            phi = float(
+                brentq(
+                    lambda angle: angle - ratio * np.sin(angle), 1e-9, phi, xtol=1e-14
+                )
+            )
         spread = 0.5 * phi * (0.5 * np.pi - phi) / np.sin(phi)
         return float(2.0 / np.pi * (spread + np.sin(phi) - 0.5 * phi * np.cos(phi)))
 
@@ -96,9 +104,13 @@ class BentStrand:
     def layers(self) -> tuple[BentWire, ...]:
         """One wire of each layer, inside out."""
         tension = np.array([self.tension])
-        bounds = self.section.friction_bounds(tension, self.friction, self.factors)[:, 0]
+        bounds = self.section.friction_bounds(tension, self.friction, self.factors)[
+            :, 0
+        ]
         return tuple(
-            BentWire(self.section.layers[number], self.section.radii[number], float(bound))
+            BentWire(
+                self.section.layers[number], self.section.radii[number], float(bound)
+            )
             for number, bound in enumerate(bounds)
         )
 
@@ -106,7 +118,9 @@ class BentStrand:
         """Moment as the strand is first bent, N m; the curvature has grown from zero, 1/m."""
         own = self.section.slipping_bending * np.asarray(curvature)
         wires = zip(self.section.layers, self.layers, strict=True)
-        return np.asarray(own + sum(layer.wires * wire.moment(curvature) for layer, wire in wires))
+        return np.asarray(
+            own + sum(layer.wires * wire.moment(curvature) for layer, wire in wires)
+        )
 
     def along(self, path: Array) -> Array:
         """Moment along any path of the curvature from zero, of its shape, N m."""

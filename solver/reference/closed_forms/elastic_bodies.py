@@ -62,10 +62,11 @@ class HalfPlane:
     def traction_over(self, place: Array, friction: float, shear: Array) -> Array:
         """Shear traction at places (n,) under a shear force (n_instants,) that turns, Pa.
 
-        Pressing grows the contact from its middle, step by step, as flat punches that widen. The
-        shear force on all within a width is a play operator of the whole one, of reach mu (P - P'),
-        with the force P' at which the contact was as wide (M. Ciavarella, J. Appl. Mech. 65, 1998;
-        J. Jaeger, Int. J. Solids Struct. 35, 1998).
+        Pressing grows the contact from its middle, step by step, as flat punches that
+        widen. The shear force on all within a width is a play operator of the whole
+        one, of reach mu (P - P'), with the force P' at which the contact was as wide
+        (M. Ciavarella, J. Appl. Mech. 65, 1998; J. Jaeger, Int. J. Solids Struct. 35,
+        1998).
         """
         level = np.linspace(0.0, 1.0, LEVELS + 1)
         widths = [replace(self, force=self.force * share) for share in level]
@@ -77,7 +78,9 @@ class HalfPlane:
 
     def energy(self, friction: float, share: float) -> float:
         """What friction takes in a cycle between plus and minus a share of mu P, J/m."""
-        bracket = 4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
+        bracket = (
+            4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
+        )
         return float((friction * self.force) ** 2 / (np.pi * self.modulus) * bracket)
 
 
@@ -95,8 +98,8 @@ def cantilever(length: float, height: float, young: float, poisson: float) -> fl
 class TwoLeaves:
     """Two equal leaves, clamped at one end and pressed together evenly, under a force at the other.
 
-    Shear between beams that stick is the same all along, so all slips at once. (L. E. Goodman, J.
-    H. Klumpp, J. Appl. Mech. 23, 421, 1956.)
+    Shear between beams that stick is the same all along, so all slips at once. (L. E.
+    Goodman, J. H. Klumpp, J. Appl. Mech. 23, 421, 1956.)
 
     Attributes
     ----------
@@ -128,7 +131,8 @@ class TwoLeaves:
 
     def deflection(self, force: float) -> float:
         """Deflection under a force that has grown from zero, m."""
-        (stuck, apart), stick = self.stiffnesses, min(force, self.first_slip)
+        (stuck, apart) = self.stiffnesses
+        stick = min(force, self.first_slip)
         return stick / stuck + (force - stick) / apart
 
     def force(self, deflection: float) -> float:
@@ -141,17 +145,21 @@ class TwoLeaves:
 def leaf_spring(lengths: Array) -> float | None:
     """End force of graduated leaves for a unit of deflection, over that of the longest alone.
 
-    Leaves are clamped together, and lie on each other without friction or pressure. Each longer
-    one presses on the end of the next alone: beams whose deflections agree there (S. Timoshenko,
-    Strength of Materials II, 1956, on leaf springs). The longest comes first, each is shorter than
-    the one before, (n_leaves,), m. None where two leaves come apart, so that others touch.
+    Leaves are clamped together, and lie on each other without friction or pressure.
+    Each longer one presses on the end of the next alone: beams whose deflections agree
+    there (S. Timoshenko, Strength of Materials II, 1956, on leaf springs). The longest
+    comes first, each is shorter than the one before, (n_leaves,), m. None where two
+    leaves come apart, so that others touch.
     """
     ends = np.append(lengths, 0.0)
-    # Deflections, times E I, of a leaf under a force at its end: there, and where the next ends.
+    # Deflections, times E I, of a leaf under a force at its end: there, and where the
+    # next ends.
     own = ends[:-1] ** 3 / 3.0
     beside = ends[1:] ** 2 * (3.0 * ends[:-1] - ends[1:]) / 6.0
     # At the end of each but the first: of the leaf above, less of its own.
-    matrix = np.diag(2.0 * own[1:]) - np.diag(beside[1:-1], 1) - np.diag(beside[1:-1], -1)
+    matrix = (
+        np.diag(2.0 * own[1:]) - np.diag(beside[1:-1], 1) - np.diag(beside[1:-1], -1)
+    )
     pushed = np.zeros(len(lengths) - 1)
     pushed[:1] = beside[0]
     forces = np.linalg.solve(matrix, pushed)

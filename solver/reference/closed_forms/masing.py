@@ -1,7 +1,8 @@
 """Masing's rule: how what rubs answers a load that turns, from how it answers one that grows.
 
-From a turning point on the answer is the first curve, doubled in both directions; a loop that
-closes is forgotten, and what went on before goes on (G. Masing, 1926, with Madelung's memory).
+From a turning point on the answer is the first curve, doubled in both directions; a
+loop that closes is forgotten, and what went on before goes on (G. Masing, 1926, with
+Madelung's memory).
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from solver.arrays import Array
 def masing(load: Array, grown: Callable[[float], float]) -> Array:
     """Answer to a load from rest on, (n_instants,), monotone between instants.
 
-    `grown` is that to a load which has grown from rest to a value, which is not negative.
+    `grown` is that to a load which has grown from rest to a value, which is not
+    negative.
     """
     turns = [(0.0, 0.0)]  # loads, and the answers at them
     now = turns[0]
@@ -40,5 +42,8 @@ def _closes(value: float, turns: list[tuple[float, float]]) -> bool:
     Where that is rest, the first curve goes on at the opposite of the last one.
     """
     (before, _), (last, _) = turns[-2:]
-    size = abs(last - before) if len(turns) > 2 else 2.0 * abs(last)
+    if len(turns) > 2:
+        size = abs(last - before)
+    else:
+        size = 2.0 * abs(last)
     return abs(value - last) >= size

@@ -1,18 +1,20 @@
 """Closed forms: a clamped bar pulled over its support, a broken wire (solver/README.md, 6, 8, 14).
 
-Under Coulomb friction sliding needs the whole bound between a section and the free end, R(x) =
-integral of mu p from x to L. So the normal force N(x, t) follows the load F(t) with play R(x), for
-every bound mu p >= 0 along the bar and every load path from rest, full sliding included.
+Under Coulomb friction sliding needs the whole bound between a section and the free end,
+R(x) = integral of mu p from x to L. So the normal force N(x, t) follows the load F(t)
+with play R(x), for every bound mu p >= 0 along the bar and every load path from rest,
+full sliding included.
 
-Where the bound changes with time it holds as long as what it leaves stuck is within the bound, to
-an element's length: a bar that stuck beyond what its bound has fallen to slips in its middle, and
-this says nothing of it.
+Where the bound changes with time it holds as long as what it leaves stuck is within the
+bound, to an element's length: a bar that stuck beyond what its bound has fallen to
+slips in its middle, and this says nothing of it.
 
-Unbroken, all wires carry the tension T and nothing slips. A break adds a force n to the broken
-wire, -T at its two new ends, which the neighbours take over in equal shares: with m of them, what
-they slip by is the displacement of a bar of stiffness ES m / (m + 1), under m times the bound,
-that is clamped far away and pulled at the break. On a rising load the broken wire carries
-min(T, m mu p |x - x_break|): all of it after T / (m mu p).
+Unbroken, all wires carry the tension T and nothing slips. A break adds a force n to the
+broken wire, -T at its two new ends, which the neighbours take over in equal shares:
+with m of them, what they slip by is the displacement of a bar of stiffness ES m / (m +
+1), under m times the bound, that is clamped far away and pulled at the break. On a
+rising load the broken wire carries min(T, m mu p |x - x_break|): all of it after T / (m
+mu p).
 """
 
 from __future__ import annotations
@@ -30,7 +32,8 @@ from solver.laws.play import play
 SECTIONS = 4096
 """Sections, at least, over which the strain is integrated along the bar."""
 AT_ONCE = 60_000
-"""Forces, at sections and instants, that are computed in one go: few enough to stay in a cache."""
+"""Forces, at sections and instants, that are computed in one go: few enough to stay in
+a cache."""
 STEPS = 100
 PRECISION = 1e-13
 """Change of the tension, as a share of the largest, at which it is accepted."""
@@ -47,11 +50,12 @@ class ClosedForm:
     normal_force
         Axial force N, shape (n_nodes, n_instants), N.
     friction_force
-        Friction force on the bar over the tributary length of each node, same shape, N. A solution
-        with a clamped node cannot tell it from the reaction there.
+        Friction force on the bar over the tributary length of each node, same shape, N.
+        A solution with a clamped node cannot tell it from the reaction there.
     displacement
-        Same shape, m. The integral over the strain has an error below 1.5e-8 (mu p L) L / ES for
-        each load reversal remembered: 1e-6 of the end's displacement from an eighth of mu p L on.
+        Same shape, m. The integral over the strain has an error below 1.5e-8 (mu p L) L
+        / ES for each load reversal remembered: 1e-6 of the end's displacement from an
+        eighth of mu p L on.
     """
 
     normal_force: Array
@@ -67,8 +71,9 @@ class ClosedForm:
 def closed_form(scene: Rods) -> ClosedForm | None:
     """Solution of a bar whose bound mu p is linear between nodes, and between instants.
 
-    None for a bar that more than a force at its end moves, or of varying section, where friction is
-    not Coulomb's, and where a falling bound makes the bar slip in its middle.
+    None for a bar that more than a force at its end moves, or of varying section, where
+    friction is not Coulomb's, and where a falling bound makes the bar slip in its
+    middle.
     """
     if not scene.is_only_pulled or scene.section is not None:
         return None
@@ -78,10 +83,17 @@ def closed_form(scene: Rods) -> ClosedForm | None:
     between = np.concatenate([reach[:1], _grip_beyond(scene, 0.5), reach[-1:]])
     friction = -np.diff(_normal_force(scene, between), axis=0)
     most = -np.diff(between, axis=0)
-    if np.any(np.abs(friction) > most + ROUNDING * (reach.max() + np.abs(scene.load).max())):
+    if np.any(
+        np.abs(friction) > most + ROUNDING * (reach.max() + np.abs(scene.load).max())
+    ):
         return None
     nodal = _normal_force(scene, reach)
-    elongation = _mean_normal_force(scene, nodal) * scene.length / scene.elements / scene.stiffness
+    elongation = (
+        _mean_normal_force(scene, nodal)
+        * scene.length
+        / scene.elements
+        / scene.stiffness
+    )
     displacement = np.zeros_like(nodal)
     np.cumsum(elongation, axis=0, out=displacement[1:])
     return ClosedForm(nodal, friction, displacement)
@@ -93,11 +105,14 @@ def _grip_beyond(scene: Rods, share: float | Array) -> Array:
     Of shares of shape (n_shares, 1, 1): (n_shares, ...).
     """
     size = scene.length / scene.elements
-    left, right = scene.bounds[:-1], scene.bounds[1:]
+    left = scene.bounds[:-1]
+    right = scene.bounds[1:]
     whole = 0.5 * size * (left + right)
     beyond = np.cumsum(whole[::-1], axis=0)[::-1] - whole
     rest = 1.0 - share
-    return np.asarray(beyond + 0.5 * size * rest * (rest * left + (1.0 + share) * right))
+    return np.asarray(
+        beyond + 0.5 * size * rest * (rest * left + (1.0 + share) * right)
+    )
 
 
 def _normal_force(scene: Rods, reach: Array) -> Array:
@@ -123,13 +138,15 @@ def pulled_compliant_bar(
 ) -> tuple[float, float]:
     """End displacement of a bar whose support gives way before it slips, and its zone of slip, m.
 
-    With beta the root of the springs' density over ES, a zone of length s at the end slips under
-    F = q s + q / (beta tanh(beta (L - s))), and beyond it the bar stands on springs.
+    With beta the root of the springs' density over ES, a zone of length s at the end
+    slips under F = q s + q / (beta tanh(beta (L - s))), and beyond it the bar stands on
+    springs.
 
     Parameters
     ----------
     force, length, stiffness
-        F, N, grown from zero, at most what a bar that slips almost throughout carries; L, m; ES, N.
+        F, N, grown from zero, at most what a bar that slips almost throughout carries;
+        L, m; ES, N.
     bound, density
         q = mu p, N/m; tangential stiffness of the support per length, N/m^2.
     """
@@ -141,7 +158,9 @@ def pulled_compliant_bar(
     if force <= carried(0.0):
         return float(force * np.tanh(beta * length) / (stiffness * beta)), 0.0
     zone = float(brentq(lambda s: carried(s) - force, 0.0, length * (1.0 - 1e-12)))
-    return float(bound / density + (force * zone - 0.5 * bound * zone**2) / stiffness), zone
+    return float(
+        bound / density + (force * zone - 0.5 * bound * zone**2) / stiffness
+    ), zone
 
 
 def pulled_changing_bar(
@@ -154,10 +173,11 @@ def pulled_changing_bar(
     Parameters
     ----------
     force, stiffness
-        F, N: less than what makes all of the bar slip, and than q / gamma where it softens; ES, N.
+        F, N: less than what makes all of the bar slip, and than q / gamma where it
+        softens; ES, N.
     bound, ratio, slip_length
-        q before any slip, N/m; the last bound over it, not 1; and the slip from which on it is the
-        last, m: more than what is returned.
+        q before any slip, N/m; the last bound over it, not 1; and the slip from which
+        on it is the last, m: more than what is returned.
     """
     slope = bound * (ratio - 1.0) / slip_length
     gamma = np.sqrt(abs(slope) / stiffness)
@@ -174,11 +194,12 @@ class BrokenWire:
     Attributes
     ----------
     force, neighbour_force
-        Axial force of the broken wire and of each neighbour, shape (n_nodes, n_instants), N.
+        Axial force of the broken wire and of each neighbour, shape (n_nodes,
+        n_instants), N.
     friction_force
-        Friction force on the broken wire over the tributary length of each node, both sides
-        together, shape (n_nodes + 1, n_instants), N; the break has two nodes. At a held end it
-        cannot be told from the reaction.
+        Friction force on the broken wire over the tributary length of each node, both
+        sides together, shape (n_nodes + 1, n_instants), N; the break has two nodes. At
+        a held end it cannot be told from the reaction.
     slip
         Displacement of the broken wire over its neighbours, same shape, m.
     """
@@ -204,7 +225,10 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
         return None
     if scene.right.is_prescribed and scene.bound.ndim > 1:
         return None
-    tension = _tension(scene) if scene.right.is_prescribed else scene.load
+    if scene.right.is_prescribed:
+        tension = _tension(scene)
+    else:
+        tension = scene.load
     sides = _sides(scene, tension)
     if sides is None:
         return None
@@ -213,7 +237,9 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
     return BrokenWire(
         force=tension - lost,
         neighbour_force=tension + lost / scene.rubbing_sides,
-        friction_force=np.concatenate([-left.friction_force, right.friction_force[::-1]]),
+        friction_force=np.concatenate(
+            [-left.friction_force, right.friction_force[::-1]]
+        ),
         slip=np.concatenate([-left.displacement, right.displacement[::-1]]),
     )
 
@@ -221,7 +247,8 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
 def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
     """Bars left and right of the break, from their far ends to the break, if known."""
     assert scene.broken is not None
-    node, sides = scene.broken[1], scene.rubbing_sides
+    node = scene.broken[1]
+    sides = scene.rubbing_sides
     bars = []
     for elements in (node, scene.elements - node):
         side = Rods(
@@ -237,14 +264,16 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
         )
         bars.append(closed_form(side))
     left, right = bars
-    return None if left is None or right is None else (left, right)
+    if left is None or right is None:
+        return None
+    return (left, right)
 
 
 def _tension(scene: Rods) -> Array:
     """T under a rigid grip, where a neighbour's elongation is given.
 
-    It is T L / ES, plus for each side of the break what has slipped there over m + 1: which grows
-    with T no faster than that, so halved steps halve the error at least.
+    It is T L / ES, plus for each side of the break what has slipped there over m + 1:
+    which grows with T no faster than that, so halved steps halve the error at least.
     """
     tension = scene.load
     largest = float(np.abs(tension).max())

@@ -1,7 +1,7 @@
 """Quantities of a run, each defined once: lessons, sweeps and charts derive from these.
 
-A quantity is asked for by its name, and with a parameter as `NAME@PARAMETER`: `error_force@10` is
-the error of the contact force at iteration 10.
+A quantity is asked for by its name, and with a parameter as `NAME@PARAMETER`:
+`error_force@10` is the error of the contact force at iteration 10.
 """
 
 from __future__ import annotations
@@ -29,13 +29,20 @@ FORMER = {"energy": "dissipation", "slipping": "slipped_share"}
 
 def reading(text: object) -> Quantity:
     """Quantity that is asked for, as `NAME` or `NAME@PARAMETER`; others are refused."""
-    name, at_sign, number = text.partition("@") if isinstance(text, str) else ("", "", "")
+    if isinstance(text, str):
+        name, at_sign, number = text.partition("@")
+    else:
+        name = ""
+        at_sign = ""
+        number = ""
     quantity = QUANTITIES.get(name)
     if name in FORMER:
         new = FORMER[name]
         raise SettingError("quantity", text, new, f"{name} is called {new}")
     if quantity is None:
-        raise SettingError("quantity", text, ", ".join(QUANTITIES), "choose one of these")
+        raise SettingError(
+            "quantity", text, ", ".join(QUANTITIES), "choose one of these"
+        )
     parameter = quantity.parameter
     if parameter is None and at_sign:
         raise SettingError("quantity", text, name, "it takes no parameter")
@@ -43,7 +50,10 @@ def reading(text: object) -> Quantity:
         return quantity
     low, high = parameter.bounds
     is_counted = isinstance(low, int)
-    kind = "a whole number" if is_counted else "a number"
+    if is_counted:
+        kind = "a whole number"
+    else:
+        kind = "a number"
     allowed = f"{name}@ and {kind} from {low:g} to {high:g}"
     try:
         at = float(number)

@@ -56,10 +56,11 @@ def _in_the_plane(settings: Settings) -> bool:
 def peak_displacement(run: FinishedRun) -> float:
     """Largest displacement of any node at any instant, m.
 
-    Where a body lies on its image, it is that of a point over the one across from it, which moves
-    along as much the other way, and alike across.
+    Where a body lies on its image, it is that of a point over the one across from it,
+    which moves along as much the other way, and alike across.
     """
-    inside, moved = run.problem.inside, run.problem.at_rest(run.iterate.displacement)
+    inside = run.problem.inside
+    moved = run.problem.at_rest(run.iterate.displacement)
     if inside is None:
         return float(np.abs(moved).max())
     every = inside.displacement(moved, slice(None))
@@ -73,11 +74,15 @@ def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
     """Key figure of the loop: largest in size, or at a share of the interval; NaN without it."""
     for figure in figures_of(run):
         if figure.name == name:
-            return figure.largest if at is None else figure.at(_instant_at(run, at))
+            if at is None:
+                return figure.largest
+            return figure.at(_instant_at(run, at))
     return math.nan
 
 
-@quantity("Largest displacement of the loop", "m", parameter=AT, applies=_has_no_wires_around)
+@quantity(
+    "Largest displacement of the loop", "m", parameter=AT, applies=_has_no_wires_around
+)
 def displacement(run: FinishedRun, at: float | None) -> float:
     """Displacement of the loop that is largest in size, m; NaN where it is over something else."""
     return _of_loop(run, "displacement", at)
@@ -92,7 +97,8 @@ def force(run: FinishedRun, at: float | None) -> float:
 def _axial_force(run: FinishedRun) -> Array:
     """Axial force in all elements, and at both ends, pull positive, (n_places, n_instants), N.
 
-    In the middle of the last element friction has taken its part of the force at the end.
+    In the middle of the last element friction has taken its part of the force at the
+    end.
     """
     rods = run.settings.structure()
     assert isinstance(rods, Rods)
@@ -130,7 +136,8 @@ def _force_at(side: str) -> Quantity:
     """Largest force that holds a side, or pulls the end of a rod there."""
 
     def force(run: FinishedRun) -> float:
-        problem, structure = run.problem, run.settings.structure()
+        problem = run.problem
+        structure = run.settings.structure()
         if isinstance(structure, Rods):
             end = structure.end_force(problem, "right" if side == "right" else "left")
             values = end.of(run.iterate)
@@ -138,8 +145,14 @@ def _force_at(side: str) -> Quantity:
         along, up = (reaction(problem, side, axis).of(run.iterate) for axis in (0, 1))
         return float(np.hypot(along, up).max())
 
-    title, applies = f"Largest force at the {side}", lambda own: side in holding_sides(own)
-    return Quantity(f"{side}_force", title, "N", force, applies=applies)
+    title = f"Largest force at the {side}"
+    return Quantity(
+        f"{side}_force",
+        title,
+        "N",
+        force,
+        applies=lambda own: side in holding_sides(own),
+    )
 
 
 def holding_sides(settings: Settings) -> Collection[str]:
@@ -147,7 +160,9 @@ def holding_sides(settings: Settings) -> Collection[str]:
     if settings.kind == "rod":
         return "left", "right"
     structure = settings.structure()
-    sides = structure.sides.items() if isinstance(structure, Stack) else ()
+    if not isinstance(structure, Stack):
+        return []
+    sides = structure.sides.items()
     return [side for side, given in sides if any(each.prescribed for each in given)]
 
 
@@ -161,7 +176,9 @@ left_force, right_force, top_force, bottom_force = map(
 def peak_slip(run: FinishedRun) -> float:
     """Farthest that any point in contact has come along what it rubs on, m."""
     contacts = map(run.iterate.contact, run.problem.surfaces)
-    return float(max(np.abs(part.slip * (part.status != OPEN)).max() for part in contacts))
+    return float(
+        max(np.abs(part.slip * (part.status != OPEN)).max() for part in contacts)
+    )
 
 
 @quantity("Largest friction, all points", "N")
@@ -192,11 +209,13 @@ def peak_pressing(run: FinishedRun) -> float:
 def peak_pressure(run: FinishedRun) -> float:
     """Largest pressure at any point of an interface, Pa.
 
-    Force of a point over its tributary length, one metre thick. A spring has a force and no
-    pressure.
+    Force of a point over its tributary length, one metre thick. A spring has a force
+    and no pressure.
     """
     lengths = _lengths(run).items()
-    peaks = (float((_pressing(run, name) / own[:, None]).max()) for name, own in lengths)
+    peaks = (
+        float((_pressing(run, name) / own[:, None]).max()) for name, own in lengths
+    )
     return max(peaks, default=math.nan)
 
 
@@ -209,7 +228,9 @@ def contact_width(run: FinishedRun) -> float:
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
     """Tributary lengths of the points of all surfaces, m."""
-    return {name: law.by_point(law.weights) for name, law in run.problem.surfaces.items()}
+    return {
+        name: law.by_point(law.weights) for name, law in run.problem.surfaces.items()
+    }
 
 
 def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
@@ -221,7 +242,9 @@ def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
 
 def _peak_stress(name: str, title: str, unit: str, place: int) -> Quantity:
     """Largest von Mises stress at the centre of an element, or where that is; NaN without any."""
-    return Quantity(name, title, unit, lambda run: run.peak_stress[place], applies=_in_the_plane)
+    return Quantity(
+        name, title, unit, lambda run: run.peak_stress[place], applies=_in_the_plane
+    )
 
 
 peak_stress = _peak_stress("peak_stress", "Largest von Mises stress", "Pa", 0)
@@ -229,7 +252,9 @@ peak_stress_x = _peak_stress("peak_stress_x", "x of the largest stress", "m", 1)
 peak_stress_y = _peak_stress("peak_stress_y", "y of the largest stress", "m", 2)
 
 
-@quantity("Largest force in the spring", "N", applies=lambda settings: settings.has("spring"))
+@quantity(
+    "Largest force in the spring", "N", applies=lambda settings: settings.has("spring")
+)
 def spring_force(run: FinishedRun) -> float:
     """Largest force in the spring, N."""
     return float(_pressing(run, "spring").max())
@@ -257,13 +282,15 @@ class _Hold:
     def needed(self) -> Array:
         """Coefficient of friction that is in use; 0 where nothing presses."""
         nothing = np.zeros_like(self.pressing)
-        return np.divide(np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0)
+        return np.divide(
+            np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0
+        )
 
     def sliding(self, friction: float, instants: Array) -> Array:
         """All that presses while it slides, N: at its instants, and as it begins to slide.
 
-        It begins between two instants, where all its friction, if it grows on as before, comes to
-        mu times all that presses.
+        It begins between two instants, where all its friction, if it grows on as
+        before, comes to mu times all that presses.
         """
         pressing = self.pressing
         carried = np.abs(self.carried)
@@ -282,7 +309,8 @@ class _Hold:
 
 def _holds(run: FinishedRun) -> list[_Hold]:
     """Interfaces with friction, each as a whole."""
-    problem, friction = run.problem, run.settings.friction
+    problem = run.problem
+    friction = run.settings.friction
     # A point that a clamp holds, too, never slips.
     determinate = determinate_forces(problem)
     holds = []
@@ -309,8 +337,9 @@ def _holds(run: FinishedRun) -> list[_Hold]:
 def holding_friction(run: FinishedRun) -> float:
     """Smallest coefficient of friction at which no interface slides as a whole.
 
-    All its friction over all that presses, at the worst instant; where mu varies, by its factors.
-    NaN where one slides: the run then cannot tell how much more it would take.
+    All its friction over all that presses, at the worst instant; where mu varies, by
+    its factors. NaN where one slides: the run then cannot tell how much more it would
+    take.
     """
     if not run.settings.friction:
         return math.nan
@@ -325,9 +354,9 @@ def holding_friction(run: FinishedRun) -> float:
 def holding_force(run: FinishedRun) -> float:
     """Largest force that friction could hold at an interface that comes nearest to sliding, N.
 
-    That is mu times all that presses. Where interfaces slide as a whole, it is the largest while
-    they do, from where they begin to; else that at the interface and the instant of which the
-    largest share is in use, and the largest of several.
+    That is mu times all that presses. Where interfaces slide as a whole, it is the
+    largest while they do, from where they begin to; else that at the interface and the
+    instant of which the largest share is in use, and the largest of several.
     """
     friction = float(run.settings.friction)
     if not friction:
@@ -341,7 +370,12 @@ def holding_force(run: FinishedRun) -> float:
     return friction * float(np.concatenate(forces).max(initial=0.0))
 
 
-@quantity("Displacement at the largest load", "m", applies=_over_a_displacement, when=largest_load)
+@quantity(
+    "Displacement at the largest load",
+    "m",
+    applies=_over_a_displacement,
+    when=largest_load,
+)
 def end_displacement(run: FinishedRun, instant: int) -> float:
     """Displacement of the loop where its force is largest, m: the largest while that stands."""
     return float(run.displacement[instant])
@@ -351,7 +385,9 @@ def end_displacement(run: FinishedRun, instant: int) -> float:
 def residual_displacement(run: FinishedRun) -> float:
     """What is left of the loop's displacement without load, m; NaN if the end is loaded."""
     size = np.abs(run.force)
-    return math.nan if size[-1] > UNLOADED * size.max() else float(run.displacement[-1])
+    if size[-1] > UNLOADED * size.max():
+        return math.nan
+    return float(run.displacement[-1])
 
 
 @quantity("Largest load over its displacement", "N/m", applies=_over_a_displacement)
@@ -359,14 +395,18 @@ def stiffness(run: FinishedRun) -> float:
     """Largest force of the loop over its displacement, N/m."""
     instant = largest_load(run)
     moved = float(run.displacement[instant])
-    return float(run.force[instant]) / moved if moved else math.nan
+    if moved:
+        return float(run.force[instant]) / moved
+    return math.nan
 
 
 @quantity("Energy dissipated", "J", parameter=CYCLE)
 def dissipation(run: FinishedRun, at: float | None) -> float:
     """Energy that friction takes, J: of the whole run, or of a cycle; NaN if there are fewer."""
     some = instants_of(run.settings, at)
-    return math.nan if some is None else float(run.dissipated[some].sum())
+    if some is None:
+        return math.nan
+    return float(run.dissipated[some].sum())
 
 
 @quantity("Share of the points that slip", is_share=True)
@@ -375,7 +415,11 @@ def slipped_share(run: FinishedRun) -> float:
     return float(_slipped_shares(run)[-1])
 
 
-@quantity("Share of the contact that sticks at the largest load", is_share=True, when=largest_load)
+@quantity(
+    "Share of the contact that sticks at the largest load",
+    is_share=True,
+    when=largest_load,
+)
 def stuck_share(run: FinishedRun, instant: int) -> float:
     """Share of what touches that sticks at the largest load, by length; NaN if nothing does.
 
@@ -386,7 +430,9 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
     length = length * ~np.concatenate([still[name] for name in _lengths(run)])
     status = every[:, instant]
     touching = length[status != OPEN].sum()
-    return float(length[status == 0].sum() / touching) if touching else math.nan
+    if touching:
+        return float(length[status == 0].sum() / touching)
+    return math.nan
 
 
 def _slipped_shares(run: FinishedRun) -> Array:
@@ -398,7 +444,9 @@ def _slipped_shares(run: FinishedRun) -> Array:
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
     still = np.concatenate(list(_stand_still(run).values()))
     counted = slipped[problem.on_surfaces & ~still]
-    return counted.mean(axis=0) if len(counted) else np.zeros(slipped.shape[1])
+    if not len(counted):
+        return np.zeros(slipped.shape[1])
+    return np.asarray(counted.mean(axis=0))
 
 
 def _stand_still(run: FinishedRun) -> dict[str, NDArray[np.bool_]]:
@@ -416,7 +464,9 @@ def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:
     """Value at the instant by which a share of the points, or any, has slipped; or infinite."""
     share = _slipped_shares(run)
     slips = (share > 0.0) & (share >= (at or 0.0))
-    return float(values[np.argmax(slips)]) if slips.any() else math.inf
+    if slips.any():
+        return float(values[np.argmax(slips)])
+    return math.inf
 
 
 @quantity("Time of the first slip", "s", parameter=SHARE)
@@ -425,7 +475,9 @@ def first_slip_time(run: FinishedRun, at: float | None) -> float:
     return _at_first_slip(run, run.problem.instants, at)
 
 
-@quantity("Displacement at the first slip", "m", parameter=SHARE, applies=_over_a_displacement)
+@quantity(
+    "Displacement at the first slip", "m", parameter=SHARE, applies=_over_a_displacement
+)
 def first_slip_displacement(run: FinishedRun, at: float | None) -> float:
     """Displacement of the loop at that instant, m."""
     return _at_first_slip(run, run.displacement, at)

@@ -21,8 +21,8 @@ from solver.study.quantities.quantity import CYCLE, quantity
 NO_ENERGY = 1e-12
 """Share of all energy that rounding makes."""
 REGAINED = 0.9
-"""Share of its tension up to which a broken wire is watched; it regains the rest at that rate. The
-element in which the rest is regained would blur the place."""
+"""Share of its tension up to which a broken wire is watched; it regains the rest at
+that rate. The element in which the rest is regained would blur the place."""
 
 
 def has_cycles(settings: Settings) -> bool:
@@ -42,39 +42,53 @@ def has_a_limit(settings: Settings) -> bool:
         return True
     if not settings.opens or settings.has("spring") or law != FrictionLaw():
         return False
-    gaps = [hold.gap for hold in settings.structure().described().holds if hold.gap is not None]
+    gaps = [
+        hold.gap
+        for hold in settings.structure().described().holds
+        if hold.gap is not None
+    ]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
 
 @quantity(
-    "Energy of the last cycle over the second", applies=lambda settings: cycles_in(settings) > 1
+    "Energy of the last cycle over the second",
+    applies=lambda settings: cycles_in(settings) > 1,
 )
 def cycle_energy_ratio(run: FinishedRun) -> float:
     """Energy of the last cycle over that of the second; NaN where that took none."""
     energy = run.cycles.energy
     is_any = energy[1] > NO_ENERGY * np.abs(run.dissipated).sum()
-    return float(energy[-1] / energy[1]) if is_any else math.nan
+    if is_any:
+        return float(energy[-1] / energy[1])
+    return math.nan
 
 
 @quantity("Slip that the last cycle leaves", "m", applies=has_cycles)
 def ratchet(run: FinishedRun) -> float:
     """Slip that the last cycle leaves, at the point where it leaves most, m."""
     left = np.abs(run.cycles.net[:, -1]).max()
-    return float(left) if left > RESIDUE * run.cycles.slip.max() else 0.0
+    if left > RESIDUE * run.cycles.slip.max():
+        return float(left)
+    return 0.0
 
 
 @quantity(
-    "Share of the contact that slips at once in the last cycle", is_share=True, applies=has_cycles
+    "Share of the contact that slips at once in the last cycle",
+    is_share=True,
+    applies=has_cycles,
 )
 def sliding_share(run: FinishedRun) -> float:
     """Largest share of the contact that slips at once in the last cycle, by length.
 
-    0 is stick, 1 gross slip, anything between partial slip (O. Vingsbo, S. Söderberg, On fretting
-    maps, Wear 126, 1988). A point that a clamp holds never slips, and is left out.
+    0 is stick, 1 gross slip, anything between partial slip (O. Vingsbo, S. Söderberg,
+    On fretting maps, Wear 126, 1988). A point that a clamp holds never slips, and is
+    left out.
     """
     held = run.problem.is_held
     lengths = [
-        law.by_point(law.weights * ~np.all([held[rows] for rows in law.tangent.sides], axis=0))
+        law.by_point(
+            law.weights * ~np.all([held[rows] for rows in law.tangent.sides], axis=0)
+        )
         for law in run.problem.surfaces.values()
     ]
     length = np.concatenate(lengths)[:, None]
@@ -90,7 +104,8 @@ def sliding_share(run: FinishedRun) -> float:
 def shakedown_factor(run: FinishedRun) -> float:
     """Largest factor on the swing about the mean of the last cycle under which slip can cease.
 
-    `solver/README.md`, 15; NaN where none is known, or not even the mean keeps all contacts closed.
+    `solver/README.md`, 15; NaN where none is known, or not even the mean keeps all
+    contacts closed.
     """
     try:
         if run.problem.opens:
@@ -114,7 +129,9 @@ def _rope(settings: Settings) -> Rope:
 def _last(run: FinishedRun) -> slice:
     """Instants of the last cycle, its beginning among them; or all without one."""
     ends = ends_of(run.settings)
-    return slice(ends[-2], ends[-1] + 1) if len(ends) > 1 else slice(0, None)
+    if len(ends) > 1:
+        return slice(ends[-2], ends[-1] + 1)
+    return slice(0, None)
 
 
 @quantity("Bending stiffness while nothing slips", "N·m^2", applies=is_rope)
@@ -138,7 +155,9 @@ def slipping_bending(run: FinishedRun) -> float:
 def bending_stiffness(run: FinishedRun, instant: int) -> float:
     """Moment at the largest curvature over that, N m^2."""
     curvature = float(run.displacement[instant])
-    return float(run.force[instant]) / curvature if curvature else math.nan
+    if curvature:
+        return float(run.force[instant]) / curvature
+    return math.nan
 
 
 @quantity(
@@ -171,7 +190,9 @@ def wire_slip(run: FinishedRun) -> float:
     return float(np.ptp(run.iterate.displacement[:, _last(run)], axis=1).max())
 
 
-@quantity("Largest friction work in the last cycle, a metre of wire", "J/m", applies=is_rope)
+@quantity(
+    "Largest friction work in the last cycle, a metre of wire", "J/m", applies=is_rope
+)
 def wire_work(run: FinishedRun) -> float:
     """What friction takes of a metre of wire in the last cycle, where it is most, J/m.
 
@@ -179,7 +200,9 @@ def wire_work(run: FinishedRun) -> float:
     """
     last = instants_of(run.settings, cycles_in(run.settings) or None)
     return max(
-        float((law.by_point(work[:, last].sum(axis=1)) / law.by_point(law.weights)).max())
+        float(
+            (law.by_point(work[:, last].sum(axis=1)) / law.by_point(law.weights)).max()
+        )
         for law, _, work in slips_of(run.iterate)
     )
 
@@ -193,14 +216,17 @@ def wire_work(run: FinishedRun) -> float:
 def recovery_length(run: FinishedRun, instant: int) -> float:
     """How far from its break a wire carries its tension again, at the largest tension, m.
 
-    NaN without a broken wire, or without tension; infinite if it does so on neither side.
+    NaN without a broken wire, or without tension; infinite if it does so on neither
+    side.
     """
     described = run.settings.structure().described()
     if described.broken is None or run.force[instant] <= 0.0:
         return math.nan
     wire, place = described.broken
     axial = AxialForce(run.problem, slice(instant, instant + 1))
-    force = axial(run.iterate.displacement[:, instant : instant + 1])[axial.wires == wire, 0]
+    force = axial(run.iterate.displacement[:, instant : instant + 1])[
+        axial.wires == wire, 0
+    ]
     share = force / run.force[instant]
     size = described.length / len(share)
     node = round(place / size)
@@ -215,4 +241,6 @@ def _reached(share: Array, level: float) -> float:
     """
     places = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
     values = np.maximum.accumulate(np.concatenate([[0.0], share]))
-    return float(np.interp(level, values, places)) if values[-1] >= level else math.inf
+    if values[-1] >= level:
+        return float(np.interp(level, values, places))
+    return math.inf

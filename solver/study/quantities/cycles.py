@@ -1,9 +1,10 @@
 """A run cut into the cycles of its load: what each takes and leaves, and what becomes of slip.
 
-Cycles go from one turning point of a load to the next but one, so that the way there from rest is
-none of them. Slip ceases, dies out, goes to and fro, or goes on one way (J. R. Barber, Frictional
-systems subjected to oscillating loads, Ann. Solid Struct. Mech. 2, 2011). A word is said only where
-the last three cycles have earned it (solver/README.md, 15).
+Cycles go from one turning point of a load to the next but one, so that the way there
+from rest is none of them. Slip ceases, dies out, goes to and fro, or goes on one way
+(J. R. Barber, Frictional systems subjected to oscillating loads, Ann. Solid Struct.
+Mech. 2, 2011). A word is said only where the last three cycles have earned it
+(solver/README.md, 15).
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from solver.laws import Contact
 from solver.settings.scene import Settings
 
 SMALLEST_SWING = 0.05
-"""Share of the whole range that a path must turn back by to begin another half cycle."""
+"""Share of the whole range that a path must turn back by to begin another half
+cycle."""
 NO_SWING = 1e-9
 """Share of its size by which rounding lets a path that stands still swing."""
 LAST = 3
@@ -32,23 +34,28 @@ REPEATED = 1e-3
 ALIKE = 0.02
 """Share by which the slip of the last cycles may differ where it counts as the same."""
 ONE_WAY = 0.05
-"""Share of the slip of a cycle that is left at its end, from which on a point goes one way."""
+"""Share of the slip of a cycle that is left at its end, from which on a point goes one
+way."""
 DIES = 0.9
-"""Slip of a cycle over that of the one before, up to which it dies, if it tends to nothing."""
+"""Slip of a cycle over that of the one before, up to which it dies, if it tends to
+nothing."""
 TENDS = 0.1
 """Slip that it may tend to, as a share of that two cycles ago, to count as nothing."""
-Word = Literal["elastic shakedown", "shakedown with slip that dies", "steady slip", "ratcheting"]
+Word = Literal[
+    "elastic shakedown", "shakedown with slip that dies", "steady slip", "ratcheting"
+]
 
 
 def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
     """Interfaces with friction, the slip of their pairs, m, and the work it takes, J.
 
-    Both from each instant to the next, shape (n_pairs, n_instants), and both of the local stage,
-    whose laws hold at every iterate. A point slips at the bound of the instant that it slips to.
-    Springs do not rub.
+    Both from each instant to the next, shape (n_pairs, n_instants), and both of the
+    local stage, whose laws hold at every iterate. A point slips at the bound of the
+    instant that it slips to. Springs do not rub.
     """
     scales = iterate.problem.scales
-    moved, force = iterate.local_displacement, iterate.boundary_local_force
+    moved = iterate.local_displacement
+    force = iterate.boundary_local_force
     for law in iterate.problem.surfaces.values():
         slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
         slip *= law.slip_ratio * scales.displacement
@@ -64,13 +71,14 @@ class LoadCycles:
     ends
         Instants at which they begin, and the last one ends, n_cycles + 1 of them.
     slip, net, work
-        Of every point in each, shape (n_points, n_cycles): slip to and fro added up while it is in
-        contact, m; how much farther it stands at the end, m; what friction takes, J, of all points
-        that it stands for.
+        Of every point in each, shape (n_points, n_cycles): slip to and fro added up
+        while it is in contact, m; how much farther it stands at the end, m; what
+        friction takes, J, of all points that it stands for.
     before
         Slip before the first, as `slip`, shape (n_points,), m.
     is_repeated
-        Whether everything that acts is the same in the last three of them, or in all of fewer.
+        Whether everything that acts is the same in the last three of them, or in all of
+        fewer.
     """
 
     ends: list[int]
@@ -92,14 +100,19 @@ class LoadCycles:
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     """Cycles of an iterate; points stand interface by interface."""
     ends = ends_of(settings)
-    slips, works = [], []
+    slips = []
+    works = []
     for law, slip, work in slips_of(iterate):
         slips.append(law.mean_by_point(slip))
         works.append(law.copies * law.by_point(work))
-    slip, work = np.concatenate(slips), np.concatenate(works)
+    slip = np.concatenate(slips)
+    work = np.concatenate(works)
     status = iterate.status[iterate.problem.on_surfaces]
     rubbed = np.where(np.abs(status) == 1, np.abs(slip), 0.0)
-    first = ends[0] if ends else iterate.problem.n_instants - 1
+    if ends:
+        first = ends[0]
+    else:
+        first = iterate.problem.n_instants - 1
     return LoadCycles(
         ends=ends,
         slip=_summed(rubbed, ends),
@@ -113,10 +126,12 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
 def ends_of(settings: Settings) -> list[int]:
     """Instants at which the cycles of a load begin, and the last one ends.
 
-    Of several loads that which turns back most often counts, the first of equals. Fewer than two
-    instants are no cycle.
+    Of several loads that which turns back most often counts, the first of equals. Fewer
+    than two instants are no cycle.
     """
-    turns = max((turning_points(path) for path in _paths(settings)), key=len, default=[])
+    turns = max(
+        (turning_points(path) for path in _paths(settings)), key=len, default=[]
+    )
     return turns[::2]
 
 
@@ -132,8 +147,11 @@ def instants_of(settings: Settings, number: float | None = None) -> slice | None
     """
     if number is None:
         return slice(None)
-    ends, last = ends_of(settings), int(number)
-    return slice(ends[last - 1] + 1, ends[last] + 1) if last < len(ends) else None
+    ends = ends_of(settings)
+    last = int(number)
+    if last < len(ends):
+        return slice(ends[last - 1] + 1, ends[last] + 1)
+    return None
 
 
 def turning_points(path: Array) -> list[int]:
@@ -141,9 +159,12 @@ def turning_points(path: Array) -> list[int]:
 
     Of each extreme that is held the first counts.
     """
-    least = max(SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max()))
+    least = max(
+        SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max())
+    )
     extremes: list[int] = []
-    outmost, way = 0, 0.0
+    outmost = 0
+    way = 0.0
     for place, value in enumerate(path):
         if way == 0.0:
             outmost = place
@@ -153,9 +174,14 @@ def turning_points(path: Array) -> list[int]:
             outmost = place
         elif way * (path[outmost] - value) > least:
             extremes.append(outmost)
-            outmost, way = place, -way
-    is_closed = len(extremes) > 1 and way * (path[extremes[-2]] - path[outmost]) <= least
-    return [*extremes, outmost] if is_closed else extremes
+            outmost = place
+            way = -way
+    is_closed = (
+        len(extremes) > 1 and way * (path[extremes[-2]] - path[outmost]) <= least
+    )
+    if is_closed:
+        return [*extremes, outmost]
+    return extremes
 
 
 def _paths(settings: Settings) -> Iterator[Array]:
@@ -181,14 +207,16 @@ def _is_repeated(settings: Settings, ends: list[int]) -> bool:
 def _summed(values: Array, ends: list[int]) -> Array:
     """Sums over the instants of each cycle, shape (..., n_cycles)."""
     parts = [values[..., a + 1 : b + 1].sum(axis=-1) for a, b in pairwise(ends)]
-    return np.stack(parts, axis=-1) if parts else np.zeros((*values.shape[:-1], 0))
+    if parts:
+        return np.stack(parts, axis=-1)
+    return np.zeros((*values.shape[:-1], 0))
 
 
 def fate_of(cycles: LoadCycles) -> Word | None:
     """What becomes of slip, in a word.
 
-    None where that is not settled: with fewer than three cycles, cycles that are not alike, slip
-    that still changes, or no slip ever.
+    None where that is not settled: with fewer than three cycles, cycles that are not
+    alike, slip that still changes, or no slip ever.
     """
     if len(cycles) < LAST or not cycles.is_repeated or not cycles.slip.size:
         return None
@@ -202,7 +230,9 @@ def fate_of(cycles: LoadCycles) -> Word | None:
         return "ratcheting"
     if most[-1] <= DIES * most[-2] and _limit(most[-3:]) <= TENDS * most[-3]:
         return "shakedown with slip that dies"
-    return "steady slip" if _settled(cycles.slip) else None
+    if _settled(cycles.slip):
+        return "steady slip"
+    return None
 
 
 def _settled(values: Array) -> bool:
@@ -215,4 +245,6 @@ def _limit(values: Array) -> float:
     """Limit of three values of a geometric sequence (Aitken); infinite if they grow."""
     first, second, third = map(float, values)
     bend = first + third - 2.0 * second
-    return (first * third - second**2) / bend if bend > 0.0 else np.inf
+    if bend > 0.0:
+        return (first * third - second**2) / bend
+    return np.inf

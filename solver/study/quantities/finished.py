@@ -31,7 +31,8 @@ from solver.scenes.method import method_of
 from solver.settings.scene import Settings
 from solver.study.quantities.cycles import LoadCycles, cycles_of, slips_of
 
-REFUSED, BROKEN = "refused", "broken"
+REFUSED = "refused"
+BROKEN = "broken"
 """How a run ends that never was one: by refused settings, by a fault of the engine."""
 TINY: dict[str, dict[str, object]] = {
     "bar": {"elements": 4, "substructures": 2, "instants": 3},
@@ -39,9 +40,9 @@ TINY: dict[str, dict[str, object]] = {
 }
 """Runs that go before others: to bring in code is no part of a run's time."""
 ALONE = 60
-"""Iterations that take as long as a run of its own, with all beside them. A status step from a
-neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it
-takes 1 to 3 and 3 to 9 (measured)."""
+"""Iterations that take as long as a run of its own, with all beside them. A status step
+from a neighbour may take a third of that, which is 4 systems an instant on 50 elements
+and 13 on 1600; it takes 1 to 3 and 3 to 9 (measured)."""
 ZERO = 1e-9
 """Share of the largest value in a run below which a key figure is zero."""
 EQUAL = 1e-6
@@ -69,8 +70,9 @@ DRIVES = {
 class FinishedRun:
     """A run from its settings to its end, from another run if it was warm.
 
-    `made_loop` is its loop, where that is at hand: in the plane it takes a while to make one.
-    `known_loss` is the first instant that a reference knows to have no solution.
+    `made_loop` is its loop, where that is at hand: in the plane it takes a while to
+    make one. `known_loss` is the first instant that a reference knows to have no
+    solution.
     """
 
     settings: Settings
@@ -83,8 +85,9 @@ class FinishedRun:
     def lost_from(self) -> int | None:
         """First instant that is known to have no solution; None where there is none such.
 
-        With it the run has no quantities: all instants are iterated together, and those that have
-        no solution keep the others from theirs. A certified run has a solution at all of them.
+        With it the run has no quantities: all instants are iterated together, and those
+        that have no solution keep the others from theirs. A certified run has a
+        solution at all of them.
         """
         if self.solution.is_certified:
             return None
@@ -123,7 +126,9 @@ class FinishedRun:
     @cached_property
     def dissipated(self) -> Array:
         """Energy that friction takes between each instant and the one before, (n_instants,), J."""
-        works = (law.copies * work.sum(axis=0) for law, _, work in slips_of(self.iterate))
+        works = (
+            law.copies * work.sum(axis=0) for law, _, work in slips_of(self.iterate)
+        )
         return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
 
     @cached_property
@@ -134,9 +139,11 @@ class FinishedRun:
     @cached_property
     def peak_stress(self) -> tuple[float, float, float]:
         """Largest von Mises stress in the plane, Pa, and x and y of the element that has it, m."""
-        inside, values = self.problem.inside, self.settings.values()
+        inside = self.problem.inside
+        values = self.settings.values()
         assert inside is not None
-        largest, place = 0.0, np.full(2, np.nan)
+        largest = 0.0
+        place = np.full(2, np.nan)
         for instant in range(self.problem.n_instants):
             moved = inside.displacement(self.iterate.displacement, [instant])[:, :, 0]
             stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
@@ -156,12 +163,15 @@ def first_largest(values: Array) -> int:
 def largest_load(run: FinishedRun) -> int:
     """Instant of the largest load: where the loop's force is largest in size.
 
-    While the same load stands, displacement may go on to grow, as where friction falls. So of all
-    instants of that force, that counts at which the displacement first is largest in size.
+    While the same load stands, displacement may go on to grow, as where friction falls.
+    So of all instants of that force, that counts at which the displacement first is
+    largest in size.
     """
     force = run.force
     first = first_largest(force)
-    stands = np.flatnonzero(np.abs(force - force[first]) <= EQUAL * np.abs(force[first]))
+    stands = np.flatnonzero(
+        np.abs(force - force[first]) <= EQUAL * np.abs(force[first])
+    )
     return int(stands[first_largest(run.displacement[stands])])
 
 
@@ -198,7 +208,8 @@ class KeyFigure:
 def key_figures(axes: Axes, loop: Iterable[NDArray[Any]]) -> list[KeyFigure]:
     """Key figures of a loop: of its axes, and of both its sides, shape (2, n_instants).
 
-    A displacement has the name `displacement`, a force `force`; other numbers have others.
+    A displacement has the name `displacement`, a force `force`; other numbers have
+    others.
     """
     figures = []
     for (title, unit), values in zip(axes, loop, strict=True):
@@ -239,13 +250,17 @@ def finished_run(
 ) -> FinishedRun:
     """Run a scene to its stop rule, unless it is cancelled.
 
-    Errors, where there is a reference, and indicators of every iteration take their time. `before`
-    is what stuck, slipped and opened in a run of like settings, to start from where that holds.
+    Errors, where there is a reference, and indicators of every iteration take their
+    time. `before` is what stuck, slipped and opened in a run of like settings, to start
+    from where that holds.
     """
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
-    known = known_reference(problem, cancelled) if errors else Known()
+    if errors:
+        known = known_reference(problem, cancelled)
+    else:
+        known = Known()
     distance = None
     if known.reference is not None:
         distance = distance_to(known.reference, problem)
@@ -288,7 +303,9 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
         message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
         if reference.collapse is not None:
             lost_from = reference.collapse.instant
-            message += f": there is no equilibrium {limit_of(problem, reference.collapse)}"
+            message += (
+                f": there is no equilibrium {limit_of(problem, reference.collapse)}"
+            )
         elif reference.jumps_at is not None:
             # That none is found is no proof: a run may converge to one.
             message += ": friction softens until the structure jumps"
@@ -297,7 +314,10 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
         where = jump_of(problem, reference.jumps_at)
         return Known(reference, f"at {where} it jumps to another equilibrium")
     several = np.count_nonzero(reference.ambiguous)
-    message = f"there are several solutions at {several} instants" if several else ""
+    if several:
+        message = f"there are several solutions at {several} instants"
+    else:
+        message = ""
     return Known(reference, message)
 
 
@@ -309,9 +329,9 @@ def neighbour(
 ) -> Solution | None:
     """Solution by a status step from what stuck, slipped and opened in a run of like settings.
 
-    It counts only if it is the one of the discrete problem, which does not depend on the start;
-    None where it is not found soon, or `stop` returns True before. A run on separated bases is its
-    own, as it has these too.
+    It counts only if it is the one of the discrete problem, which does not depend on
+    the start; None where it is not found soon, or `stop` returns True before. A run on
+    separated bases is its own, as it has these too.
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
@@ -321,7 +341,8 @@ def neighbour(
     if not costs.afford(ALONE):
         return None
     try:
-        solver, most = incremental_solver(problem, stop), costs.systems(ALONE)
+        solver = incremental_solver(problem, stop)
+        most = costs.systems(ALONE)
         _, certificate = status_step(solver, problem, states, most, stop)
     except (NoReferenceError, Interrupted):
         return None
@@ -329,7 +350,8 @@ def neighbour(
         return None
     k = method_of(settings).direction.of(problem)
     finish = finished(problem, k, certificate)
-    status, residual = certified(finish, certificate), certificate.residual
+    status = certified(finish, certificate)
+    residual = certificate.residual
     seconds = time.perf_counter() - began
     decision = Decision(seconds, residual, certificate=certificate)
     return Solution(finish, [record(finish, decision, None, watch=False)], status)

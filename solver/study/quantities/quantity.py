@@ -15,8 +15,8 @@ from solver.study.quantities.finished import FinishedRun
 class Parameter:
     """The number that a quantity may be asked with, or has to, if it is needed.
 
-    `words` is what it adds to the title, with a place for the number; the smallest and the largest
-    are integers where only whole numbers have a meaning.
+    `words` is what it adds to the title, with a place for the number; the smallest and
+    the largest are integers where only whole numbers have a meaning.
     """
 
     words: str
@@ -36,19 +36,23 @@ class Quantity:
     Attributes
     ----------
     name, title, unit
-        By which it is asked for, what it is called, and its SI unit, empty for a pure number.
+        By which it is asked for, what it is called, and its SI unit, empty for a pure
+        number.
     of
-        Takes it of a run, and of the instant if there is a `when`, or else of the parameter or None
-        if there is one: NaN where the run has none, infinity where what is waited for never comes.
-        What a run came to is NaN where some of its instants are known to have no solution.
+        Takes it of a run, and of the instant if there is a `when`, or else of the
+        parameter or None if there is one: NaN where the run has none, infinity where
+        what is waited for never comes. What a run came to is NaN where some of its
+        instants are known to have no solution.
     when
-        Instant at which it is taken of a run, and of the parameter or None if there is one.
+        Instant at which it is taken of a run, and of the parameter or None if there is
+        one.
     parameter, at
         What it may be asked with, and what it is asked with.
     reads
-        What of how the run went it follows from, so that a run that starts elsewhere has another:
-        distances to a reference or the indicators of every iteration, which take their time, or
-        neither of them. None where it is of what the run came to.
+        What of how the run went it follows from, so that a run that starts elsewhere
+        has another: distances to a reference or the indicators of every iteration,
+        which take their time, or neither of them. None where it is of what the run came
+        to.
     is_share
         Whether it is a share of a whole, which is told in per cent.
     applies
@@ -72,7 +76,9 @@ class Quantity:
             return math.nan
         if self.reads is None and run.lost_from is not None:
             return math.nan
-        given = () if self.parameter is None else (self.at,)
+        given: tuple[float | None, ...] = ()
+        if self.parameter is not None:
+            given = (self.at,)
         if self.when is None:
             return float(self.of(run, *given))
         return float(self.of(run, self.when(run, *given)))

@@ -21,7 +21,8 @@ LOADED = "right x"
 def can_be_clipped(settings: Settings) -> bool:
     """Whether friction bounds are known, and what is pulled drives all slip: on rods.
 
-    Wires of a strand that is bent slip as its curvature has them, which is no force at an end.
+    Wires of a strand that is bent slip as its curvature has them, which is no force at
+    an end.
     """
     return settings.kind in ("rod", "wires")
 
@@ -29,13 +30,15 @@ def can_be_clipped(settings: Settings) -> bool:
 def clips_in(settings: Settings, iterate: Iterate) -> Clips:
     """Clips with memory fitted to the friction of an iterate of rods, at all points that rub.
 
-    What drives it is the load, or without any all friction together, which a support that moves
-    has to overcome.
+    What drives it is the load, or without any all friction together, which a support
+    that moves has to overcome.
     """
     problem = iterate.problem
     laws = problem.rubbing.values()
     lengths = np.concatenate([law.by_point(law.weights) for law in laws])
-    bounds = [law.by_point(law.tangential.highest) * problem.scales.force for law in laws]
+    bounds = [
+        law.by_point(law.tangential.highest) * problem.scales.force for law in laws
+    ]
     widest = max(bound.shape[1] for bound in bounds)
     bound = np.concatenate([np.broadcast_to(own, (len(own), widest)) for own in bounds])
     acts = settings.structure().described().acts
@@ -77,7 +80,9 @@ def _svd_modes(field: str, words: str) -> Quantity:
         return settings.kind != "plane"  # where most substructures do not rub
 
     title = f"Singular vectors of the {words} for an error of"
-    return Quantity(f"svd_modes_{field}", title, "", of, parameter=WITHIN, applies=applies)
+    return Quantity(
+        f"svd_modes_{field}", title, "", of, parameter=WITHIN, applies=applies
+    )
 
 
 svd_modes_displacement = _svd_modes("displacement", "displacement")

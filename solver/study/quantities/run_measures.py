@@ -13,7 +13,11 @@ ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000))
 
 
 def _record(
-    column: str, title: str, reads: Literal["errors", "indicators"], *, is_share: bool = False
+    column: str,
+    title: str,
+    reads: Literal["errors", "indicators"],
+    *,
+    is_share: bool = False,
 ) -> Quantity:
     """Scalar of the records, at an iteration or at the end."""
 
@@ -21,16 +25,22 @@ def _record(
         records = run.solution.records
         if at is not None:
             records = [entry for entry in records if entry.iteration == at]
-        return float(getattr(records[-1], column)) if records else math.nan
+        if records:
+            return float(getattr(records[-1], column))
+        return math.nan
 
-    return Quantity(column, title, "", of, None, ITERATION, reads=reads, is_share=is_share)
+    return Quantity(
+        column, title, "", of, None, ITERATION, reads=reads, is_share=is_share
+    )
 
 
 def _until(spent: str, field: str, words: str) -> Quantity:
     """What a run spends until an error is as small as it is asked to be."""
 
     def of(run: FinishedRun, at: float | None) -> float:
-        errors = [(entry, getattr(entry, f"error_{field}")) for entry in run.solution.records]
+        errors = [
+            (entry, getattr(entry, f"error_{field}")) for entry in run.solution.records
+        ]
         if all(math.isnan(error) for _, error in errors):
             return math.nan
         for entry, error in errors:
@@ -38,9 +48,16 @@ def _until(spent: str, field: str, words: str) -> Quantity:
                 return float(entry.seconds if spent == "seconds" else entry.iteration)
         return math.inf
 
-    title, unit = ("Run time", "s") if spent == "seconds" else ("Iterations", "")
+    if spent == "seconds":
+        title = "Run time"
+        unit = "s"
+    else:
+        title = "Iterations"
+        unit = ""
     title = f"{title} to an error of the {words} of"
-    return Quantity(f"{spent}_to_{field}", title, unit, of, None, WITHIN, reads="errors")
+    return Quantity(
+        f"{spent}_to_{field}", title, unit, of, None, WITHIN, reads="errors"
+    )
 
 
 @quantity("Iterations", reads="course")
@@ -53,7 +70,9 @@ def iterations(run: FinishedRun) -> float:
 def seconds(run: FinishedRun) -> float:
     """Time of the whole run, s."""
     records = run.solution.records
-    return records[-1].seconds if records else math.nan
+    if records:
+        return records[-1].seconds
+    return math.nan
 
 
 @quantity("Whether it converged", reads="course")
@@ -65,12 +84,17 @@ def converged(run: FinishedRun) -> float:
 indicator = _record("indicator", "LATIN indicator", "indicators")
 behaviour = _record("behaviour", "k-free indicator", "indicators")
 estimated_error = _record(
-    "estimated_error", "Estimated error of the contact force", "indicators", is_share=True
+    "estimated_error",
+    "Estimated error of the contact force",
+    "indicators",
+    is_share=True,
 )
 error_displacement = _record(
     "error_displacement", "Error of the displacement", "errors", is_share=True
 )
-error_force = _record("error_force", "Error of the contact force", "errors", is_share=True)
+error_force = _record(
+    "error_force", "Error of the contact force", "errors", is_share=True
+)
 iterations_to_displacement = _until("iterations", "displacement", "displacement")
 iterations_to_force = _until("iterations", "force", "contact force")
 seconds_to_displacement = _until("seconds", "displacement", "displacement")

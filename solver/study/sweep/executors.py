@@ -1,7 +1,7 @@
 """What runs many calls at once: processes of this machine, or the workers of a Dask cluster.
 
-All are executors as of `concurrent.futures`. A call that is cancelled while it runs is ended with
-its process, where that is one of this machine.
+All are executors as of `concurrent.futures`. A call that is cancelled while it runs is
+ended with its process, where that is one of this machine.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ from threadpoolctl import threadpool_limits
 from solver.settings.definitions import SettingError
 
 LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-"""What `python -m solver` sets to 1 before it imports NumPy, unless its user said otherwise."""
+"""What `python -m solver` sets to 1 before it imports NumPy, unless its user said
+otherwise."""
 ONE_THREAD = dict.fromkeys(LIMITS, "1")
 FORMS = "processes, processes:COUNT, or dask://HOST:PORT"
 DASK = "dask://"
@@ -47,7 +48,9 @@ left_alone = ExitStack()
 
 def processors() -> int:
     """Number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def machine() -> str:
@@ -62,18 +65,25 @@ def machine() -> str:
 class Processes(Executor):
     """Niced processes of this machine with one BLAS thread each, which end with this process.
 
-    A call that takes longer than `limit` seconds raises `TimeoutError`, and its process is ended.
-    After `n_calls` a process is replaced by a new one; 0 is never. One that is killed fails its
-    call with `pebble.ProcessExpired`. If none did a call, all that wait fail with
-    `BrokenProcessPool`, and can be submitted again.
+    A call that takes longer than `limit` seconds raises `TimeoutError`, and its process
+    is ended. After `n_calls` a process is replaced by a new one; 0 is never. One that
+    is killed fails its call with `pebble.ProcessExpired`. If none did a call, all that
+    wait fail with `BrokenProcessPool`, and can be submitted again.
     """
 
-    def __init__(self, count: int, limit: float | None = None, n_calls: int = 0) -> None:
-        self._limit, self._is_shut_down = limit, False
-        self._started = partial(ProcessPool, count, n_calls, initializer=_begin, context=_context())
+    def __init__(
+        self, count: int, limit: float | None = None, n_calls: int = 0
+    ) -> None:
+        self._limit = limit
+        self._is_shut_down = False
+        self._started = partial(
+            ProcessPool, count, n_calls, initializer=_begin, context=_context()
+        )
         self._pool = self._started()
 
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+    def submit(
+        self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> Future[Any]:
         """Do a call in the next process that is free; all of it is picklable."""
         if not (self._pool.active or self._is_shut_down):
             # A pool is broken once a process is killed while none does a call.
@@ -98,9 +108,9 @@ def _context() -> BaseContext:
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([PRELOADED])
-    # Ctrl-C reaches all processes of a terminal. The server and what it forks inherit that they
-    # are deaf to it: who submits the calls ends them.
-    # The tracker, which it starts if there is none, would have this thread hear it again.
+    # Ctrl-C reaches all processes of a terminal. The server and what it forks inherit
+    # that they are deaf to it: who submits the calls ends them. The tracker, which it
+    # starts if there is none, would have this thread hear it again.
     resource_tracker.ensure_running()
     heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -138,7 +148,12 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
         For a text that names none, or a cluster that cannot be reached.
     """
     kind, colon, rest = on.partition(":")
-    count = int(rest) if rest.isdecimal() else 0 if colon else processors()
+    if rest.isdecimal():
+        count = int(rest)
+    elif colon:
+        count = 0
+    else:
+        count = processors()
     if on.startswith(DASK) and on != DASK:
         with _cluster(on.removeprefix(DASK)) as executor:
             yield executor
@@ -149,7 +164,9 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
         finally:
             executor.shutdown(cancel_futures=True)
     else:
-        raise SettingError("--on", on, FORMS, f"name one, with at most {MOST_PROCESSES} processes")
+        raise SettingError(
+            "--on", on, FORMS, f"name one, with at most {MOST_PROCESSES} processes"
+        )
 
 
 @contextmanager
@@ -160,7 +177,8 @@ def _cluster(address: str) -> Iterator[Executor]:
     except ModuleNotFoundError as missing:
         remedy = f"{missing.name} is not here: pip install 'slipfront[cluster]'"
         raise SettingError("--on", DASK + address, FORMS, remedy) from None
-    # A scheduler that is gone is told in a line; the client logs it with its traceback besides.
+    # A scheduler that is gone is told in a line; the client logs it with its traceback
+    # besides.
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     host, _, port = address.rpartition(":")
     try:

@@ -30,7 +30,8 @@ from solver.study.quantities.quantity import Quantity
 
 MOST_POINTS = 20_000
 """Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
-STUCK, LOST = "stuck", "lost"
+STUCK = "stuck"
+LOST = "lost"
 """How a run ends whose process was ended: by its time limit, or by something else."""
 FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 
@@ -39,8 +40,8 @@ FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 class Varied:
     """A setting and the values that it takes, each once; numbers ascend.
 
-    The unit is in SI, empty for a pure number; `logarithmic` is whether values are spread evenly
-    over decades.
+    The unit is in SI, empty for a pure number; `logarithmic` is whether values are
+    spread evenly over decades.
     """
 
     name: str
@@ -58,20 +59,24 @@ class Varied:
     def names(self) -> tuple[str, ...]:
         """The values where they are no numbers, none otherwise."""
         words = {True: "on", False: "off"}
-        return () if self.is_numeric else tuple(words.get(value, value) for value in self.values)
+        if self.is_numeric:
+            return ()
+        return tuple(words.get(value, value) for value in self.values)
 
     @property
     def places(self) -> Array:
         """Where the values stand on an axis: names one after the other."""
-        return np.array(self.values if self.is_numeric else range(len(self.values)), dtype=float)
+        return np.array(
+            self.values if self.is_numeric else range(len(self.values)), dtype=float
+        )
 
 
 @dataclass(frozen=True)
 class Plan:
     """One or two axes, everything else fixed; points are numbered, the last axis fastest.
 
-    Of a number and names the number is the first axis. `of` are names of what is taken of every
-    run, at least one.
+    Of a number and names the number is the first axis. `of` are names of what is taken
+    of every run, at least one.
     """
 
     settings: Settings
@@ -102,7 +107,8 @@ class Plan:
         """Values of what varies at a point, by the setting's name."""
         places = np.unravel_index(number, self.shape)
         return {
-            axis.name: axis.values[place] for axis, place in zip(self.axes, places, strict=True)
+            axis.name: axis.values[place]
+            for axis, place in zip(self.axes, places, strict=True)
         }
 
     def settings_at(self, number: int) -> Settings:
@@ -128,13 +134,13 @@ class Row:
     Attributes
     ----------
     ending, reason
-        `converged` and the other ways in which a run ends, why, and what to try; `refused` where
-        its settings do not fit together, `broken` where the engine failed, `stuck` and `lost` where
-        its process was ended.
+        `converged` and the other ways in which a run ends, why, and what to try;
+        `refused` where its settings do not fit together, `broken` where the engine
+        failed, `stuck` and `lost` where its process was ended.
     values
-        Of the readings of the plan, in their units: NaN where the run has none, infinity for
-        never. Those of a run that has not converged are what it had come to, and NaN where some of
-        its instants have no solution.
+        Of the readings of the plan, in their units: NaN where the run has none,
+        infinity for never. Those of a run that has not converged are what it had come
+        to, and NaN where some of its instants have no solution.
     seconds
         With its problem, its reference and its readings.
     """
@@ -156,17 +162,25 @@ class Row:
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
     """Plan of texts as `--vary` (one or two of `FORM`) and `--of` take them, or `SettingError`."""
     if not 1 <= len(vary) <= 2:
-        raise SettingError("--vary", list(vary), f"one or two of {FORM}", "vary one or two")
+        raise SettingError(
+            "--vary", list(vary), f"one or two of {FORM}", "vary one or two"
+        )
     if not of:
         raise SettingError("--of", list(of), "names of quantities", "name at least one")
     axes = [axis_of(settings, text) for text in vary]
     if len({axis.name for axis in axes}) < len(axes):
-        raise SettingError("--vary", list(vary), "two settings", "vary each of them once")
+        raise SettingError(
+            "--vary", list(vary), "two settings", "vary each of them once"
+        )
     axes.sort(key=lambda axis: not axis.is_numeric)
-    plan = Plan(settings, tuple(axes), tuple(dict.fromkeys(reading(name).name for name in of)))
+    plan = Plan(
+        settings, tuple(axes), tuple(dict.fromkeys(reading(name).name for name in of))
+    )
     if plan.size > MOST_POINTS:
         few = f"at most {MOST_POINTS} runs"
-        raise SettingError("--vary", list(vary), few, f"these are {plan.size}: take fewer values")
+        raise SettingError(
+            "--vary", list(vary), few, f"these are {plan.size}: take fewer values"
+        )
     return plan
 
 
@@ -181,13 +195,19 @@ def axis_of(settings: Settings, text: str) -> Varied:
     if ":" in values:
         found, logarithmic = _range(definitions[name], name, values)
     else:
-        found, logarithmic = [parse(value.strip()) for value in values.split(",")], False
+        found = [parse(value.strip()) for value in values.split(",")]
+        logarithmic = False
     for end in (found[-1], found[0]):
         # What was typed is refused before what lies between.
         checked_value(definitions[name], name, end)
-    checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
-    ordered = sorted(checked) if isinstance(definitions[name], param.Number) else checked
-    title, unit = title_of(definitions[name]), about(definitions[name]).unit
+    checked = dict.fromkeys(
+        checked_value(definitions[name], name, value) for value in found
+    )
+    ordered = list(checked)
+    if isinstance(definitions[name], param.Number):
+        ordered.sort()
+    title = title_of(definitions[name])
+    unit = about(definitions[name]).unit
     return Varied(name, title, unit, tuple(ordered), logarithmic)
 
 
@@ -195,11 +215,15 @@ def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], b
     """Values spread over a range, and whether over decades."""
 
     def refuse(remedy: str) -> SettingError:
-        return SettingError(name, text, f"LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, {within}", remedy)
+        return SettingError(
+            name, text, f"LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, {within}", remedy
+        )
 
     within = f"within {allowed(definition)}"
     if not isinstance(definition, param.Number):
-        raise SettingError(name, text, allowed(definition), "list its values, commas between them")
+        raise SettingError(
+            name, text, allowed(definition), "list its values, commas between them"
+        )
     *numbers, last = text.split(":")
     logarithmic = last == "log"
     try:

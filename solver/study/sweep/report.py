@@ -38,11 +38,13 @@ DECADES = 30.0
 """Ratio of the largest to the smallest value from which a chart is logarithmic."""
 MARGIN = 0.06
 """Share of an axis that lies beyond the values on either side."""
-NEVER, NONE = "never", "none: a run with these settings has no such value"
+NEVER = "never"
+NONE = "none: a run with these settings has no such value"
 Text = Callable[[float, str], str]
 """A value and its unit as a text."""
 AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
-OWN, NEIGHBOURS = "own", "neighbour's"
+OWN = "own"
+NEIGHBOURS = "neighbour's"
 CAPTION = (
     "Hollow points and hatched cells are of runs that have not converged, crosses of runs without "
     "a value."
@@ -68,27 +70,49 @@ def chart_of(
 ) -> Chart:
     """Chart of the reading at a place, whatever has come of the plan so far, in SI.
 
-    Its values are on a logarithmic scale as is said, or where they go over several decades.
+    Its values are on a logarithmic scale as is said, or where they go over several
+    decades.
     """
     across, *up = plan.axes
-    quantity, runs = plan.readings[place], _runs(plan, rows, place, text)
+    quantity = plan.readings[place]
+    runs = _runs(plan, rows, place, text)
     z = _measure(plan, place)[0] * grid(plan, rows, place).T
-    known = z[np.isfinite(z)] if is_map(plan) else runs.y[np.isfinite(runs.y)]
+    if is_map(plan):
+        known = z[np.isfinite(z)]
+    else:
+        known = runs.y[np.isfinite(runs.y)]
     if logarithmic is None:
         wide = bool(known.size and 0.0 < DECADES * known.min() < known.max())
     else:
         # Nothing that is zero or less stands on a logarithmic axis.
         wide = logarithmic and bool((known > 0.0).any())
     scale = PanelAxis(quantity.title, _measure(plan, place)[1], wide)
-    axes = [PanelAxis(of.title, of.unit, of.logarithmic, names=of.names) for of in plan.axes]
+    axes = [
+        PanelAxis(of.title, of.unit, of.logarithmic, names=of.names) for of in plan.axes
+    ]
     if is_map(plan):
-        z = np.where(z > 0.0, z, np.nan) if wide else z
-        return Map(quantity.title, axes[0], axes[1], across.places, up[0].places, scale, z, runs)
+        if wide:
+            z = np.where(z > 0.0, z, np.nan)
+        else:
+            z = z
+        return Map(
+            quantity.title,
+            axes[0],
+            axes[1],
+            across.places,
+            up[0].places,
+            scale,
+            z,
+            runs,
+        )
     curves = []
     for hue, label in enumerate(_texts(up[0], text) if up else [""], start=1):
         own = np.flatnonzero(runs.hues == hue)
         # Nothing lies between names.
-        own = own[np.argsort(runs.x[own])] if across.is_numeric else own[:0]
+        if across.is_numeric:
+            own = own[np.argsort(runs.x[own])]
+        else:
+            own = own[:0]
         y = np.where(runs.holds[own], runs.y[own], np.nan)
         curves.append(PanelCurve(label, runs.x[own], y, hue))
     x_axis = replace(axes[0], limits=_limits(across.places, axes[0]))
@@ -99,7 +123,9 @@ def chart_of(
 def is_map(plan: Plan) -> bool:
     """Whether a plan makes a map: two numbers, the second one of many values."""
     across, *up = plan.axes
-    return across.is_numeric and any(one.is_numeric and len(one.values) > MOST_CURVES for one in up)
+    return across.is_numeric and any(
+        one.is_numeric and len(one.values) > MOST_CURVES for one in up
+    )
 
 
 def grid(plan: Plan, rows: Sequence[Row], place: int) -> Array:
@@ -116,7 +142,8 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
     known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
         return (0.0, 1.0)
-    low, high = float(known.min()), float(known.max())
+    low = float(known.min())
+    high = float(known.max())
     if axis.names:
         return (low - 0.5, high + 0.5)
     if axis.logarithmic:
@@ -136,11 +163,21 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
     texts = [_texts(axis, text) for axis in axes]
     messages = []
     for row, value, at in zip(rows, values, zip(*levels, strict=True), strict=True):
-        point = ", ".join(of_axis[level] for of_axis, level in zip(texts, at, strict=True))
-        number = text(value, unit) if math.isfinite(value) else ""
+        point = ", ".join(
+            of_axis[level] for of_axis, level in zip(texts, at, strict=True)
+        )
+        if math.isfinite(value):
+            number = text(value, unit)
+        else:
+            number = ""
         reason = ": ".join(filter(None, (row.ending, row.reason)))
         if row.holds:
-            reason = NEVER if math.isinf(value) else NONE if math.isnan(value) else ""
+            if math.isinf(value):
+                reason = NEVER
+            elif math.isnan(value):
+                reason = NONE
+            else:
+                reason = ""
         messages.append(f"{point}: {'; '.join(filter(None, (number, reason)))}")
     values[~np.isfinite(values)] = np.nan
     return Runs(
@@ -162,7 +199,9 @@ def _texts(axis: Varied, text: Text) -> list[str]:
 def _measure(plan: Plan, place: int) -> tuple[float, str]:
     """Factor and unit of a reading: shares are in per cent."""
     quantity = plan.readings[place]
-    return (100.0, "%") if quantity.is_share else (1.0, quantity.unit)
+    if quantity.is_share:
+        return (100.0, "%")
+    return (1.0, quantity.unit)
 
 
 def counts(plan: Plan, rows: Sequence[Row]) -> str:
@@ -174,18 +213,25 @@ def counts(plan: Plan, rows: Sequence[Row]) -> str:
 
 def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
     """With which power of a setting over decades each reading grows, a line for every curve."""
-    (along, *others), lines = plan.axes, []
+    (along, *others) = plan.axes
+    lines = []
     if not along.logarithmic or any(axis.is_numeric for axis in others):
         return []
-    which = [f", {axis.name}={value}" for axis in others for value in axis.values] or [""]
+    which = [f", {axis.name}={value}" for axis in others for value in axis.values] or [
+        ""
+    ]
     for place, name in enumerate(plan.of):
         curves = grid(plan, rows, place).T.reshape(len(which), -1)
         for words, curve in zip(which, curves, strict=True):
             is_known = curve > 0.0
             if (count := is_known.sum()) > 1:
-                size, value = np.log([np.array(along.values)[is_known], curve[is_known]])
+                size, value = np.log(
+                    [np.array(along.values)[is_known], curve[is_known]]
+                )
                 power = np.polyfit(size, value, 1)[0]
-                lines.append(f"{name}{words}: {along.name}^{power:.2f}, of {count} runs")
+                lines.append(
+                    f"{name}{words}: {along.name}^{power:.2f}, of {count} runs"
+                )
     return lines
 
 
@@ -202,11 +248,18 @@ def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
     """Page of some rows, in the order of their points."""
     laws = growth(plan, rows)
     charts = [chart_of(plan, rows, place) for place in range(len(plan.of))]
-    table = [heads(plan), *([text_of(cell, 6) for cell in cells(plan, row)] for row in rows)]
+    table = [
+        heads(plan),
+        *([text_of(cell, 6) for cell in cells(plan, row)] for row in rows),
+    ]
     return [
         f"<p><b>{escape(counts(plan, rows))}</b></p>",
         PlotSection(f"Charts of {len(rows)} runs", charts),
-        *([] if all(row.holds for row in rows) else [f'<p class="caption">{CAPTION}</p>']),
+        *(
+            []
+            if all(row.holds for row in rows)
+            else [f'<p class="caption">{CAPTION}</p>']
+        ),
         *([f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}"] if laws else []),
         f"<h2>Every run</h2>\n{html_table(table)}",
         f"<h2>Settings</h2>\n{bullets(head(plan))}",
@@ -242,7 +295,9 @@ def lines_of(plan: Plan, rows: Sequence[Row]) -> str:
 def head(plan: Plan) -> list[str]:
     """What the columns are, with all values of what varies, and what is fixed, in SI units."""
     shown: list[Varied | Quantity] = [*plan.axes, *plan.readings]
-    columns = [f"{c.name}: {c.title}" + (f" ({c.unit})" if c.unit else "") for c in shown]
+    columns = [
+        f"{c.name}: {c.title}" + (f" ({c.unit})" if c.unit else "") for c in shown
+    ]
     for place, axis in enumerate(plan.axes):
         columns[place] += ": " + ", ".join(map(str, axis.values))
     varied = {axis.name for axis in plan.axes}
@@ -250,7 +305,11 @@ def head(plan: Plan) -> list[str]:
         f"Slipfront, {plan.settings.scene}: {plan.size} runs; SI units",
         *columns,
         "settings of all runs:",
-        *(line for line in dump(plan.settings).splitlines() if line.split(" ")[0] not in varied),
+        *(
+            line
+            for line in dump(plan.settings).splitlines()
+            if line.split(" ")[0] not in varied
+        ),
     ]
 
 
@@ -261,7 +320,8 @@ def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
     """
     if not file.exists():
         return {}
-    text, empty = file.read_text(encoding="utf-8"), csv_of(plan, [])
+    text = file.read_text(encoding="utf-8")
+    empty = csv_of(plan, [])
     if not text.startswith(empty):
         folder = "a folder of the same sweep, or a new one"
         raise SettingError("--out", str(file.parent), folder, "name another")
@@ -269,7 +329,8 @@ def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
     rows = {}
     for number, *rest in csv.reader(io.StringIO(whole)):
         *values, ending, start, iterations, seconds, reason = rest[len(plan.axes) :]
-        numbers, is_warm = tuple(map(float, values)), start == NEIGHBOURS
+        numbers = tuple(map(float, values))
+        is_warm = start == NEIGHBOURS
         how = int(iterations), float(seconds), is_warm
         rows[int(number)] = Row(int(number), ending, reason, numbers, *how)
     return rows

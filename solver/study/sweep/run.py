@@ -28,18 +28,26 @@ from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
 from solver.settings.definitions import SettingError
-from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run, settle
+from solver.study.quantities.finished import (
+    BROKEN,
+    REFUSED,
+    FinishedRun,
+    finished_run,
+    settle,
+)
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
 WORKER = "versions of a worker"
 TOO_LONG = "It took longer than a run may; allow more with --limit."
 KEPT = 500
-"""Runs that a process keeps to start others from: a dozen lines of a chart of 41 x 41. Of the
-scenes as they are each takes 5 to 30 kB."""
+"""Runs that a process keeps to start others from: a dozen lines of a chart of 41 x 41.
+Of the scenes as they are each takes 5 to 30 kB."""
 _kept: dict[str, deque[tuple[tuple[float, ...], States]]] = {}
-"""Places of the runs of this process, of the last sweep, and what stuck, slipped and opened."""
+"""Places of the runs of this process, of the last sweep, and what stuck, slipped and
+opened."""
 AHEAD = 500
-"""Runs under way at once, done and waiting: more than there are workers, soon asked for."""
+"""Runs under way at once, done and waiting: more than there are workers, soon asked
+for."""
 PATIENCE = 0.2
 """Seconds between two looks at whether a sweep is still wanted."""
 
@@ -48,32 +56,42 @@ PATIENCE = 0.2
 def versions() -> str:
     """Versions of all that results depend on."""
     names = ("slipfront", "numpy", "scipy")
-    return ", ".join([*(f"{name} {version(name)}" for name in names), platform.python_version()])
+    return ", ".join(
+        [*(f"{name} {version(name)}" for name in names), platform.python_version()]
+    )
 
 
-def run(plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number: int) -> Row:
+def run(
+    plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number: int
+) -> Row:
     """Row of a point of a plan, with options of `sweep` and a name that no other sweep has.
 
-    `asked_by` are the versions of who asks; others are refused, as a result would be that of other
-    code.
+    `asked_by` are the versions of who asks; others are refused, as a result would be
+    that of other code.
     """
     if asked_by != versions():
         raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
     if any(reading.reads for reading in plan.readings):
         settle()
-    began, nothing = time.perf_counter(), (math.nan,) * len(plan.of)
+    began = time.perf_counter()
+    nothing = (math.nan,) * len(plan.of)
     # A run that diverges is told by its status.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
             finished = _from_nearest(plan, sweep, number, warm, began + limit)
             values = tuple(reading(finished) for reading in plan.readings)
-            status, iterations = finished.solution.status, finished.iterate.number
-            ending, reason = str(status.ending), status.advice
+            status = finished.solution.status
+            iterations = finished.iterate.number
+            ending = str(status.ending)
+            reason = status.advice
             if status.ending is Ending.CANCELLED:
-                ending, reason = STUCK, TOO_LONG
+                ending = STUCK
+                reason = TOO_LONG
             elif status.ending is Ending.CONVERGED:
                 reason = ""
-            row = Row(number, ending, reason, values, iterations, was_warm=finished.was_warm)
+            row = Row(
+                number, ending, reason, values, iterations, was_warm=finished.was_warm
+            )
         except RefusedError as refusal:
             row = Row(number, REFUSED, str(refusal), nothing)
         except Exception as trouble:  # whatever it is belongs in the table
@@ -81,7 +99,9 @@ def run(plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number:
     return replace(row, seconds=time.perf_counter() - began)
 
 
-def _from_nearest(plan: Plan, sweep: str, number: int, warm: bool, end: float) -> FinishedRun:
+def _from_nearest(
+    plan: Plan, sweep: str, number: int, warm: bool, end: float
+) -> FinishedRun:
     """Run a point, from the nearest that this process has done of a sweep; keep its states."""
     if sweep not in _kept:
         _kept.clear()
@@ -117,8 +137,9 @@ def sweep(
 ) -> Iterator[Row]:
     """Run points of a plan, from neighbour to neighbour, but for those that are done.
 
-    A run may take `limit` seconds, and starts, if `warm`, from the nearest one where no reading is
-    of how it went. `cancelled` is asked several times a second whether to end the sweep.
+    A run may take `limit` seconds, and starts, if `warm`, from the nearest one where no
+    reading is of how it went. `cancelled` is asked several times a second whether to
+    end the sweep.
 
     Yields
     ------
@@ -163,12 +184,16 @@ def _row(future: Future[Row], number: int, n_values: int) -> Row:
     except (SettingError, BrokenExecutor):
         raise
     except ImportError as trouble:
-        raise SettingError(WORKER, "others", versions(), f"it cannot run this: {trouble}") from None
+        raise SettingError(
+            WORKER, "others", versions(), f"it cannot run this: {trouble}"
+        ) from None
     except CancelledError:
         raise BrokenExecutor("the executor does not answer any more") from None
     except TimeoutError:
-        ending, reason = STUCK, TOO_LONG
+        ending = STUCK
+        reason = TOO_LONG
     except Exception as trouble:
         why = f"{type(trouble).__name__}: {trouble}"
-        ending, reason = LOST, f"Its process was ended ({why}); the same sweep tries it again."
+        ending = LOST
+        reason = f"Its process was ended ({why}); the same sweep tries it again."
     return Row(number, ending, reason, (math.nan,) * n_values)
