@@ -29,7 +29,7 @@ from solver.latin.status import (
     stalled,
     with_jump,
 )
-from solver.reference.distance import kkt_residual
+from solver.reference.distance import HIDDEN, kkt_residual
 from solver.refusal import check_range
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ class StopState:
         is_due = gives_up or (ends and status is None and iterate.number % SELDOM == 0)
         if self.estimate.is_proven or not is_due or iterate.indicator > SOLVED:
             return math.nan
-        return kkt_residual(iterate, iterate.problem)
+        return kkt_residual(iterate, iterate.problem, HIDDEN)
 
     def _billed(self, iterate: Iterate, began: float) -> float:
         """Seconds of the whole run, with those since `began`."""
