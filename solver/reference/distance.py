@@ -24,8 +24,9 @@ ELASTIC = 1e-4
 """Share of the forces inside elements that counts like a contact force: they leave so
 much more rounding. In slender bodies they are 1e5 times what acts on them."""
 HIDDEN = 100.0
-"""Largest size of forces over those that act: a body that nothing holds may be far
-away, and leaves rounding that would hide them all."""
+"""Largest size of forces over those that act, where displacements alone have to prove
+an answer: a body that nothing holds may be far away, and leaves rounding that would
+hide all that acts."""
 NOTHING = 1e-12
 """Share of the forces inside elements up to which contact forces and reactions are but
 rounding."""
@@ -186,13 +187,13 @@ def determinate_forces(problem: Problem) -> Flags:
     return np.asarray(moves[:, None] | slips)
 
 
-def kkt_residual(fields: Fields, problem: Problem) -> float:
+def kkt_residual(fields: Fields, problem: Problem, most: float = np.inf) -> float:
     """Largest violation of equilibrium, laws and what is prescribed, as a share of the forces.
 
     By the equations alone, at every instant, however the fields were found: relative to
     the largest contact force, or to a small share of what the displacement makes of
-    forces inside elements, which rounding is a share of; and to the load where all
-    vanish.
+    forces inside elements, which rounding is a share of, but to at most so many times
+    what acts; and to the load where all vanish.
     """
     displacement = fields.displacement / problem.scales.displacement
     force = fields.contact_force / problem.scales.force
@@ -208,7 +209,7 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     missing = inner - outer - all_jumps.T @ force
     unbalanced = missing[free]
     elastic = abs(stiffness) @ np.abs(displacement)
-    size = force_size(force, outer, elastic, missing[fixed])
+    size = force_size(force, outer, elastic, missing[fixed], most)
     rules = rules_of(problem)
     # Lengths become forces by the stiffness of the jump's own degrees of freedom.
     unit = abs(all_jumps) @ stiffness.diagonal()
@@ -226,11 +227,18 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     return largest
 
 
-def force_size(force: Array, outer: Array, elastic: Array, reaction: Array) -> float:
+def force_size(
+    force: Array,
+    outer: Array,
+    elastic: Array,
+    reaction: Array,
+    most: float,
+) -> float:
     """Size that violations of forces are a share of, scaled.
 
     By contact forces, loads, the parts of forces inside elements without signs, and
-    reactions of what is held; each of shape (n, n_instants).
+    reactions of what is held; each of shape (n, n_instants). It is at most so many
+    times what acts.
     """
     sizes = [force, ELASTIC * outer, ELASTIC * elastic]
     size = max(float(np.abs(part).max(initial=0.0)) for part in sizes)
@@ -240,7 +248,7 @@ def force_size(force: Array, outer: Array, elastic: Array, reaction: Array) -> f
     if carried > NOTHING * float(elastic.max(initial=0.0)):
         acting = max(acting, carried)
     if acting > 0.0:
-        return min(size, HIDDEN * acting)
+        return min(size, most * acting)
     return size
 
 

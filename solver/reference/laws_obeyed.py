@@ -20,7 +20,7 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
 from solver.laws import Contact, Dirichlet, Neumann, Perfect
 from solver.laws.interface import Component
-from solver.reference.distance import Fields, force_size
+from solver.reference.distance import HIDDEN, Fields, force_size
 
 ROUNDED = 1e-4
 """Share of the displacement that counts as a size of jumps: it leaves rounding, and may
@@ -106,7 +106,7 @@ def law_residuals(
     inner, elastic = _inner_force(problem, displacement)
     held, prescribed = _prescribed(problem)
     missing = inner - outer - _contact_force(problem, force)
-    size = force_size(force, outer, elastic, missing[held])
+    size = force_size(force, outer, elastic, missing[held], HIDDEN)
     points = list(_points(problem, displacement, force))
     jumps = [jump for point in points for jump in point.jumps]
     length_size = _largest(*jumps, ROUNDED * displacement)

@@ -65,6 +65,36 @@ def values_of(scene: str, row: int) -> dict[str, Any]:
     return values
 
 
+KINDS = {
+    "bar": ["left_end", "right_end", "linear_stage"],
+    "strand": ["grip"],
+    "block": ["left", "right", "top"],
+    "layers": ["bending"],
+}
+"""Settings of some scenes all kinds of which are to be drawn."""
+ROWS = 150
+
+
+@pytest.mark.parametrize("scene", sorted(set(CATALOGUE) - {"wall"}))
+def test_all_laws_of_friction_and_kinds_of_ends_and_sides_are_drawn(scene: str) -> None:
+    definitions = CATALOGUE[scene].definitions()
+    wanted = set()
+    for name in ["friction_law", *KINDS.get(scene, [])]:
+        wanted |= {(name, kind) for kind in definitions[name].objects}
+    for row in range(ROWS):
+        wanted -= set(draw(scene, 2, row).values().items())
+        if not wanted:
+            break
+    assert not wanted
+
+
+def test_walls_are_also_pulled_and_have_openings_and_laws_of_their_own() -> None:
+    walls = [draw("wall", 2, row) for row in range(10)]
+    assert {wall.top for wall in walls} == {"moved", "pulled"}
+    assert {wall.opening > 0 for wall in walls} == {False, True}
+    assert len({wall.friction_law for wall in walls}) > 1
+
+
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_any_run_is_right_or_says_that_it_is_not_or_is_refused(scene: str) -> None:
     for row in range(RUNS):

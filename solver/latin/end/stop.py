@@ -32,7 +32,7 @@ from solver.latin.end.status import (
 )
 from solver.latin.iterate import Iterate
 from solver.latin.stages.pgd import PGD
-from solver.reference.distance import kkt_residual
+from solver.reference.distance import HIDDEN, kkt_residual
 
 if TYPE_CHECKING:
     from solver.latin.method import Latin
@@ -200,7 +200,7 @@ class StopState:
         if self.estimate.is_proven or not is_due or iterate.indicator > SOLVED:
             return math.nan
         if is_judged:
-            return kkt_residual(iterate, problem)
+            return kkt_residual(iterate, problem, HIDDEN)
         return math.nan
 
     def _billed(self, iterate: Iterate, began: float) -> float:
