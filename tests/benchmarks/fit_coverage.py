@@ -1,7 +1,7 @@
 """How often what made a loop is within two standard errors of what a fit calls known.
 
     python tests/benchmarks/fit_coverage.py 40            seeds 0 to 39 of all kinds
-    python tests/benchmarks/fit_coverage.py 40 20 young   seeds 20 to 39 of kinds with young
+    python tests/benchmarks/fit_coverage.py 40 20 young   20 to 39 of kinds with young
 
 A loop is made by a run of a small bar, to whose displacement noise of 1 % of its range
 is added. What the seed draws: the settings that made the loop, where the fit begins,
@@ -11,6 +11,7 @@ elements, and the noise.
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 import time
@@ -159,9 +160,18 @@ def share(hits: list[bool]) -> str:
     return f"{sum(hits)} = {100.0 * np.mean(hits):.1f} %"
 
 
-if __name__ == "__main__":
-    stop, begin, *words = [*sys.argv[1:], "40", "0"][: max(2, len(sys.argv) - 1)]
+def main() -> None:
+    """Print a line of each kind of loops."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("stop", nargs="?", type=int, default=40, help="last seed + 1")
+    parser.add_argument("begin", nargs="?", type=int, default=0, help="first seed")
+    parser.add_argument("fitted", nargs="*", help="settings that a kind has to have")
+    given = parser.parse_args()
     print("; ".join(HEAD))
     for kind in KINDS:
-        if all(word in kind for word in words):
-            print("; ".join(measure(kind, range(int(begin), int(stop)))), flush=True)
+        if all(name in kind for name in given.fitted):
+            print("; ".join(measure(kind, range(given.begin, given.stop))), flush=True)
+
+
+if __name__ == "__main__":
+    main()
