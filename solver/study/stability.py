@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import math
 import shlex
+import time
 import tomllib
 import warnings
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from html import escape
@@ -39,6 +40,9 @@ from solver.study.quantities.finished import (
 )
 
 CASES = Path(__file__).with_name("stability_cases.toml")
+LONGEST = 60.0
+"""Seconds after which a run is ended, and its reference given up: one that takes longer
+counts as unsolved, and keeps nobody from the other rows."""
 
 
 class Verdict(StrEnum):
@@ -232,13 +236,20 @@ def run(scene: str, values: Mapping[str, object]) -> Outcome:
         warnings.simplefilter("error")
         try:
             settings = CATALOGUE[scene].checked(values)
-            return _measured(
-                finished_run(settings, errors=False, indicators=False).solution
+            finished = finished_run(
+                settings, errors=False, indicators=False, cancelled=_alarm()
             )
+            return _measured(finished.solution)
         except RefusedError as refusal:
             return Outcome(REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
             return Outcome(BROKEN, f"{type(trouble).__name__}: {trouble}")
+
+
+def _alarm() -> Callable[[], bool]:
+    """Clock that says, when it is asked, whether `LONGEST` seconds have gone."""
+    end = time.perf_counter() + LONGEST
+    return lambda: time.perf_counter() > end
 
 
 def _measured(solution: Solution) -> Outcome:
@@ -253,23 +264,17 @@ def _measured(solution: Solution) -> Outcome:
         return Outcome(BROKEN, "not all fields are finite", iterations=iterate.number)
     rows = RowFields(iterate.boundary_displacement, iterate.boundary_force)
     laws = law_residuals(iterate, problem, rows)
-    reference, doubt, _ = known_reference(problem)
-    if reference is None:
-        distance = None
-    else:
+    reference, doubt, _ = known_reference(problem, _alarm())
+    distance = None
+    of_reference = None
+    error = math.nan
+    if reference is not None:
         distance = distance_to(reference, problem)
-    if reference is None:
-        of_reference = None
-    else:
         of_reference = law_residuals(reference, problem)
-    if distance:
         error = distance.of_friction_force(iterate)
-    else:
-        error = math.nan
+    last = None
     if solution.records:
         last = solution.records[-1]
-    else:
-        last = None
     return Outcome(
         status.ending,
         status.advice,
