@@ -27,6 +27,9 @@ from xdist.scheduler import LoadFileScheduling
 LONGEST_FIRST = (
     "test_journey_",
     "test_installed_as_in_the_container",
+    "test_measured_loops_are_fitted",
+    "test_closed_pages_are_let_go",
+    "test_forces_balance",
     "test_sweep_on_a_cluster",
     "test_converged_means_it",
     "test_engine_reaches_the_reference",
