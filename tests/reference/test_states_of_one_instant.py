@@ -168,9 +168,7 @@ def test_friction_that_grows_with_slip_is_its_tangent_at_the_slip_it_comes_to() 
 
 def test_a_caller_interrupts_before_a_system_is_solved() -> None:
     condensed = Condensation(rubbing_strands(np.random.default_rng(0), 2, 2))
-    system = LinearSystem(
-        condensed, condensed.stiffness, condensed.gauge, lambda: True
-    )
+    system = LinearSystem(condensed, condensed.stiffness, condensed.gauge, lambda: True)
     random = np.random.default_rng(0)
     states = np.zeros(len(condensed.rules.gap), dtype=np.int8)
     with pytest.raises(Interrupted):
@@ -318,9 +316,7 @@ def test_an_instant_once_more_adds_nothing() -> None:
     (part,) = of.substructures
     force = part.body_force
     assert force is not None
-    twice = substructure(
-        part.elasticity.stiffness, (0, 0), np.repeat(force, 2, axis=1)
-    )
+    twice = substructure(part.elasticity.stiffness, (0, 0), np.repeat(force, 2, axis=1))
     jump, found = marched(of)
     longer = problem([twice], dict(of.interfaces), 16)
     again, forces = marched(longer)
