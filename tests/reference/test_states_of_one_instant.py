@@ -1,4 +1,4 @@
-"""Jumps span displacements; a state is a linear system; Newton finds the right one; time is play."""
+"""Jumps span displacements; states make a linear system; Newton finds them; time is play."""
 
 from __future__ import annotations
 
