@@ -14,6 +14,7 @@ from solver.discrete.contacts import NO_SLIP, ContactGroup, contact_fields
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive, beyond, loads_at
 from solver.discrete.elements import SchurComplement
+from solver.discrete.plane.bricks import Brick
 from solver.discrete.plane.cut_stack import CutStack, ends_along
 from solver.discrete.plane.stack import Given, Side, Stack
 from solver.discrete.problem import Problem
@@ -99,6 +100,27 @@ def test_stiffness_of_a_rod_is_that_of_springs_in_series() -> None:
     found = reference_of(problem).displacement[-1]
     assert found == pytest.approx(compliance * 1e3 * np.sin(6.0 * INSTANTS), rel=1e-10)
     assert compliance == pytest.approx(2.0 / 3e4)
+
+
+def test_a_rod_that_is_heated_is_longer_by_its_strain_and_pulls_where_it_is_held() -> (
+    None
+):
+    strain = np.tile(1e-3 * INSTANTS, (12, 1))
+    held = End(displacement=0.0 * INSTANTS)
+    plain = {"bound": np.zeros(13), "body_force": None, "strain": strain}
+    free = rods(3, left=held, right=End(), **plain).discretise()
+    ends = reference_of(free).displacement[-1]
+    assert ends == pytest.approx(2.0 * 1e-3 * INSTANTS, rel=1e-10)
+
+
+def test_a_support_that_settles_moves_no_rod_that_does_not_rub() -> None:
+    settlement = 1e-4 * np.random.default_rng(2).normal(size=(13, 5))
+    still = rods(3, bound=np.zeros(13)).discretise()
+    moved = rods(3, bound=np.zeros(13), settlement=settlement).discretise()
+    assert np.abs(reference_of(moved).displacement).max() > 0.0
+    assert moved.at_rest(reference_of(moved).displacement) == pytest.approx(
+        reference_of(still).displacement, abs=1e-14
+    )
 
 
 def test_cuts_of_rods_are_opposite_rows_of_one_degree_of_freedom() -> None:
@@ -187,6 +209,24 @@ def test_tractions_and_weight_add_up_to_their_resultants() -> None:
     area = stack.length * stack.height
     wanted = top * stack.length + stack.body_force * area
     assert close(total * problem.scales.force, wanted)
+
+
+def test_a_side_is_loaded_where_bodies_reach_farthest_and_not_beside_them() -> None:
+    pull = np.linspace(0.0, 1e5, 17)
+    still = np.zeros(17)
+    left = Side(Given(False, pull), Given(False, still))
+    stack = replace(
+        block(elements=(6, 4), bodies=2, left=left),
+        bricks=[Brick(0, 0, 6, 4), Brick(3, 4, 3, 4)],
+    )
+    problem = stack.discretise()
+    inside = problem.inside
+    assert inside is not None
+    top = stack.sides["top"].x.mean
+    # Where the lower body stands out below the upper one its top lies open, too.
+    along = external_force(problem)[inside.components == 0].sum(axis=0)
+    wanted = pull * stack.height + top * stack.length
+    assert close(along * problem.scales.force, wanted)
 
 
 def test_substructures_end_at_cuts_and_where_bodies_end() -> None:
@@ -327,6 +367,10 @@ def test_contacts_put_together_show_what_each_shows(opens: bool) -> None:
         both.status(displacement, force),
         np.concatenate([one.status(displacement, force) for one in alone]),
     )
+    first = both.slip(displacement, force)[:, 0]
+    start = np.repeat([0.1, -0.2], [3, 4])
+    sliders = displacement[[0, 1, 2, 6, 7, 8, 9], 0]
+    assert first == pytest.approx(sliders - start, abs=1e-15)
     values = random.normal(size=(7, 6))
     parts = values[:3], values[3:]
     assert both.largest(values) == pytest.approx([part.max() for part in parts])

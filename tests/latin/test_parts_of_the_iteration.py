@@ -39,12 +39,13 @@ from solver.latin.indicators import (
 from solver.latin.stages.blocks import Blocks
 from solver.latin.stages.linear import LinearStage
 from solver.latin.start import prolong
+from solver.laws import OPEN
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 
 SCENES = {
-    "bar": {"elements": 20, "instants": 11, "substructures": 4},
+    "bar": {"elements": 20, "instants": 11, "substructures": 4, "body_force": 500.0},
     "strand": {"elements": 8, "instants": 9},
     "block": {"elements": 8, "elements_up": 4, "instants": 9},
 }
@@ -316,6 +317,26 @@ def test_statuses_of_a_certified_solution_are_those_of_the_reference(
     assert np.mean(status != wanted) <= 0.01
 
 
+def test_how_far_an_open_point_moves_does_not_say_what_slips_where_it_touches() -> None:
+    """A slip that stages differ by is one beside the largest of those that touch."""
+    of = on_a_support(np.random.default_rng(0), 2, 0.3, instants=1, gap=0.0)
+    moved = np.array([[100.0], [1.0], [0.5], [0.0]])
+    force = np.array([[0.0], [0.0], [-0.3], [1.0]])
+    linear = moved - np.array([[0.0], [0.0], [0.6], [0.0]])
+    iterate = Iterate(
+        number=1,
+        seconds=0.0,
+        problem=of,
+        k=np.ones(4),
+        outgoing=linear + force,
+        incoming=linear - force,
+        local_displacement=moved,
+        local_incoming=moved - force,
+    )
+    assert contact_status(iterate).tolist() == [[OPEN], [1]]
+    assert contact_status(iterate, 10.0).tolist() == [[OPEN], [0]]
+
+
 def test_a_ratio_of_nothing_to_nothing_is_zero_and_of_something_infinite() -> None:
     assert ratio(0.0, 0.0) == 0.0
     assert ratio(1.0, 0.0) == np.inf
@@ -338,7 +359,10 @@ def test_a_certified_solution_is_a_fixed_point_of_the_method_for_every_k(
     assert np.array_equal(after.k, iterate.k)
     assert close(after.outgoing, iterate.outgoing, 1e-9)
     assert close(after.contact_force, certificate(scene).solution.contact_force, 1e-8)
-    assert after.number == iterate.number + 1
+    assert (iterate.number, after.number) == (1, 2)
+    again = finished(of, scale * of.direction, certificate(scene), after)
+    assert again.number == 3
+    assert np.array_equal(again.outgoing, iterate.outgoing)
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -391,7 +415,7 @@ def test_prolonged_to_its_own_mesh_a_solution_is_where_the_method_rests(
 
 def test_what_a_coarse_mesh_represents_a_fine_one_begins_with_exactly() -> None:
     """A bar without friction is stretched evenly: on any mesh the same."""
-    values = {**SCENES["bar"], "friction": 0.0}
+    values = {**SCENES["bar"], "friction": 0.0, "body_force": 0.0}
     fine = discretise(CATALOGUE["bar"].checked({**values, "elements": 40}))
     coarse = discretise(CATALOGUE["bar"].checked({**values, "substructures": 1}))
     k = fine.direction

@@ -192,6 +192,8 @@ def test_a_local_stage_obeys_coulombs_law_and_action_is_reaction(
         assert (opening > 0.1).any()
     bound = tangential.allowed(pressing, slip)
     assert np.all(np.abs(friction) <= bound + 1e-12)
+    if tangential.cap is not None:
+        assert np.all(np.abs(friction) <= tangential.cap[:, None] + 1e-12)
     # What slips carries its bound, against the slip.
     assert bound * np.abs(slip) + friction * slip == pytest.approx(
         np.zeros((PAIRS, TIMES)), abs=1e-11
@@ -219,6 +221,12 @@ def test_what_is_beside_a_local_stage_violates_the_law(two: bool, opens: bool) -
     weaker = force.copy()
     weaker[law.tangent.above] *= 0.5
     assert law.behaviour(displacement, weaker, 0.0).violation(1.0, 1.0).max() > 0.01
+    still = law.behaviour(np.zeros_like(displacement), 3.0 * force, 0.0)
+    assert not still.slip.any()
+    if law.normal is None:
+        excess = np.maximum(np.abs(still.friction) - still.bound, 0.0)
+        assert still.violation(2.0, 1.0) == pytest.approx(2.0 * excess)
+        assert excess.max() > 0.01
     if law.normal is not None:
         pulled = force.copy()
         pulled[law.normal.component.above] -= 0.5
@@ -331,7 +339,7 @@ def test_a_body_on_its_image_rubs_as_one_of_two_that_move_the_opposite_way(
 
 
 def test_friction_of_a_law_has_no_units_but_those_of_its_scales() -> None:
-    law = FrictionLaw(stiffness=2e9, cohesion=3e3, cap=8e3, strength=FALLING)
+    law = FrictionLaw(stiffness=2e9, cohesion=3e3, cap=4e3, strength=FALLING)
     weights = np.array([0.1, 0.2, 0.3, 0.4])
     length, force = 1e-3, 1e2
     along = law.at(
@@ -340,7 +348,7 @@ def test_friction_of_a_law_has_no_units_but_those_of_its_scales() -> None:
     pressing = np.full((4, 2), 5e2)
     slip = np.array([[0.0, 1e-3]]).repeat(4, axis=0)
     found = along.allowed(pressing / force, slip / length) * force
-    before = np.minimum(3e3 * weights[:, None] + 0.3 * pressing, 8e3 * weights[:, None])
+    before = np.minimum(3e3 * weights[:, None] + 0.3 * pressing, 4e3 * weights[:, None])
     assert found == pytest.approx(before * FALLING(np.cumsum(slip, axis=1)))
     assert law.without_slip(0.3 * 5e2, weights[0]) == pytest.approx(before[0, 0])
     spring = softness_of(law.stiffness, weights, (length, force))

@@ -255,6 +255,9 @@ def test_springs_that_soften_lead_to_the_solution_from_any_states(seed: int) -> 
     found = newton.follow(wrong, sides, newton.approach(wrong, sides))
     assert found is not None
     assert np.array_equal(found.states, only[0])
+    # At last the springs carry nothing.
+    *_, last = newton.approach(wrong, sides)
+    assert last.step.jump == pytest.approx(only[1], abs=1e-11)
 
 
 # Instants
@@ -308,6 +311,14 @@ def test_one_point_that_opens_is_play_with_the_pressing_force_for_its_reach(
     assert jump == pytest.approx(np.array([across, along]), abs=1e-12)
     assert found[0] == pytest.approx(pressing, abs=1e-12)
     assert found[1] == pytest.approx(3.0 * along - force[0], abs=1e-12)
+
+
+def test_a_point_is_lifted_off_by_any_pull() -> None:
+    force = np.zeros((2, 41))
+    force[1] = np.linspace(-0.2, 0.2, 41)
+    jump, found = marched(single(3.0, 2.0, 0.0, 0.4, force))
+    assert jump[0] == pytest.approx(np.maximum(force[1], 0.0) / 2.0, abs=1e-14)
+    assert found[0] == pytest.approx(np.maximum(-force[1], 0.0), abs=1e-14)
 
 
 def test_an_instant_once_more_adds_nothing() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -34,7 +36,7 @@ def sampled(function, edges: np.ndarray) -> np.ndarray:
     return np.array(
         [
             function(first + (last - first) * (np.arange(count) + 0.5) / count).mean()
-            for first, last in zip(edges[:-1], edges[1:], strict=True)
+            for first, last in pairwise(edges)
         ]
     )
 
@@ -111,10 +113,11 @@ def test_a_gap_at_nodes_is_nowhere_larger_than_its_table_and_as_low_at_its_lowes
 def test_a_slope_that_nodes_tell_stays_and_a_spike_goes_to_the_nearer_node() -> None:
     slope = [[0.0, 1.0], [1.1, 2.1], [2.0, 3.0]]
     assert gap_at(slope, NODES) == pytest.approx(1.0 + NODES)
-    spike = [[0.0, 1.0], [0.55, 1.0], [0.6, 0.0], [0.65, 1.0], [2.0, 1.0]]
-    wanted = np.ones(9)
-    wanted[2] = 0.0
-    assert gap_at(spike, NODES) == pytest.approx(wanted)
+    for spike, node in ((0.6, 2), (0.7, 3)):
+        points = [[0.0, 1.0], [0.55, 1.0], [spike, 0.0], [0.74, 1.0], [2.0, 1.0]]
+        wanted = np.ones(9)
+        wanted[node] = 0.0
+        assert gap_at(points, NODES) == pytest.approx(wanted)
 
 
 def test_points_are_off_what_nodes_see_by_their_height_over_the_line() -> None:
