@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -11,9 +11,7 @@ from scipy import sparse
 from solver.arrays import Array, Indices, as_slice, sparse_factor
 from solver.discrete.problem import Problem
 from solver.latin.stages.blocks import Blocks
-
-if TYPE_CHECKING:
-    from solver.latin.stages.linear import Group
+from solver.latin.stages.group import Group
 
 DENSE_UP_TO = 50
 """Macro unknowns up to which one dense product is no slower than the sparse factor

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint
-from solver.latin.stages.blocks import ALL, Blocks
+from solver.latin.stages.blocks import Blocks
 from solver.latin.stages.coarse import CoarseProblem
-from solver.latin.stages.response import response_of
+from solver.latin.stages.group import Group
+from solver.latin.stages.pgd import PGD
 from solver.reduction.basis import SharedBasis
-
-if TYPE_CHECKING:
-    from solver.latin.stages.pgd import PGD
 
 
 @dataclass(frozen=True)
@@ -105,87 +102,6 @@ class LinearStage:
                 work(group, instants)
 
         self._blocks.each(of_block)
-
-
-class Group:
-    """Identical substructures with the same k, which share one operator.
-
-    Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous
-    in space: the `state` y in full, changed in place; the `target` that it is brought
-    to; and `body`, W_f, None without body forces. `rows` are the boundary rows,
-    (n_boundary, n_substructures).
-    """
-
-    state: Array
-
-    def __init__(self, problem: Problem, numbers: list[int], k: Array) -> None:
-        self.numbers = numbers
-        parts = [problem.substructures[number] for number in numbers]
-        self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
-        self.k: Array = k[self.rows[:, 0]]
-        self._n_instants = problem.n_instants
-        self.response = response_of(parts[0].elasticity, self.k)
-        self.body: Array | None = None
-        if any(part.body_force is not None for part in parts):
-            self.body = self.field()
-            for member, part in enumerate(parts):
-                if part.body_force is not None:
-                    self.body[:, member] = self.response.of_body_force(part.body_force)
-        self.target = self.field()
-        self._reflected = self.field()
-        self._order = np.ascontiguousarray(self.rows.T.ravel())
-
-    def field(self) -> Array:
-        """Allocate a zero field of the group."""
-        return np.zeros((*self.rows.shape, self._n_instants), order="F")
-
-    def gather(self, field: Array, instants: slice) -> None:
-        """Make the group's rows of a boundary field its target, at some instants."""
-        flat = self.target.T.reshape(self._n_instants, -1)[instants]
-        np.take(field.T[instants], self._order, axis=1, out=flat, mode="clip")
-
-    def scatter(self, values: Array, field: Array, instants: slice = ALL) -> None:
-        """Write a field of the group into the rows of a boundary field, at some instants."""
-        field.T[instants, self._order] = values.T.reshape(self._n_instants, -1)[
-            instants
-        ]
-
-    def go_to(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the state of a checkpoint, or that in which all is zero."""
-        self.state = self.field()
-        if checkpoint is not None:
-            self.state[:] = checkpoint.outgoing[self.rows]
-
-    def outgoing(self) -> Array:
-        """W + F/k, a field of the group."""
-        return self.state
-
-    def relax(self, relaxation: float, instants: slice) -> None:
-        """Mix the target into the state, at some instants."""
-        old = self.state[:, :, instants]
-        target = self.target[:, :, instants]
-        if relaxation == 1.0:
-            np.copyto(old, target)
-            return
-        np.subtract(target, old, out=target)
-        np.multiply(target, relaxation, out=target)
-        np.add(old, target, out=old)
-
-    def reflect(self, instants: slice) -> Array:
-        """W - F/k = 2 W - (W + F/k), up to date at some instants; the next call overwrites it."""
-        flat = (len(self.k), -1)
-        reflected = self._reflected[:, :, instants]
-        self.response.reflect(
-            self.state[:, :, instants].reshape(flat, order="F"),
-            reflected.reshape(flat, order="F"),
-        )
-        if self.body is not None:
-            reflected += 2.0 * self.body[:, :, instants]
-        return self._reflected
-
-    def bases(self) -> Iterator[tuple[int, SharedBasis]]:
-        """Separated bases, by number of the substructure."""
-        return iter(())
 
 
 def _alike(problem: Problem, k: Array) -> list[list[int]]:

@@ -17,7 +17,7 @@ from solver.arrays import Array
 from solver.checks import Count, Number, check
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint
-from solver.latin.stages.linear import Group
+from solver.latin.stages.group import Group
 from solver.reduction.basis import SeparatedBasis, SharedBasis, nearest_mode
 
 SHARE_EVERY = 10
