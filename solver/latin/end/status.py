@@ -1,30 +1,31 @@
-"""How a run ends: in a word, and what to try next in a sentence."""
+"""Endings of a run: status, advice on the next attempt, and the decision on an iterate."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 from solver.discrete.drives import beyond, loads_at
 from solver.discrete.problem import Problem
 from solver.latin.end.status_step import Certificate
 from solver.latin.iterate import Iterate
-from solver.latin.stages.pgd import PGD
 from solver.reference.limit_analysis import Collapse
 
-if TYPE_CHECKING:
-    from solver.latin.method import Latin
-
+AT_LIMIT = "The run has come to its limit"
+INACCURATE = "The contact force of the iterates is not accurate enough"
 UNPROVEN = "The contact force is not known to be accurate enough"
+ABOVE = "The LATIN indicator is still above its tolerance"
+"""Reasons why a run ends at its limit without convergence."""
 FAR = 0.1
-"""Error of the contact force from which on what a status step finds is not LATIN's
-own."""
+"""Relative error of the contact force of the last iterate, from which on the solution
+counts as the incremental solver's answer and not as LATIN's own."""
+RELAXED = 0.9
+"""Relaxation above which a smaller one is the first thing to try when a run stalls."""
 
 
 class Ending(StrEnum):
-    """How a run can end."""
+    """Kinds of ending of a run."""
 
     CONVERGED = "converged"
     EXHAUSTED = "exhausted"
@@ -35,10 +36,10 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True)
 class Status:
-    """The end of a run, in a word, and what to try next in a sentence.
+    """The end of a run: its kind in a word, and advice on the next attempt in a sentence.
 
-    `lost_from` is the first instant that has no solution, where some are known to have
-    none: what an iterate shows from there on is no state of the structure.
+    `lost_from` is the first instant that has no solution, if some are known to have
+    none. The fields of an iterate from that instant on are no state of the structure.
     """
 
     ending: Ending
@@ -48,11 +49,21 @@ class Status:
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """What the stop rules make of an iterate after so many seconds, their own included.
+    """Decision of the stop rules on an iterate.
 
-    The estimated error is NaN where it was not needed, the status None where the run
-    goes on, the certificate None until a status step has found the solution. Where the
-    run ends with that, `finished` is the iterate that it makes, and the decision on it.
+    Attributes
+    ----------
+    seconds
+        Time of the run so far, stop rules included, s.
+    estimated_error
+        Relative error of the contact force; NaN where it was not needed.
+    status
+        Ending of the run; None where it goes on.
+    certificate
+        The certified solution; None until a status step has found it.
+    finished
+        Where the run ends with the certified solution: that solution as an iterate, and
+        the decision on it.
     """
 
     seconds: float
@@ -110,26 +121,25 @@ _LONGER = "Give the run longer, or ask for less: fewer elements or instants, a l
 
 
 def collapses(problem: Problem, collapse: Collapse) -> Status:
-    """Status of a run whose loads no contact forces balance from a point of a path on."""
-    way = "slides away"
+    """Status of a run without equilibrium from a point of the load path on."""
+    motion = "slides away"
     remedy = "Lower the load, or raise friction or pressure."
     if collapse.tips:
-        way = "tips over"
+        motion = "tips over"
         remedy = "Lower the load, or make it wider, or press it more."
+    mesh = ""
     if problem.has_short_joints:
         mesh = f" {OF_MESH}"
-    else:
-        mesh = ""
     return Status(
         Ending.STALLED,
         f"There is no equilibrium {limit_of(problem, collapse)}: no contact forces within friction "
-        f"balance the loads, and the structure {way}. {remedy}{mesh}",
+        f"balance the loads, and the structure {motion}. {remedy}{mesh}",
         lost_from=collapse.instant,
     )
 
 
 def limit_of(problem: Problem, collapse: Collapse) -> str:
-    """Words on where an equilibrium ends: the loads that are carried, and when."""
+    """Words on the last equilibrium: the loads that are carried, and the time."""
     loads = beyond(problem.drives, collapse.instant, collapse.share)
     time = f"from {collapse.time:.4g} s on"
     if loads:
@@ -138,7 +148,7 @@ def limit_of(problem: Problem, collapse: Collapse) -> str:
 
 
 def jump_of(problem: Problem, instant: int) -> str:
-    """Words on where a structure jumps: the loads at the instant after it, and when."""
+    """Words on a jump of a structure: the loads at the instant after it, and the time."""
     loads = loads_at(problem.drives, instant)
     time = f"{problem.instants[instant]:.4g} s"
     if loads:
@@ -147,13 +157,13 @@ def jump_of(problem: Problem, instant: int) -> str:
 
 
 def lost_jump(problem: Problem, instant: int, lost_from: int) -> Status:
-    """Status of a run that jumps at an instant, and finds no equilibrium from another on."""
+    """Status of a run that jumps at an instant, and has no equilibrium from another on."""
     advice = _LOST_JUMP.format(jump_of(problem, instant))
     return Status(Ending.STALLED, advice, lost_from=lost_from)
 
 
 def diverged(iteration: int) -> Status:
-    """Status of a run whose numbers stopped being finite."""
+    """Status of a run whose fields stopped being finite."""
     return Status(
         Ending.DIVERGED,
         f"Numbers stopped being finite at iteration {iteration}, so that before it is kept. Lower "
@@ -166,33 +176,48 @@ def certified(
 ) -> Status:
     """Status of a run that ends with a certified solution.
 
-    `error` is that of the contact force of the last iterate before it, NaN without one;
-    `advice` what to try, of a search that had to end earlier.
+    Parameters
+    ----------
+    finish
+        The certified solution as an iterate.
+    certificate
+        Its proof.
+    error
+        Relative error of the contact force of the last iterate before; NaN without one.
+    advice
+        What to try next, for a search that had to end earlier.
     """
     message = f"{_CERTIFIED} (residual {finish.residual or 0.0:.0e})."
     if not math.isnan(error):
-        away = float(f"{100.0 * error:.2g}")
-        before = finish.number - 1
-        if error > FAR:
-            if error <= 1.0:
-                shown = f"{away:g}"
-            else:
-                shown = "more than 100"
-            message += _BY_INCREMENTS.format(before, shown)
-        elif finish.is_answer:
-            message += _SEARCHED.format(away)
-        else:
-            message += _FOUND.format(before, f"{away:g}")
-        message += f" {advice}" * bool(advice)
+        message += _way_to(finish, error)
+        if advice:
+            message += f" {advice}"
     return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
 
 
-def unprovable(status: Status, problem: Problem, latin: Latin) -> Status:
-    """Status that also says why there is no proof, where none can be had."""
+def _way_to(finish: Iterate, error: float) -> str:
+    """Sentence on the last iterate before a certified solution, with its relative error."""
+    before = finish.number - 1
+    percent = float(f"{100.0 * error:.2g}")
+    shown = f"{percent:g}"
+    if error > 1.0:
+        shown = "more than 100"
+    if error > FAR:
+        return _BY_INCREMENTS.format(before, shown)
+    if finish.is_answer:
+        return _SEARCHED.format(percent)
+    return _FOUND.format(before, shown)
+
+
+def unprovable(status: Status, problem: Problem, *, has_bases: bool) -> Status:
+    """Add to a status why there is no proof, where the problem has no reference.
+
+    `has_bases` says that the linear stage is on separated bases.
+    """
     if not problem.no_reference:
         return status
     advice = f"{status.advice} {problem.no_reference}"
-    if isinstance(latin.linear, PGD):
+    if has_bases:
         advice += " On separated bases no estimate counts: set linear to Full()."
     return replace(status, advice=advice)
 
@@ -200,7 +225,7 @@ def unprovable(status: Status, problem: Problem, latin: Latin) -> Status:
 def with_jump(
     status: Status, problem: Problem, certificate: Certificate | None
 ) -> Status:
-    """Status that also says when the certified solution jumps, if it does."""
+    """Add to a status when the certified solution jumps, if it does."""
     if certificate is None or certificate.solution.jumps_at is None:
         return status
     message = _JUMPED.format(jump_of(problem, certificate.solution.jumps_at))
@@ -208,7 +233,7 @@ def with_jump(
 
 
 def obeyed(residual: float) -> Status:
-    """Status of a run whose iterate is a solution, by the residual of the equations."""
+    """Status of a run whose iterate solves the equations by itself, up to a KKT residual."""
     return Status(
         Ending.CONVERGED,
         f"{_CERTIFIED} in this iterate itself, which no status step had to find (residual "
@@ -216,53 +241,73 @@ def obeyed(residual: float) -> Status:
     )
 
 
-def exhausted(latin: Latin, iterate: Iterate, *, is_proven: bool) -> Status:
-    """Status of a run at its limit, of iterations or seconds.
+@dataclass(frozen=True)
+class Remedies:
+    """Advice on a method that does not converge.
 
-    `is_proven` says whether the solution, and so the distance to it, is known.
+    Attributes
+    ----------
+    of_k
+        What helps against an unsuitable k, as part of a sentence.
+    of_bases
+        What helps against bases that are too small, as a sentence; empty for full
+        fields.
     """
-    stop = latin.stop
-    lack = "The run has come to its limit"
-    searches = latin.finish is not None and not latin.finish.at_once
-    if math.isfinite(stop.accuracy) and searches and is_proven:
-        lack = "The contact force of the iterates is not accurate enough"
-    elif iterate.indicator > stop.tolerance and not searches:
-        lack = "The LATIN indicator is still above its tolerance"
-    elif math.isfinite(stop.accuracy):
-        lack = UNPROVEN
-    of_k, of_bases = _remedies(latin)
-    remedy = of_bases or f"Raise max_iterations, or {of_k}."
-    return Status(
-        Ending.EXHAUSTED,
-        f"{lack}. {_LONGER if iterate.number < stop.iterations else remedy}",
-    )
+
+    of_k: str
+    of_bases: str
 
 
-def stalled(latin: Latin, lowest: float) -> Status:
-    """Status of a run whose LATIN indicator has stopped falling."""
-    of_k, of_bases = _remedies(latin)
-    advice = "The LATIN indicator has stopped falling. "
-    if lowest <= latin.stop.tolerance:
-        advice = (
-            f"{UNPROVEN}, though the LATIN indicator is low: k is far from what suits, or rigid "
-            f"motion so large that it hides how the body deforms. "
-        )
-        advice += of_bases or f"{of_k.capitalize()}."
-    elif latin.relaxation > 0.9:
-        advice += "Lower the relaxation to 0.8."
-    else:
-        advice += of_bases or f"Accept a larger tolerance, or {of_k}."
-    return Status(Ending.STALLED, advice)
-
-
-def _remedies(latin: Latin) -> tuple[str, str]:
-    """What helps against an unsuitable k, as part of a sentence, and bases that are too small."""
+def remedies_of(*, may_finish: bool, has_bases: bool) -> Remedies:
+    """Remedies for a method that may end with a status step, or is on separated bases."""
     of_k = "set finish=at-once, for which k does not matter"
     also = ", or set finish=at-once"
-    if latin.finish is not None:
+    if may_finish:
         of_k = (
             "try a k_scale ten times smaller, and if that is no better ten times larger"
         )
         also = ""
-    has_bases = isinstance(latin.linear, PGD)
-    return of_k, f"{_FEW_MODES}{also}." if has_bases else ""
+    of_bases = ""
+    if has_bases:
+        of_bases = f"{_FEW_MODES}{also}."
+    return Remedies(of_k, of_bases)
+
+
+def exhausted(lack: str, remedies: Remedies, *, may_go_on: bool) -> Status:
+    """Status of a run at its limit, of iterations or seconds.
+
+    Parameters
+    ----------
+    lack
+        Reason why the run goes no further than its limit, or the criterion that it has
+        not met, without a full stop.
+    remedies
+        Advice on the method.
+    may_go_on
+        Whether iterations are left, so that seconds are the limit.
+    """
+    if may_go_on:
+        remedy = _LONGER
+    else:
+        remedy = remedies.of_bases or f"Raise max_iterations, or {remedies.of_k}."
+    return Status(Ending.EXHAUSTED, f"{lack}. {remedy}")
+
+
+def stalled(remedies: Remedies, relaxation: float, *, is_low: bool) -> Status:
+    """Status of a run whose LATIN indicator has stopped falling.
+
+    `is_low` says that the indicator is within its tolerance.
+    """
+    if is_low:
+        advice = (
+            f"{UNPROVEN}, though the LATIN indicator is low: k is far from what suits, or rigid "
+            f"motion so large that it hides how the body deforms. "
+        )
+        advice += remedies.of_bases or f"{remedies.of_k.capitalize()}."
+        return Status(Ending.STALLED, advice)
+    advice = "The LATIN indicator has stopped falling. "
+    if relaxation > RELAXED:
+        advice += "Lower the relaxation to 0.8."
+    else:
+        advice += remedies.of_bases or f"Accept a larger tolerance, or {remedies.of_k}."
+    return Status(Ending.STALLED, advice)
