@@ -1,4 +1,4 @@
-"""Group: identical substructures with one k, whose fields are held together."""
+"""Groups of identical substructures with the same k, whose fields are held together."""
 
 from __future__ import annotations
 
@@ -17,10 +17,25 @@ from solver.reduction.basis import SharedBasis
 class Group:
     """Identical substructures with the same k, which share one operator.
 
-    Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous
-    in space: the `state` y in full, changed in place; the `target` that it is brought
-    to; and `body`, W_f, None without body forces. `rows` are the boundary rows,
-    (n_boundary, n_substructures).
+    Fields of a group have shape (n_boundary, n_substructures, n_instants), scaled, and
+    are contiguous in space.
+
+    Attributes
+    ----------
+    numbers
+        Numbers of the substructures.
+    rows
+        Boundary rows, shape (n_boundary, n_substructures).
+    k
+        Search direction of the rows of each substructure, shape (n_boundary,), scaled.
+    response
+        Boundary response that all substructures share.
+    state
+        y = W + F/k in full, a field of the group, changed in place.
+    target
+        Field to which relaxation brings the state.
+    body
+        W_f, a field of the group; None without body forces.
     """
 
     state: Array
@@ -43,22 +58,28 @@ class Group:
         self._order = np.ascontiguousarray(self.rows.T.ravel())
 
     def field(self) -> Array:
-        """Allocate a zero field of the group."""
+        """Zero field, shape (n_boundary, n_substructures, n_instants)."""
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
     def gather(self, field: Array, instants: slice) -> None:
-        """Make the group's rows of a boundary field its target, at some instants."""
+        """Make the group's rows of a field its target, at some instants.
+
+        `field` has shape (n_rows, n_instants), scaled.
+        """
         flat = self.target.T.reshape(self._n_instants, -1)[instants]
         np.take(field.T[instants], self._order, axis=1, out=flat, mode="clip")
 
     def scatter(self, values: Array, field: Array, instants: slice = ALL) -> None:
-        """Write a field of the group into the rows of a boundary field, at some instants."""
-        field.T[instants, self._order] = values.T.reshape(self._n_instants, -1)[
-            instants
-        ]
+        """Write a field of the group into its rows of a larger one, at some instants.
+
+        `values` is the field of the group, `field` that of all rows, shape (n_rows,
+        n_instants), scaled.
+        """
+        flat = values.T.reshape(self._n_instants, -1)
+        field.T[instants, self._order] = flat[instants]
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the state of a checkpoint, or that in which all is zero."""
+        """Take on the state of a checkpoint, or a zero field without one."""
         self.state = self.field()
         if checkpoint is not None:
             self.state[:] = checkpoint.outgoing[self.rows]
@@ -79,7 +100,10 @@ class Group:
         np.add(old, target, out=old)
 
     def reflect(self, instants: slice) -> Array:
-        """W - F/k = 2 W - (W + F/k), up to date at some instants; the next call overwrites it."""
+        """W - F/k, a field of the group, up to date at some instants.
+
+        It is 2 W - (W + F/k); the next call overwrites it.
+        """
         flat = (len(self.k), -1)
         reflected = self._reflected[:, :, instants]
         self.response.reflect(
@@ -91,5 +115,5 @@ class Group:
         return self._reflected
 
     def bases(self) -> Iterator[tuple[int, SharedBasis]]:
-        """Separated bases, by number of the substructure."""
+        """Separated bases with the number of their substructure: none for full fields."""
         return iter(())

@@ -1,4 +1,4 @@
-"""The linear stage: elasticity of every substructure, all instants at once (paper, problem 2.2)."""
+"""Linear stage: elasticity of substructures at all instants (paper, problem 2.2)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from solver.reduction.basis import SharedBasis
 
 @dataclass(frozen=True)
 class Full:
-    """A linear stage with a value for every point and instant."""
+    """Full fields in the linear stage: a value for every point and instant."""
 
     def group(self, problem: Problem, numbers: list[int], k: Array) -> Group:
         """Group of identical substructures with the same k, shape (n_rows,)."""
@@ -27,13 +27,25 @@ class Full:
 
 
 class LinearStage:
-    """Elasticity along the search direction E-, factored for one problem and one k, (n_rows,).
+    """Elasticity along the search direction E-, factored for one problem and one k.
 
     With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1
     B^T and W_f comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2).
-    Its state is y: it is what relaxation mixes, and everything else follows from it.
-    How y is held is the groups' business: in full, block by block of instants, or on
-    separated bases.
+    The state of the stage is y: relaxation mixes y, and everything else follows from
+    it. The groups hold y, in full, block by block of instants, or on separated bases.
+
+    Parameters
+    ----------
+    problem
+        The problem to be solved.
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
+    form
+        Form in which the groups hold y.
+    blocks
+        Blocks of instants.
+    multiscale
+        Whether the coarse problem brings macro forces into equilibrium.
     """
 
     def __init__(
@@ -52,42 +64,45 @@ class LinearStage:
         else:
             self._blocks = Blocks(1, problem.n_instants)
         self._coarse = None
-        meets = problem.cuts or any(
-            law.macro is not None for law in problem.rubbing.values()
-        )
-        if multiscale and meets:
+        has_macro = any(law.macro is not None for law in problem.rubbing.values())
+        if multiscale and (problem.cuts or has_macro):
             self._coarse = CoarseProblem(problem, self.groups, self._blocks)
         self._shape = (problem.n_rows, problem.n_instants)
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the state of a checkpoint, or that in which all is zero."""
+        """Take on the state of a checkpoint, or zero fields without one."""
         for group in self.groups:
             group.go_to(checkpoint)
 
     def bases(self) -> tuple[SharedBasis, ...]:
-        """The separated bases of the state, one per substructure; none of one in full."""
-        bases = dict(basis for group in self.groups for basis in group.bases())
+        """Separated bases of the state, one per substructure; empty for full fields."""
+        bases: dict[int, SharedBasis] = {}
+        for group in self.groups:
+            bases.update(group.bases())
         return tuple(bases[number] for number in sorted(bases))
 
     def read(self, target: Array) -> None:
-        """Make W^ + F^/k of the local stage, (n_rows, n_instants), the target of all groups."""
+        """Make W^ + F^/k of the local stage the target of all groups.
+
+        `target` has shape (n_rows, n_instants), scaled.
+        """
         self._each(lambda group, instants: group.gather(target, instants))
 
     def advance(self, relaxation: float) -> None:
-        """Solve the linear stage: the state takes on so large a share of the new one."""
+        """Solve the linear stage, and mix the new state with the share `relaxation`."""
         if self._coarse is not None:
             self._coarse.add_multiplier()
         self._each(lambda group, instants: group.relax(relaxation, instants))
 
     def outgoing(self) -> Array:
-        """W + F/k, shape (n_rows, n_instants)."""
+        """W + F/k, shape (n_rows, n_instants), scaled."""
         boundary = np.empty(self._shape, order="F")
         for group in self.groups:
             group.scatter(group.outgoing(), boundary)
         return boundary
 
     def incoming(self) -> Array:
-        """W - F/k, shape (n_rows, n_instants)."""
+        """W - F/k, shape (n_rows, n_instants), scaled."""
         boundary = np.empty(self._shape, order="F")
         self._each(
             lambda group, some: group.scatter(group.reflect(some), boundary, some)
@@ -95,7 +110,7 @@ class LinearStage:
         return boundary
 
     def _each(self, work: Callable[[Group, slice], None]) -> None:
-        """Do some work for every group at every block of instants."""
+        """Call `work` for every group and every block of instants."""
 
         def of_block(instants: slice) -> None:
             for group in self.groups:
@@ -105,10 +120,9 @@ class LinearStage:
 
 
 def _alike(problem: Problem, k: Array) -> list[list[int]]:
-    """Numbers of substructures with one elasticity and one k, together."""
+    """Numbers of substructures with one elasticity and one k, (n_rows,), together."""
     groups: dict[tuple[int, bytes], list[int]] = {}
     for number, part in enumerate(problem.substructures):
-        groups.setdefault((id(part.elasticity), k[part.rows].tobytes()), []).append(
-            number
-        )
+        operator = (id(part.elasticity), k[part.rows].tobytes())
+        groups.setdefault(operator, []).append(number)
     return list(groups.values())

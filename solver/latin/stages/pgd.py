@@ -1,4 +1,4 @@
-"""The linear stage on separated bases (paper, section 2.2; solver/README.md, 3).
+"""Linear stage on separated bases (paper, section 2.2; solver/README.md, 3).
 
 With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G =
 k (u - Z) (paper, eq. 3), whose G + k Z is k u. So the modes meet the search direction
@@ -29,7 +29,9 @@ rounding."""
 
 @dataclass(frozen=True)
 class PGD:
-    """A sum of a few modes, each a shape in space times a function of time (paper, section 2.2).
+    """Separated fields in the linear stage: a sum of a few modes (paper, section 2.2).
+
+    A mode is a shape in space times a function of time.
 
     Attributes
     ----------
@@ -65,7 +67,7 @@ class PGD:
 
 
 class PGDGroup(Group):
-    """Identical substructures whose y is held on bases, which some of them may share."""
+    """Identical substructures whose y is on separated bases, which some may share."""
 
     shared: list[SharedBasis]
 
@@ -79,7 +81,7 @@ class PGDGroup(Group):
         self.iterations = 0
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the bases of a checkpoint, or those nearest to its fields, or zero fields."""
+        """Take on the bases of a checkpoint or those of its fields; zero without one."""
         self.iterations = 0
         field = self.field()
         if checkpoint is not None:
@@ -210,7 +212,7 @@ class PGDGroup(Group):
         self.shared = joined
 
     def _partner(self, shared: SharedBasis, others: list[SharedBasis]) -> int | None:
-        """Position of the first of other bases that a basis can be joined with, or None."""
+        """Position of the first other basis that may be joined with one, or None."""
         for position, other in enumerate(others):
             apart = (
                 shared.basis.outside(other.basis),
@@ -229,7 +231,10 @@ class PGDGroup(Group):
         return self._of_field(members, field)
 
     def _of_field(self, members: tuple[int, ...], field: Array) -> SharedBasis:
-        """Basis of some members of a group field, (n_boundary, n_substructures, n_instants)."""
+        """Basis of some members of a group field.
+
+        `field` has shape (n_boundary, n_substructures, n_instants), scaled.
+        """
         columns = self._columns(members, field)
         pgd = self._pgd
         weights = np.repeat(self._weights, len(members))
