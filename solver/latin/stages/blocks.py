@@ -57,7 +57,7 @@ class Blocks:
 
 
 class OneBlasThread:
-    """Context in which BLAS has one thread, as products of few rows take longer on several.
+    """Context with one thread for BLAS: several are slower for products of few rows.
 
     It may be entered several times; the last to leave lifts the limit.
     """

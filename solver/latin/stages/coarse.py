@@ -149,7 +149,7 @@ def _macro_body_force(k: Array, body: Array, local: _LocalBasis) -> Array:
 
 
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> _LocalBasis:
-    """Part of the macro basis, (n_rows, n_macro), that all members of a group see alike.
+    """Part of a macro basis, (n_rows, n_macro), that all members of a group share.
 
     `rows` are the boundary rows of the group, shape (n_boundary, n_substructures).
     Where members do not see the same, or a row has only one macro quantity, the local

@@ -115,5 +115,5 @@ class Group:
         return self._reflected
 
     def bases(self) -> Iterator[tuple[int, SharedBasis]]:
-        """Separated bases with the number of their substructure: none for full fields."""
+        """Separated bases, by number of the substructure; empty for full fields."""
         return iter(())

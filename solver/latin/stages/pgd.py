@@ -81,7 +81,7 @@ class PGDGroup(Group):
         self.iterations = 0
 
     def go_to(self, checkpoint: Checkpoint | None) -> None:
-        """Take on the bases of a checkpoint or those of its fields; zero without one."""
+        """Take on the bases of a checkpoint or of its fields; zero without one."""
         self.iterations = 0
         field = self.field()
         if checkpoint is not None:
@@ -102,14 +102,14 @@ class PGDGroup(Group):
         return rebuilt
 
     def relax(self, relaxation: float, instants: slice) -> None:
-        """Bring the bases towards the target: update time functions, enrich, downsize."""
+        """Bring the bases to the target: update time functions, enrich, downsize."""
         self.shared = [self._advanced(shared, relaxation) for shared in self.shared]
         self.iterations += 1
         if self._pgd.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share()
 
     def reflect(self, instants: slice) -> Array:
-        """W - F/k at all instants, a field of the group; the next call overwrites it."""
+        """W - F/k, a field of the group; the next call overwrites it."""
         for shared in self.shared:
             columns = self._columns(shared.members, self._reflected)
             np.matmul(shared.incoming, shared.basis.time_functions, out=columns)
@@ -144,7 +144,7 @@ class PGDGroup(Group):
         field[:, positions] = columns.reshape(len(field), len(positions), -1, order="F")
 
     def _advanced(self, shared: SharedBasis, relaxation: float) -> SharedBasis:
-        """Bring a basis towards the target, and enrich it if the modes miss too much."""
+        """Bring a basis to the target, and enrich it if the modes miss too much."""
         basis = shared.basis
         pgd = self._pgd
         target = self._columns(shared.members, self.target)

@@ -1,4 +1,4 @@
-"""Boundary response of a substructure to its search direction: dense, or by a factor."""
+"""Boundary response of a substructure along its search direction: dense or factored."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ class Response:
 
     @cached_property
     def _load(self) -> sparse.csr_array:
-        """Map from y to forces on all degrees of freedom, shape (n_dofs, n_boundary)."""
+        """Map from y to forces on all dofs, shape (n_dofs, n_boundary)."""
         positions = self._trace, np.arange(len(self._k))
         shape = self._n_dofs, len(self._k)
         return sparse.csr_array((self._k, positions), shape=shape)
 
     def reflect(self, outgoing: Array, out: Array) -> None:
-        """Write 2 H k y - y for y = `outgoing`, both of shape (n_boundary, n), scaled."""
+        """Write 2 H k y - y for y = `outgoing`, both of shape (n_boundary, n)."""
         n_columns = max(BLOCK // self._n_dofs, 4)
         for first in range(0, outgoing.shape[1], n_columns):
             columns = slice(first, first + n_columns)
@@ -94,7 +94,7 @@ class DenseResponse(Response):
         self._reflection = 2.0 * self._compliance * k - np.eye(len(k))
 
     def reflect(self, outgoing: Array, out: Array) -> None:
-        """Write 2 H k y - y for y = `outgoing`, both of shape (n_boundary, n), scaled."""
+        """Write 2 H k y - y for y = `outgoing`, both of shape (n_boundary, n)."""
         np.matmul(self._reflection, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:
