@@ -1,4 +1,7 @@
-"""Anderson acceleration of the iteration (Walker and Ni, SIAM J. Numer. Anal. 49, 2011)."""
+"""Anderson acceleration of the iteration.
+
+Source: Walker and Ni, SIAM J. Numer. Anal. 49, 2011.
+"""
 
 from __future__ import annotations
 
@@ -115,7 +118,7 @@ class AndersonState:
         self._start = self._sampled([group.state for group in self._groups])
 
     def mix(self) -> None:
-        """Replace the state g(y) after an iteration by the mixture, in place, if there is one."""
+        """Replace the state g(y) after an iteration by the mixture, if there is one."""
         residual = self._residual()
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
@@ -131,7 +134,7 @@ class AndersonState:
             self._mix()
 
     def _residual(self) -> Array:
-        """Sampled residual g(y) - y, times the root of its weights, shape (n_sample,)."""
+        """Sampled residual g(y) - y by the root of its weights, shape (n_sample,)."""
         residual = self._sampled([group.state for group in self._groups])
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
@@ -150,7 +153,7 @@ class AndersonState:
         self._blocks.each(keep)
 
     def _remember(self, residual: Array) -> None:
-        """Keep the difference of a residual, (n_sample,), to the one before, and its products."""
+        """Keep the difference of a residual, (n_sample,), to the one before."""
         slot = self._count % self._memory
         newest = self._residuals[slot]
         np.subtract(residual, self._before, out=newest)
