@@ -1,4 +1,4 @@
-"""Estimated costs: of a status step and of the iterations that it saves, and of a whole run.
+"""Estimated costs of a status step, of the iterations that it saves, and of a run.
 
 All estimates come from counts and never from a clock, so that a run ends alike on every
 machine. `python tests/benchmarks/whole_cost.py` sets the estimates of runs beside
@@ -92,7 +92,7 @@ LARGE = 1e9
 
 
 class PricedMethod(Protocol):
-    """The parts of a method on which its cost depends, as `solver.latin.Latin` has them."""
+    """Parts of a method that its cost depends on, as in `solver.latin.Latin`."""
 
     @property
     def linear(self) -> object:
@@ -149,7 +149,7 @@ class Costs:
 
     @cached_property
     def small_from(self) -> float:
-        """Iteration from which a status step is worth a trial, even with some wrong statuses."""
+        """Iteration from which a status step is worth a trial, though statuses be wrong."""
         step = self.condensing + SYSTEMS * self.n_instants * self.system
         number = step / (TRIED * self.iteration)
         if self.is_at_rest:
@@ -266,7 +266,7 @@ class RunCost:
 
     @property
     def is_large(self) -> bool:
-        """Check whether a run takes so long, or so much memory, that it should say so before."""
+        """Check whether a run takes so long, or so much, that it should say so before."""
         return self.seconds > LONG or self.memory > LARGE
 
     def __str__(self) -> str:

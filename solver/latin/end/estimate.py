@@ -1,4 +1,4 @@
-"""Error estimate of the contact force of an iterate, without a reference (solver/README.md, 7)."""
+"""Error estimate of the contact force, without a reference (solver/README.md, 7)."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class ErrorEstimate:
         self.ending: Status | None = None
 
     def __call__(self, iterate: Iterate) -> float:
-        """Estimate the relative error of the next iterate of a run; NaN if it is unknown."""
+        """Estimate the relative error of the next iterate of a run; NaN if unknown."""
         error = math.nan
         if self.certificate is None:
             left = self._changes.left(iterate)
@@ -118,7 +118,7 @@ class ErrorEstimate:
         return self.certificate.distance.of_friction_force(iterate)
 
     def _is_trial_due(self, iterate: Iterate) -> bool:
-        """Check whether it is time for a status step, as statuses or costs promise success."""
+        """Check whether a status step is due, as statuses or costs promise success."""
         number = iterate.number
         # A run may begin with its solution, so that no change shows it.
         begins_solved = number == 1 and iterate.indicator <= SOLVED
@@ -134,9 +134,9 @@ class ErrorEstimate:
         return self.certificate is not None
 
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
-        """Check whether displacement and contact force are near to a certified solution.
+        """Check whether an iterate is near to a certified solution.
 
-        `share` is the largest relative error of each.
+        Its displacement and contact force are compared. `share` is the largest relative error of each.
         """
         if self.certificate is None:
             return False
@@ -197,14 +197,14 @@ class ErrorEstimate:
         return self.deadline - time.perf_counter()
 
     def _costs_of(self, iterate: Iterate) -> Costs:
-        """Costs by the statuses of an iterate, estimated anew at every doubling of iterations."""
+        """Costs by the statuses of an iterate, new at every doubling of iterations."""
         if self._costs is None or iterate.number >= AGAIN * self._costs[0]:
             self._costs = iterate.number, costs_of(iterate.problem, states_of(iterate))
         return self._costs[1]
 
 
 def _lost_equilibrium(problem: Problem, solution: Reference) -> Status | None:
-    """Status of a run whose solution ends at an instant without equilibrium, or None."""
+    """Status of a run whose solution has no equilibrium at an instant, or None."""
     if solution.collapse is not None:
         return collapses(problem, solution.collapse)
     if solution.jumps_at is not None and solution.is_lost:
@@ -214,7 +214,7 @@ def _lost_equilibrium(problem: Problem, solution: Reference) -> Status | None:
 
 
 class Change(NamedTuple):
-    """Relative change of the contact forces, or the relative error that is left of them.
+    """Relative change of the contact forces, or relative error that is left.
 
     The kinds of force are friction, pressure, and the forces of laws of one's own.
 
@@ -262,7 +262,7 @@ class ForceChanges:
         self.last = Change()
 
     def left(self, iterate: Iterate) -> Change:
-        """Relative error that is left if the changes go on to fall as before; NaN if unknown."""
+        """Relative error that is left if changes go on to fall; NaN if unknown."""
         number = iterate.number
         force = _force_of(iterate)
         before = self._at(LOOK_BACK * number)
@@ -286,7 +286,7 @@ class ForceChanges:
         )
 
     def _keep(self, newest: _Past, earlier: _Past | None) -> None:
-        """Keep the forces of an iterate, and forget those from before the `earlier` one."""
+        """Keep the forces of an iterate, and forget those before the `earlier` one."""
         if earlier is not None:
             self._past = [
                 entry for entry in self._past if entry.number >= earlier.number
@@ -312,14 +312,14 @@ def _force_of(iterate: Iterate) -> Array:
 
 
 def _vanishing_size(iterate: Iterate) -> float:
-    """Norm of the contact forces that counts as none beside the other forces, scaled."""
+    """Norm of contact forces that counts as none beside other forces, scaled."""
     hidden = VANISHING * float(np.linalg.norm(iterate.boundary_force))
     rounding = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
     return max(hidden, rounding)
 
 
 def _left_early(last: Change) -> Change:
-    """Relative error that is left by the last change alone: 0 without any change, else NaN."""
+    """Relative error that is left early in a run: 0 without a change, else NaN."""
     worst = math.nan
     whole = math.nan
     if last.worst == 0.0:
@@ -342,7 +342,7 @@ def _left(last: float, before: float, earlier: float) -> float:
 def _change(
     problem: Problem, change: Array, force: Array, smallest_size: float
 ) -> Change:
-    """Change of forces, relative to what `solver.reference.distance` divides an error by.
+    """Change of forces over the sizes in the errors of `solver.reference.distance`.
 
     Parameters
     ----------

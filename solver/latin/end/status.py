@@ -1,4 +1,4 @@
-"""Endings of a run: status, advice on the next attempt, and the decision on an iterate."""
+"""Endings of a run: status, advice, and the decision on an iterate."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True)
 class Status:
-    """The end of a run: its kind in a word, and advice on the next attempt in a sentence.
+    """Status of a run at its end: the kind of ending, and advice in a sentence.
 
     `lost_from` is the first instant that has no solution, if some are known to have
     none. The fields of an iterate from that instant on are no state of the structure.
@@ -78,46 +78,54 @@ CANCELLED = Status(
 )
 PROVEN = Status(
     Ending.CONVERGED,
-    "Accurate enough: the contact force of this iterate is within the accuracy of the exact "
-    "solution on this mesh, which a status step has found. What is shown is the iterate, not that "
-    "solution.",
+    "Accurate enough: the contact force of this iterate is within the accuracy of the "
+    "exact solution on this mesh, which a status step has found. What is shown is the "
+    "iterate, not that solution.",
 )
 EXPECTED = Status(
     Ending.CONVERGED,
-    "Accurate enough by estimate: the contact force hardly changes any more. Proof by a status "
-    "step would take half as long again, or longer.",
+    "Accurate enough by estimate: the contact force hardly changes any more. Proof by "
+    "a status step would take half as long again, or longer.",
 )
 UNPROVABLE = Status(
     Ending.CONVERGED,
-    "Accurate enough by estimate: the contact force hardly changes any more. Nothing can prove it.",
+    "Accurate enough by estimate: the contact force hardly changes any more. Nothing "
+    "can prove it.",
 )
 BELOW = Status(
     Ending.CONVERGED,
     "The LATIN indicator is below its tolerance, and the k-free indicator agrees.",
 )
 OF_MESH = (
-    "This is the limit of the mesh, whose upright joints touch inside their ends alone: rigid "
-    "stones carry up to 5 % more."
+    "This is the limit of the mesh, whose upright joints touch inside their ends "
+    "alone: rigid stones carry up to 5 % more."
 )
 _LOST_JUMP = (
-    "At {} no equilibrium goes on from the one before: friction falls with slip faster "
-    "than the structure unloads, so that it jumps, and none is found beyond. Lower the load, raise "
-    "friction_ratio or slip_length, or prescribe a displacement in place of a force."
+    "At {} no equilibrium goes on from the one before: friction falls with slip "
+    "faster than the structure unloads, so that it jumps, and none is found beyond. "
+    "Lower the load, raise friction_ratio or slip_length, or prescribe a displacement "
+    "in place of a force."
 )
 _JUMPED = (
-    " At {} no equilibrium goes on from the one before, as friction falls with slip faster "
-    "than the structure unloads: it jumps to another. Where it should not, raise friction_ratio, "
-    "slip_length or the number of elements."
+    " At {} no equilibrium goes on from the one before, as friction falls with slip "
+    "faster than the structure unloads: it jumps to another. Where it should not, "
+    "raise friction_ratio, slip_length or the number of elements."
 )
 _SEARCHED = " The iterates by themselves had come within {:g} % of its contact force."
 _CERTIFIED = "Certified: equilibrium and all contact laws hold up to rounding"
-_FOUND = " A status step found it from iterate {}, whose contact force was {} % away from it."
+_FOUND = (
+    " A status step found it from iterate {}, whose contact force was {} % away from "
+    "it."
+)
 _BY_INCREMENTS = (
-    " It is the incremental solver's answer: the status step began at the statuses of iterate {}, "
-    "whose own contact force was still {} % away from it."
+    " It is the incremental solver's answer: the status step began at the statuses of "
+    "iterate {}, whose own contact force was still {} % away from it."
 )
 _FEW_MODES = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
-_LONGER = "Give the run longer, or ask for less: fewer elements or instants, a larger accuracy."
+_LONGER = (
+    "Give the run longer, or ask for less: fewer elements or instants, a larger "
+    "accuracy."
+)
 
 
 def collapses(problem: Problem, collapse: Collapse) -> Status:
@@ -132,8 +140,9 @@ def collapses(problem: Problem, collapse: Collapse) -> Status:
         mesh = f" {OF_MESH}"
     return Status(
         Ending.STALLED,
-        f"There is no equilibrium {limit_of(problem, collapse)}: no contact forces within friction "
-        f"balance the loads, and the structure {motion}. {remedy}{mesh}",
+        f"There is no equilibrium {limit_of(problem, collapse)}: no contact forces "
+        f"within friction balance the loads, and the structure {motion}. "
+        f"{remedy}{mesh}",
         lost_from=collapse.instant,
     )
 
@@ -148,7 +157,7 @@ def limit_of(problem: Problem, collapse: Collapse) -> str:
 
 
 def jump_of(problem: Problem, instant: int) -> str:
-    """Words on a jump of a structure: the loads at the instant after it, and the time."""
+    """Words on a jump of a structure: the loads at the instant after, and the time."""
     loads = loads_at(problem.drives, instant)
     time = f"{problem.instants[instant]:.4g} s"
     if loads:
@@ -157,7 +166,7 @@ def jump_of(problem: Problem, instant: int) -> str:
 
 
 def lost_jump(problem: Problem, instant: int, lost_from: int) -> Status:
-    """Status of a run that jumps at an instant, and has no equilibrium from another on."""
+    """Status of a run that jumps, and has no equilibrium from an instant on."""
     advice = _LOST_JUMP.format(jump_of(problem, instant))
     return Status(Ending.STALLED, advice, lost_from=lost_from)
 
@@ -166,8 +175,9 @@ def diverged(iteration: int) -> Status:
     """Status of a run whose fields stopped being finite."""
     return Status(
         Ending.DIVERGED,
-        f"Numbers stopped being finite at iteration {iteration}, so that before it is kept. Lower "
-        "the relaxation, or bring k_scale nearer to 1 and the loads to ordinary sizes.",
+        f"Numbers stopped being finite at iteration {iteration}, so that before it is "
+        "kept. Lower the relaxation, or bring k_scale nearer to 1 and the loads to "
+        "ordinary sizes.",
     )
 
 
@@ -196,7 +206,7 @@ def certified(
 
 
 def _way_to(finish: Iterate, error: float) -> str:
-    """Sentence on the last iterate before a certified solution, with its relative error."""
+    """Sentence on the last iterate before a certified solution, by its error."""
     before = finish.number - 1
     percent = float(f"{100.0 * error:.2g}")
     shown = f"{percent:g}"
@@ -233,11 +243,11 @@ def with_jump(
 
 
 def obeyed(residual: float) -> Status:
-    """Status of a run whose iterate solves the equations by itself, up to a KKT residual."""
+    """Status of a run whose iterate is a solution by itself, with its KKT residual."""
     return Status(
         Ending.CONVERGED,
-        f"{_CERTIFIED} in this iterate itself, which no status step had to find (residual "
-        f"{residual:.0e}).",
+        f"{_CERTIFIED} in this iterate itself, which no status step had to find "
+        f"(residual {residual:.0e}).",
     )
 
 
@@ -259,7 +269,7 @@ class Remedies:
 
 
 def remedies_of(*, may_finish: bool, has_bases: bool) -> Remedies:
-    """Remedies for a method that may end with a status step, or is on separated bases."""
+    """Remedies by whether a method may finish with a status step, and has bases."""
     of_k = "set finish=at-once, for which k does not matter"
     also = ", or set finish=at-once"
     if may_finish:
@@ -300,8 +310,8 @@ def stalled(remedies: Remedies, relaxation: float, *, is_low: bool) -> Status:
     """
     if is_low:
         advice = (
-            f"{UNPROVEN}, though the LATIN indicator is low: k is far from what suits, or rigid "
-            f"motion so large that it hides how the body deforms. "
+            f"{UNPROVEN}, though the LATIN indicator is low: k is far from what suits, "
+            "or rigid motion so large that it hides how the body deforms. "
         )
         advice += remedies.of_bases or f"{remedies.of_k.capitalize()}."
         return Status(Ending.STALLED, advice)

@@ -29,8 +29,8 @@ STILL = 1e-3
 """Share of the largest slip of an interface below which a point counts as stuck, if
 `FRONT` does not make it smaller."""
 FRONT = 2.0
-"""Same share over the square of a point's share of the interface, as slip grows behind a
-front. To call a point stuck that slips costs more than the reverse, as corrections free
+"""Same share over the square of a point's share of the interface, as slip grows behind
+a front. To call a point stuck that slips costs more than the reverse, as corrections free
 one at a time: on 800 elements and 101 instants a step takes 480 systems with `STILL`
 alone, 180 with this, 190 with 1e-9 (measured)."""
 CERTIFIED = 1e-7
@@ -61,7 +61,7 @@ class Certificate:
 
 @dataclass(frozen=True)
 class StatusStep:
-    """End of a run with the certified solution, once a status step from an iterate holds.
+    """End of a run with the certified solution, once a status step holds.
 
     Attributes
     ----------

@@ -112,7 +112,7 @@ class Stop:
 
 
 class JudgedMethod(Protocol):
-    """The parts of a method on which the end of a run depends, as `solver.latin.Latin` has them."""
+    """Parts of a method that the end of a run depends on, as in `solver.latin.Latin`."""
 
     @property
     def stop(self) -> Stop:
@@ -234,7 +234,7 @@ class StopState:
         )
 
     def _residual(self, iterate: Iterate, status: Status | None) -> float:
-        """KKT residual of an iterate that may be a solution by itself, NaN if not computed.
+        """KKT residual of an iterate that may be a solution, NaN if not computed.
 
         An iterate may be one where both stages agree up to rounding. The residual costs
         much, so it is computed every `SELDOM` iterations, and where a run would end
@@ -251,18 +251,19 @@ class StopState:
         return kkt_residual(iterate, problem)
 
     def _billed(self, iterate: Iterate, began: float) -> float:
-        """Add the time since `began` to the cost of the rules; seconds of the whole run."""
+        """Bill the time since `began` to the rules; seconds of the whole run."""
         self.seconds += time.perf_counter() - began
         return iterate.seconds + self.seconds
 
     def _ending(self, iterate: Iterate) -> tuple[float, Status | None]:
-        """Estimated error, NaN if not needed, and status of the run, None if it goes on."""
+        """Estimated error, NaN if not needed, and status, None if the run goes on."""
         estimate = self.estimate
         is_last = self._is_last(iterate)
         is_due = is_last or iterate.number >= self._goal.next
         error = math.nan
-        # A search is asked how many iterations it takes, so its error is needed at each;
-        # a distance costs a hundredth to a sixth of one (measured on the five scenes).
+        # The iterations of a search are counted, so its error is needed at each of
+        # them; a distance costs a hundredth to a sixth of one (measured on the five
+        # scenes).
         if self._asks_accuracy and (is_due or self._searches):
             error = estimate(iterate)
         status = self._reached(iterate, error, is_due=is_due, is_last=is_last)
@@ -304,7 +305,7 @@ class StopState:
         return None
 
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
-        """Status of a run that meets both accuracy and tolerance, None if it does not."""
+        """Status of a run that meets accuracy and tolerance, None if it does not."""
         asks_tolerance = math.isfinite(self._stop.tolerance)
         if self._asks_accuracy and not self._is_accurate(iterate.number, error):
             return None
@@ -319,7 +320,7 @@ class StopState:
         return None
 
     def _is_accurate(self, number: int, error: float) -> bool:
-        """Compare an error with the accuracy, and set the iteration of the next check."""
+        """Compare an error with the accuracy, and set the next check."""
         share = error / self._stop.accuracy
         # Only the distance to a known solution foretells when it will be low enough.
         if self.estimate.is_proven:
@@ -333,7 +334,7 @@ class StopState:
         return True
 
     def _status_of_accurate(self, iterate: Iterate) -> Status | None:
-        """Status of a run that is accurate enough, None if that has to be proven first."""
+        """Status of a run that is accurate enough, None if a proof has to come first."""
         estimate = self.estimate
         if estimate.is_proven:
             return PROVEN
@@ -345,7 +346,7 @@ class StopState:
         return EXPECTED
 
     def _is_sufficient(self, iterate: Iterate, *, is_last: bool) -> bool:
-        """Check whether the LATIN indicator is so low that it ends the run by itself."""
+        """Check whether the LATIN indicator is low enough to end the run by itself."""
         sufficient = self._stop.sufficient
         is_due = is_last or iterate.number >= self._sufficient.next
         if sufficient > 0.0 and is_due:
@@ -353,9 +354,9 @@ class StopState:
         return False
 
     def _is_low(self, iterate: Iterate, tolerance: float, check: NextCheck) -> bool:
-        """Check whether the LATIN indicator is low, and the k-free one or the solution agrees.
+        """Check whether the LATIN indicator is low, and another measure agrees.
 
-        The LATIN indicator alone can be fooled: a search direction that is far from the
+        That is the k-free indicator, or the distance to a certified solution. The LATIN indicator alone can be fooled: a search direction that is far from the
         stiffness in play makes it as small as one likes (solver/README.md, 4). The
         k-free indicator is relative to the contact forces, which vanish where all
         contacts open.
@@ -400,7 +401,7 @@ class NextCheck:
         self._last = (0, math.nan)
 
     def update(self, iteration: int, value: float) -> None:
-        """Set the next check by the value at an iteration; NaN if that foretells nothing."""
+        """Set the next check by a value at an iteration; NaN foretells nothing."""
         before, last = self._last
         self._last = iteration, value
         half_way = 0.0
@@ -415,7 +416,7 @@ class NextCheck:
 
 
 class StallCheck:
-    """Watch for a LATIN indicator that stops falling; `indicator` is the lowest so far."""
+    """Watch on a LATIN indicator that stops falling; `indicator` is the lowest."""
 
     def __init__(self) -> None:
         self.indicator = math.inf
