@@ -92,7 +92,7 @@ LARGE = 1e9
 
 
 class PricedMethod(Protocol):
-    """Parts of a method that its cost depends on, as in `solver.latin.Latin`."""
+    """Parts of a method that its cost depends on: a `solver.latin.Latin`."""
 
     @property
     def linear(self) -> object:
@@ -149,7 +149,7 @@ class Costs:
 
     @cached_property
     def small_from(self) -> float:
-        """Iteration from which a status step is worth a trial, though statuses be wrong."""
+        """Iteration from which a status step is worth a trial despite wrong statuses."""
         step = self.condensing + SYSTEMS * self.n_instants * self.system
         number = step / (TRIED * self.iteration)
         if self.is_at_rest:
@@ -266,7 +266,7 @@ class RunCost:
 
     @property
     def is_large(self) -> bool:
-        """Check whether a run takes so long, or so much, that it should say so before."""
+        """Check whether a run is so long or large that it should say so before."""
         return self.seconds > LONG or self.memory > LARGE
 
     def __str__(self) -> str:

@@ -136,7 +136,7 @@ class ErrorEstimate:
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
         """Check whether an iterate is near to a certified solution.
 
-        Its displacement and contact force are compared. `share` is the largest relative error of each.
+        `share` is the largest relative error of its displacement and contact force.
         """
         if self.certificate is None:
             return False

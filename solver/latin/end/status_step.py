@@ -30,9 +30,9 @@ STILL = 1e-3
 `FRONT` does not make it smaller."""
 FRONT = 2.0
 """Same share over the square of a point's share of the interface, as slip grows behind
-a front. To call a point stuck that slips costs more than the reverse, as corrections free
-one at a time: on 800 elements and 101 instants a step takes 480 systems with `STILL`
-alone, 180 with this, 190 with 1e-9 (measured)."""
+a front. To call a point stuck that slips costs more than the reverse, as corrections
+free one at a time: on 800 elements and 101 instants a step takes 480 systems with
+`STILL` alone, 180 with this, 190 with 1e-9 (measured)."""
 CERTIFIED = 1e-7
 """Largest KKT residual of a certified solution, relative to the contact force. Its
 statuses agree with it exactly; on four wires of 320 elements the linear systems leave

@@ -112,7 +112,7 @@ class Stop:
 
 
 class JudgedMethod(Protocol):
-    """Parts of a method that the end of a run depends on, as in `solver.latin.Latin`."""
+    """Parts of a method that the end of a run depends on: a `solver.latin.Latin`."""
 
     @property
     def stop(self) -> Stop:
@@ -334,7 +334,7 @@ class StopState:
         return True
 
     def _status_of_accurate(self, iterate: Iterate) -> Status | None:
-        """Status of a run that is accurate enough, None if a proof has to come first."""
+        """Status of a run that is accurate enough, None if that needs a proof first."""
         estimate = self.estimate
         if estimate.is_proven:
             return PROVEN
@@ -356,10 +356,11 @@ class StopState:
     def _is_low(self, iterate: Iterate, tolerance: float, check: NextCheck) -> bool:
         """Check whether the LATIN indicator is low, and another measure agrees.
 
-        That is the k-free indicator, or the distance to a certified solution. The LATIN indicator alone can be fooled: a search direction that is far from the
-        stiffness in play makes it as small as one likes (solver/README.md, 4). The
-        k-free indicator is relative to the contact forces, which vanish where all
-        contacts open.
+        That is the k-free indicator, or the distance to a certified solution. The LATIN
+        indicator alone can be fooled: a search direction that is far from the stiffness
+        in play makes it as small as one likes (solver/README.md, 4). The k-free
+        indicator is relative to the contact forces, which vanish where all contacts
+        open.
         """
         check.update(iterate.number, iterate.indicator / tolerance)
         if iterate.indicator > tolerance:
