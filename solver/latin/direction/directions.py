@@ -14,9 +14,9 @@ from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
 from solver.laws import Bodies, Contact
 
 LOOK = 3
-"""Iteration that shows whether bodies slip on each other anywhere. In the second, points
-that will stick may still slip; of 33 stacks all that slip by more than next to nothing
-showed it (measured).
+"""Iteration that shows whether bodies slip on each other anywhere. In the second,
+points that will stick may still slip; of 33 stacks all that slip by more than next to
+nothing showed it (measured).
 """
 SOFTENING = 2.0
 """Smallest k, over the slope by which a friction of known bound falls with slip: with a
@@ -51,7 +51,7 @@ class SearchDirection(ABC):
         """Search direction k of rows without the factor, shape (n_rows,), scaled."""
 
     def of(self, problem: Problem) -> Array:
-        """Search direction k of rows at the start, shape (n_rows,), scaled, read-only."""
+        """Search direction k at the start, shape (n_rows,), scaled, read-only."""
         return read_only(self.scale * self.rule(problem))
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
@@ -183,7 +183,7 @@ def _sliding_parts(problem: Problem) -> float:
 
 
 def _raise_above_slope(law: Contact, k: Array) -> None:
-    """Raise k of a contact, (n_rows,), in place, above the slope of a softening friction."""
+    """Raise k, (n_rows,), in place, above the slope of a friction that softens."""
     if not law.tangential.softens:
         return
     sides = law.tangent.sides
@@ -193,7 +193,7 @@ def _raise_above_slope(law: Contact, k: Array) -> None:
 
 
 def _soften_by_contact(law: Contact, k: Array) -> None:
-    """Put k of a contact, (n_rows,), in place, in series with its spring, if it has one."""
+    """Put k, (n_rows,), in place, in series with the spring of a contact, if any."""
     if law.tangential.softness is None:
         return
     compliance = law.in_parallel(law.tangential.softness)[law.points] / law.shares

@@ -61,7 +61,7 @@ class FromStatus:
         return self.first.scale
 
     def of(self, problem: Problem) -> Array:
-        """Search direction k of rows at the start, shape (n_rows,), scaled, read-only."""
+        """Search direction k at the start, shape (n_rows,), scaled, read-only."""
         return self.first.of(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
@@ -93,7 +93,7 @@ class FromStatus:
         return UpdateProgress("updated", k, fields=fields, violation=violation)
 
     def _on_trial(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """State of an updated k, which stays as long as the violation of the laws falls."""
+        """State of an updated k, which stays while the violation of the laws falls."""
         count = progress.count + 1
         if count < TRIAL:
             return replace(progress, status=None, count=count)
@@ -115,9 +115,9 @@ def _fields(iterate: Iterate) -> tuple[Array, Array]:
 
 
 def _crept(iterate: Iterate) -> NDArray[np.int8]:
-    """Contact status of the local stage, with creep as slip, shape (n_points, n_instants).
+    """Contact status of the local stage, in which creep counts as slip.
 
-    A point that creeps has not settled.
+    Shape (n_points, n_instants). A point that creeps has not settled.
     """
     groups = iterate.problem.contact_groups
     moved = iterate.local_displacement

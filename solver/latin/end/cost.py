@@ -149,7 +149,7 @@ class Costs:
 
     @cached_property
     def small_from(self) -> float:
-        """Iteration from which a status step is worth a trial despite wrong statuses."""
+        """Iteration from which a step is worth a trial, even with wrong statuses."""
         step = self.condensing + SYSTEMS * self.n_instants * self.system
         number = step / (TRIED * self.iteration)
         if self.is_at_rest:
