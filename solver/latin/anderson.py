@@ -77,8 +77,8 @@ class AndersonState:
         self._blocks = blocks
         size = sum(group.target.size for group in self._groups)
         self._memory = max(1, min(MEMORY, MOST_VALUES // size - 1))
-        least_step = -(-size // SAMPLE)
-        self._steps = [_step(least_step, group.rows.size) for group in self._groups]
+        smallest_step = -(-size // SAMPLE)
+        self._steps = [_step(smallest_step, group.rows.size) for group in self._groups]
         weights = [
             group.k[:, None, None] * problem.time_weights for group in self._groups
         ]
@@ -249,9 +249,9 @@ def _allowed_growth(problem: Problem) -> float:
     return GROWTH_BETWEEN_BODIES
 
 
-def _step(least: int, n_rows: int) -> int:
-    """Smallest step from a least one on that skips no row at all instants."""
-    step = least
+def _step(smallest: int, n_rows: int) -> int:
+    """Step of the sample, from a smallest one on, that skips no row at all instants."""
+    step = smallest
     while math.gcd(step, n_rows) > 1:
         step += 1
     return step

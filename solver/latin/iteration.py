@@ -49,10 +49,14 @@ def iterations(
         check_value("start", start, Part(Checkpoint))
         check_value("start.outgoing", start.outgoing, Numbers((shape,)))
     began = time.perf_counter()
-    seconds = start.seconds if start else 0.0
+    seconds = 0.0
+    first = 1
+    if start is not None:
+        seconds = start.seconds
+        first = start.number + 1
     with one_blas_thread:
         iteration = Iteration(problem, latin, start)
-    for number in count(start.number + 1 if start else 1):
+    for number in count(first):
         with one_blas_thread:
             iteration.local_stage()
             iteration.linear_stage()

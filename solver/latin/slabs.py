@@ -62,6 +62,7 @@ class _OfWhole(SearchDirection):
     k: Array
 
     def rule(self, problem: Problem) -> Array:
+        """Search direction k of the rows, shape (n_rows,), scaled."""
         return self.k
 
 
@@ -148,8 +149,9 @@ def _during(
         for part in problem.substructures
     ]
     interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
-    for name, before in (start or {}).items():
-        interfaces[name] = problem.rubbing[name].during(some).begun(before)
+    if start is not None:
+        for name, slider in start.items():
+            interfaces[name] = problem.rubbing[name].during(some).begun(slider)
     return replace(
         problem,
         substructures=tuple(parts),

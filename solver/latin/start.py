@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.checks import FUNCTION, check
 from solver.discrete.problem import Problem
 from solver.latin.end.certified import balance_of_rows, known_forces
@@ -85,25 +85,39 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     """
     coarse = solution.problem
     displacement = solution.displacement / coarse.scales.displacement
-    force, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
     inside = _interpolated(_apart(fine), _apart(coarse), displacement)
-    moved = inside[fine.row_dofs]
-    carried = np.zeros_like(moved)
+    force, is_open = _carried(solution, fine)
+    # Cuts and ends carry the rest of the force that a substructure needs.
+    balance, needed = balance_of_rows(fine, inside)
+    rest = balance.T @ (needed - balance @ force)
+    force[is_open] = rest[is_open]
+    return np.asfortranarray(inside[fine.row_dofs] + force / k[:, None])
+
+
+def _carried(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
+    """Friction of a solution, carried to the rows of a finer mesh.
+
+    Returns
+    -------
+    F of the rows, shape (n_rows, n_instants), scaled, zero where they do not rub; and
+    whether they do not rub, shape (n_rows,).
+    """
+    coarse = solution.problem
+    known, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
+    force = np.zeros((fine.n_rows, known.shape[1]))
     is_open = np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
-        friction = law.by_point(force[law.tangent.above])
+        friction = law.by_point(known[law.tangent.above])
         density = friction / law.by_point(law.weights)[:, None]
         spread = _interpolated(
             _points_apart(fine, target), _points_apart(coarse, law), density
         )
         shared = spread[target.points] * target.weights[:, None]
         for rows, sign in zip(target.tangent.sides, (1.0, -1.0), strict=False):
-            carried[rows] = sign * shared
+            force[rows] = sign * shared
             is_open[rows] = False
-    balance, needed = balance_of_rows(fine, inside)
-    carried[is_open] = (balance.T @ (needed - balance @ carried))[is_open]
-    return np.asfortranarray(moved + carried / k[:, None])
+    return force, is_open
 
 
 def _bodies(problem: Problem) -> Indices:

@@ -197,7 +197,7 @@ def certified(
     advice
         What to try next, for a search that had to end earlier.
     """
-    message = f"{_CERTIFIED} (residual {finish.residual or 0.0:.0e})."
+    message = f"{_CERTIFIED} (residual {certificate.residual:.0e})."
     if not math.isnan(error):
         message += _way_to(finish, error)
         if advice:
@@ -298,8 +298,10 @@ def exhausted(lack: str, remedies: Remedies, *, may_go_on: bool) -> Status:
     """
     if may_go_on:
         remedy = _LONGER
+    elif remedies.of_bases:
+        remedy = remedies.of_bases
     else:
-        remedy = remedies.of_bases or f"Raise max_iterations, or {remedies.of_k}."
+        remedy = f"Raise max_iterations, or {remedies.of_k}."
     return Status(Ending.EXHAUSTED, f"{lack}. {remedy}")
 
 
@@ -308,16 +310,18 @@ def stalled(remedies: Remedies, relaxation: float, *, is_low: bool) -> Status:
 
     `is_low` says that the indicator is within its tolerance.
     """
+    remedy = remedies.of_bases
     if is_low:
+        if not remedy:
+            remedy = f"{remedies.of_k.capitalize()}."
         advice = (
             f"{UNPROVEN}, though the LATIN indicator is low: k is far from what suits, "
-            "or rigid motion so large that it hides how the body deforms. "
+            f"or rigid motion so large that it hides how the body deforms. {remedy}"
         )
-        advice += remedies.of_bases or f"{remedies.of_k.capitalize()}."
         return Status(Ending.STALLED, advice)
-    advice = "The LATIN indicator has stopped falling. "
     if relaxation > RELAXED:
-        advice += "Lower the relaxation to 0.8."
-    else:
-        advice += remedies.of_bases or f"Accept a larger tolerance, or {remedies.of_k}."
+        remedy = "Lower the relaxation to 0.8."
+    elif not remedy:
+        remedy = f"Accept a larger tolerance, or {remedies.of_k}."
+    advice = f"The LATIN indicator has stopped falling. {remedy}"
     return Status(Ending.STALLED, advice)

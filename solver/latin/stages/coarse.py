@@ -126,7 +126,7 @@ class _Member:
         return part.reshape(len(self._group.k), -1, order="F")
 
     def add(self, multiplier: Array, target: Array) -> None:
-        """Add W~ to a target as of `target`.
+        """Add W~ to a target of shape (n_boundary, n_columns).
 
         `multiplier` is w~ as the substructures see it, shape (size, n_instants).
         """
@@ -224,16 +224,17 @@ def _solver(
     if system.shape[0] > DENSE_UP_TO:
 
         def solve(forces: Array, instants: slice) -> Array:
-            return np.asarray(
-                spread.T @ factor.solve(constant[:, instants] - spread @ forces)
-            )
+            """W~ by the sparse factor, shape (n_local, n_some), scaled."""
+            right = constant[:, instants] - spread @ forces
+            return np.asarray(spread.T @ factor.solve(right))
 
         return solve
     inverse = spread.T @ factor.solve(np.eye(system.shape[0]))
     shift = np.asfortranarray(inverse @ constant)
     product = np.asfortranarray(inverse @ spread)
 
-    def product_of(forces: Array, instants: slice) -> Array:
+    def multiply(forces: Array, instants: slice) -> Array:
+        """W~ by one dense product, shape (n_local, n_some), scaled."""
         return np.asarray(shift[:, instants] - product @ forces)
 
-    return product_of
+    return multiply

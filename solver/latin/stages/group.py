@@ -85,7 +85,7 @@ class Group:
             self.state[:] = checkpoint.outgoing[self.rows]
 
     def outgoing(self) -> Array:
-        """W + F/k, a field of the group."""
+        """W + F/k, shape (n_boundary, n_substructures, n_instants), scaled."""
         return self.state
 
     def relax(self, relaxation: float, instants: slice) -> None:
@@ -100,9 +100,10 @@ class Group:
         np.add(old, target, out=old)
 
     def reflect(self, instants: slice) -> Array:
-        """W - F/k, a field of the group, up to date at some instants.
+        """W - F/k = 2 W - (W + F/k), up to date at some instants.
 
-        It is 2 W - (W + F/k); the next call overwrites it.
+        Shape (n_boundary, n_substructures, n_instants), scaled; the next call
+        overwrites the field.
         """
         flat = (len(self.k), -1)
         reflected = self._reflected[:, :, instants]

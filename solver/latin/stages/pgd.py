@@ -95,7 +95,10 @@ class PGDGroup(Group):
         self.shared = [self._of_field((number,), field) for number in self.numbers]
 
     def outgoing(self) -> Array:
-        """W + F/k, rebuilt from the bases, a field of the group."""
+        """W + F/k, rebuilt from the bases.
+
+        Shape (n_boundary, n_substructures, n_instants), scaled.
+        """
         rebuilt = self.field()
         for shared in self.shared:
             self._put(shared.members, rebuilt, shared.basis.field())
@@ -109,7 +112,10 @@ class PGDGroup(Group):
             self._share()
 
     def reflect(self, instants: slice) -> Array:
-        """W - F/k, a field of the group; the next call overwrites it."""
+        """W - F/k at all instants; the next call overwrites it.
+
+        Shape (n_boundary, n_substructures, n_instants), scaled.
+        """
         for shared in self.shared:
             columns = self._columns(shared.members, self._reflected)
             np.matmul(shared.incoming, shared.basis.time_functions, out=columns)
@@ -139,7 +145,7 @@ class PGDGroup(Group):
         return field.reshape(len(field), -1, order="F")
 
     def _put(self, members: Sequence[int], field: Array, columns: Array) -> None:
-        """Write a matrix as of `_columns` into some members of a group field."""
+        """Write a matrix, (n_boundary, n_columns), into members of a group field."""
         positions = [self._positions[number] for number in members]
         field[:, positions] = columns.reshape(len(field), len(positions), -1, order="F")
 

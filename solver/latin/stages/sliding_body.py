@@ -176,8 +176,8 @@ class Slide:
             enough.tolist(),
             strict=True,
         )
-        for retreat, least, most, end, load, allowed in instants:
-            state = _State(behind + retreat, least, most, end - shift, load)
+        for retreat, lower, upper, end, load, allowed in instants:
+            state = _State(behind + retreat, lower, upper, end - shift, load)
             found = self._followed(state, allowed)
             if found is None:
                 found = self._between(state)
@@ -189,15 +189,16 @@ class Slide:
     def _followed(self, state: _State, enough: float) -> tuple[float, Array] | None:
         """Step to the balance of forces by straight lines, and the new `behind`.
 
-        Forces balance up to `enough`, scaled. None where no line leads to a balance.
+        That has shape (n_points,), scaled. Forces balance up to `enough`, scaled. None
+        where no line leads to a balance.
         """
         # The nearer the iteration is to its end, the less is left to shift.
-        behind, least, most, end, load = state
+        behind, lower, upper, end, load = state
         pulled = self._stiffness.dot
         wanted = behind
         step = 0.0
         for trial in range(TRIALS):
-            held = np.minimum(np.maximum(wanted, least), most)
+            held = np.minimum(np.maximum(wanted, lower), upper)
             unbalanced = float(pulled(held)) + load
             if end > step:
                 unbalanced += self._spring * (end - step)
@@ -220,13 +221,13 @@ class Slide:
     def _between(self, state: _State) -> tuple[float, Array]:
         """Step to the balance of forces by interpolation, and the new `behind`.
 
-        Unbalanced forces are found at all steps at which a point begins to slip or the
-        spring to pull.
+        That has shape (n_points,), scaled. The unbalanced forces are computed at all
+        steps at which a point begins to slip or the spring to pull.
         """
-        behind, least, most, end, load = state
-        turns = np.sort(np.concatenate([behind - most, behind - least, [end]]))
+        behind, lower, upper, end, load = state
+        turns = np.sort(np.concatenate([behind - upper, behind - lower, [end]]))
         steps = np.append(turns, behind.mean())
-        held = np.clip(behind[:, None] - steps, least[:, None], most[:, None])
+        held = np.clip(behind[:, None] - steps, lower[:, None], upper[:, None])
         pulled = self._spring * np.maximum(end - steps, 0.0)
         *unbalanced, at_mean = self._stiffness @ held + pulled + load
         if at_mean == 0.0:
@@ -235,7 +236,7 @@ class Slide:
             step = float(turns[0] + unbalanced[0] / self._spring)
         else:
             step = float(np.interp(0.0, unbalanced[::-1], turns[::-1]))
-        return step, np.clip(behind - step, least, most)
+        return step, np.clip(behind - step, lower, upper)
 
 
 class _State(NamedTuple):
@@ -245,7 +246,7 @@ class _State(NamedTuple):
     ----------
     behind
         Distance of the points behind the body, shape (n_points,).
-    least, most
+    lower, upper
         Bounds on that distance where a point slips, same shape.
     end
         Step up to which the spring pulls.
@@ -254,8 +255,8 @@ class _State(NamedTuple):
     """
 
     behind: Array
-    least: Array
-    most: Array
+    lower: Array
+    upper: Array
     end: float
     load: float
 
