@@ -68,6 +68,7 @@ def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np
         size = np.abs(slip)
         normal = group.law.normal
         if normal is not None:
+            # An open point moves freely, and is no measure of slip.
             touches = group.law.by_point(force[normal.component.above]) > 0.0
             size = np.where(touches, size, 0.0)
             distance = np.where(touches, distance, 0.0)

@@ -214,6 +214,7 @@ def sliding_share(problem: Problem) -> float:
     first, *others = problem.rubbing.values()
     if others and all(law.is_on_support for law in problem.rubbing.values()):
         return 1.0
+    # Interfaces are alike, so the first one stands for all.
     capacity = first.tangential.bound.sum(axis=0)
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)

@@ -96,6 +96,7 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     """
     force, is_known = known_forces(problem, contact_force)
     balance, needed = balance_of_rows(problem, displacement)
+    # Unknown forces balance the elasticity, and are opposite across cuts.
     opposite = _sum_of_sides(problem)
     right = np.concatenate(
         [needed - balance @ force, np.zeros((opposite.shape[0], problem.n_instants))]

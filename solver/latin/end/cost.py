@@ -294,6 +294,7 @@ def run_cost(
         iterations *= PLAIN
     iterations = min(iterations, most)
     is_worth_it = latin.finish is not None and costs.afford(iterations, WAIT)
+    # Bases need the proof of a status step whatever it costs.
     takes_step = has_solver and (isinstance(latin.linear, PGD) or is_worth_it)
     incremental = costs.condensing + SYSTEMS * costs.n_instants * costs.system
     seconds = BEGINNING + WATCHED * iterations * costs.iteration
@@ -332,6 +333,7 @@ def _memory(problem: Problem, *, takes_step: bool, has_reference: bool) -> float
     if not rubs_on_supports(problem):
         n_jumps = jumps_in(problem)
         condensation = n_jumps * (float(n_jumps) + problem.n_dofs)
+    # The reference is solved before the run, so its memory is free again by then.
     numbers = float((FIELDS + remembered) * field)
     if takes_step:
         numbers += condensation

@@ -184,6 +184,7 @@ class StopState:
         self.estimate.deadline = (
             began + self._stop.seconds - iterate.seconds - self.seconds
         )
+        # One number that is not finite makes the sum of squares not finite.
         if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             return Decision(
                 self._billed(iterate, began), status=diverged(iterate.number)
@@ -197,6 +198,7 @@ class StopState:
         decision = Decision(self._billed(iterate, began), error, status, certificate)
         if is_solution and self._may_finish:
             return self._finished_by_itself(iterate, decision, residual)
+        # A search goes on though its answer is known, until it comes to its own end.
         goes_on = self._searches and status is None
         if certificate is None or not self._may_finish or goes_on:
             return decision

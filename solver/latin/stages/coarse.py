@@ -38,6 +38,7 @@ class CoarseProblem:
         systems: list[sparse.coo_array] = []
         constant = load.astype(float)
         carries_macro = np.diff(basis.indptr) > 0
+        # Members of a group have the same system, which is assembled for each of them.
         for group in groups:
             if not carries_macro[group.rows].any():
                 continue
@@ -192,6 +193,7 @@ def _shared_basis(
     has_same_columns = np.array_equal(columns[:, position], indices)
     if not has_same_columns or not np.all(values == values[0]):
         return None
+    # One member's part of the basis serves all; only the macro unknowns differ.
     local = np.zeros((n_carrying, len(first)))
     local[np.repeat(np.arange(n_carrying), counts[:, 0]), position] = values[0]
     entries = np.ones(columns.size), (columns.ravel(), np.arange(columns.size))

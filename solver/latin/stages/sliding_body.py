@@ -10,8 +10,6 @@ deformation, whatever the spring.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from solver.arrays import Array, Indices
@@ -177,23 +175,46 @@ class Slide:
             strict=True,
         )
         for retreat, lower, upper, end, load, allowed in instants:
-            state = _State(behind + retreat, lower, upper, end - shift, load)
-            found = self._followed(state, allowed)
+            behind = behind + retreat
+            rest = end - shift
+            found = self._followed(behind, lower, upper, rest, load, allowed)
             if found is None:
-                found = self._between(state)
+                found = self._between(behind, lower, upper, rest, load)
             step, behind = found
             shift += step
             steps.append(step)
         return np.cumsum(steps)
 
-    def _followed(self, state: _State, enough: float) -> tuple[float, Array] | None:
-        """Step to the balance of forces by straight lines, and the new `behind`.
+    def _followed(
+        self,
+        behind: Array,
+        lower: Array,
+        upper: Array,
+        end: float,
+        load: float,
+        enough: float,
+    ) -> tuple[float, Array] | None:
+        """Step to the balance of forces at an instant, by straight lines.
 
-        That has shape (n_points,), scaled. Forces balance up to `enough`, scaled. None
-        where no line leads to a balance.
+        Parameters
+        ----------
+        behind
+            Distance of the points behind the body before the step, shape (n_points,).
+        lower, upper
+            Bounds on that distance, at which a point slips, same shape.
+        end
+            Step up to which the spring pulls.
+        load
+            Load along the motion.
+        enough
+            Unbalanced force that counts as balance.
+
+        Returns
+        -------
+        The step, and the distance behind after it, shape (n_points,); None where no
+        line leads to a balance. All are scaled.
         """
         # The nearer the iteration is to its end, the less is left to shift.
-        behind, lower, upper, end, load = state
         pulled = self._stiffness.dot
         wanted = behind
         step = 0.0
@@ -218,13 +239,15 @@ class Slide:
             wanted = behind - step
         return None
 
-    def _between(self, state: _State) -> tuple[float, Array]:
-        """Step to the balance of forces by interpolation, and the new `behind`.
+    def _between(
+        self, behind: Array, lower: Array, upper: Array, end: float, load: float
+    ) -> tuple[float, Array]:
+        """Step to the balance of forces at an instant, by interpolation.
 
-        That has shape (n_points,), scaled. The unbalanced forces are computed at all
-        steps at which a point begins to slip or the spring to pull.
+        The unbalanced forces are computed at all steps at which a point begins to slip
+        or the spring to pull. Arguments and result are those of `_followed`, with
+        shapes (n_points,).
         """
-        behind, lower, upper, end, load = state
         turns = np.sort(np.concatenate([behind - upper, behind - lower, [end]]))
         steps = np.append(turns, behind.mean())
         held = np.clip(behind[:, None] - steps, lower[:, None], upper[:, None])
@@ -237,28 +260,6 @@ class Slide:
         else:
             step = float(np.interp(0.0, unbalanced[::-1], turns[::-1]))
         return step, np.clip(behind - step, lower, upper)
-
-
-class _State(NamedTuple):
-    """State of a sliding body at an instant, before its step; all scaled.
-
-    Attributes
-    ----------
-    behind
-        Distance of the points behind the body, shape (n_points,).
-    lower, upper
-        Bounds on that distance where a point slips, same shape.
-    end
-        Step up to which the spring pulls.
-    load
-        Load along the motion.
-    """
-
-    behind: Array
-    lower: Array
-    upper: Array
-    end: float
-    load: float
 
 
 def _load_along(problem: Problem, motion: Array) -> Array:
