@@ -109,7 +109,7 @@ class AndersonState:
         )
 
     def _forget(self) -> None:
-        """Give up the memory."""
+        """Forget all images and differences."""
         self._count = 0
         self._smallest = np.inf
 
