@@ -1,4 +1,4 @@
-"""The multiscale LATIN method: parts to put one together, its iterates, and a driver to an end."""
+"""The multiscale LATIN method: its parts, its iterates, and the driver of a run."""
 
 from solver.latin.anderson import Anderson
 from solver.latin.direction.directions import Auto, Paper

@@ -1,8 +1,7 @@
-"""Indicators that the iteration computes of itself; none is an error (solver/README.md, 4)."""
+"""Indicators of an iterate, none of which is an error (solver/README.md, 4)."""
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def latin_indicator(iterate: Iterate) -> float:
-    """Eta, the relative squared distance of linear and local stage (paper, eq. 2).
+    """LATIN indicator eta: relative squared distance of both stages (paper, eq. 2).
 
     With ||s||^2 = integral of k W^2 + F^2/k = 1/2 integral of k [(W + F/k)^2 + (W -
     F/k)^2]. Zero when both stages are zero.
@@ -38,94 +37,103 @@ def latin_indicator(iterate: Iterate) -> float:
 
 
 CREEP = 1e-2
-"""Share of the largest slip of an interface from which on a slip is one whatever the
-stages differ by, so that an early iterate shows where it slips."""
+"""Share of the largest slip of an interface from which on a point counts as slipping,
+however far the stages are apart, so that an early iterate shows where it slips."""
 
 
 def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np.int8]:
-    """Contact status of the local stage, as `Iterate.status`, shape (n_points, n_instants).
+    """Contact status of the local stage, shape (n_points, n_instants).
 
-    A point that comes to rest goes on creeping in the local stage for a hundred
-    iterations: by no more than both stages still differ by (measured). So what counts
-    as slip is more than they differ by in any slip of the interface, though never more
-    than `creep` times the largest, (n_interfaces,) or one for all. In a certified
-    solution, where they agree, all that is more than rounding counts. Bar of 50
-    elements at its end, with the paper's options: all statuses are right; with rounding
-    alone as the limit 23.5 % are wrong.
+    The values are those of `Iterate.status`. A point that comes to rest goes on
+    creeping in the local stage for a hundred iterations, by no more than the distance
+    of both stages (measured). So a slip counts if it is larger than the largest
+    distance of the stages in any slip of the interface, or than `creep` times the
+    largest slip, shape (n_interfaces,) or one for all. In a certified solution the
+    stages agree, and all slip beyond rounding counts.
+
+    Bar of 50 elements at its end, with the paper's options: all statuses are right;
+    with rounding alone as the limit 23.5 % are wrong.
     """
     moved = iterate.local_displacement
     force = iterate.boundary_local_force
-    linear = iterate.boundary_displacement, iterate.boundary_force
+    linear_moved = iterate.boundary_displacement
+    linear_force = iterate.boundary_force
     groups = iterate.problem.contact_groups
     creep = np.broadcast_to(creep, len(iterate.problem.rubbing))
     n_points = sum(len(group.points) for group in groups)
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
     for group in groups:
         slip = group.slip(moved, force)
-        apart = np.abs(slip - group.slip(*linear))
-        far = np.abs(slip)
+        distance = np.abs(slip - group.slip(linear_moved, linear_force))
+        size = np.abs(slip)
         normal = group.law.normal
         if normal is not None:
+            # An open point moves freely, and is no measure of slip.
             touches = group.law.by_point(force[normal.component.above]) > 0.0
-            far = np.where(touches, far, 0.0)
-            apart = np.where(touches, apart, 0.0)
+            size = np.where(touches, size, 0.0)
+            distance = np.where(touches, distance, 0.0)
         still = np.minimum(
-            creep[group.numbers] * group.largest(far), group.largest(apart)
+            creep[group.numbers] * group.largest(size), group.largest(distance)
         )
         status[group.points] = group.status(moved, force, slip=slip, still=still)
     return status
 
 
 SMALL_CONTACT = 1e3
-"""A contact force this many times smaller than the largest force still counts as one as
-large."""
+"""Ratio of the largest force to a contact force up to which the contact force counts as
+being as large."""
 STILL = 1e-6
-"""Share of what the largest force does to one element, below which a structure does not
-move."""
+"""Share of the displacement of one element under the largest force, up to which a
+structure counts as not moving."""
 
 
 def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
-    """Violation of the laws by W and F, (n_rows, n_instants), whatever k (solver/README.md, 4).
+    """Violation of the laws by W and F, whatever k (solver/README.md, 4).
 
-    Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which
-    is nowhere negative and zero exactly where Coulomb's law holds, and the excess of
-    |F| over q times the mean slip. In unilateral contact q = mu N with the pressing
-    force N, and with the opening g also N g where both are positive, tension times the
-    mean slip, and overlap times the mean force. Of the interface where it is worst it
-    is divided by the mean of dissipation plus the largest elastic energy, so that it is
-    defined where nothing slides; the relative gap of displacements and of forces at all
-    other interfaces is added; and all is divided by the share of the largest force that
-    friction can carry, if below one, so that a small friction force is held to the same
-    standard. Zero if and only if all laws hold, up to the rounding of the fields.
+    Friction with bound q and slip increment v violates its law by q|v| + F v with F cut
+    to |F| <= q, which is nowhere negative and zero exactly where Coulomb's law holds,
+    and by the excess of |F| over q times the mean slip. In unilateral contact q = mu N
+    with the pressing force N, and the violation with the opening g is also N g where
+    both are positive, tension times the mean slip, and overlap times the mean force.
+
+    The violation of the worst interface is divided by the mean of dissipation plus the
+    largest elastic energy, so that it is defined where nothing slides. The relative
+    gaps of displacements and of forces at all other interfaces are added. The sum is
+    divided by the share of the largest force that friction can carry, if below one, so
+    that a small friction force is held to the same standard. The result is zero if and
+    only if all laws hold, up to the rounding of the fields.
+
+    `displacement` and `force` have shape (n_rows, n_instants), scaled.
     """
     noise = _rounding(displacement, force)
     groups = _known_groups(problem)
     behaviours = [group.law.behaviour(displacement, force, noise) for group in groups]
-    energy = _elastic_energy(problem, displacement, beyond(force, noise)) + sum(
-        float(behaviour.dissipated.sum()) for behaviour in behaviours
-    )
-    allowance = sum(float(behaviour.bound.sum()) for behaviour in behaviours)
-    allowance = allowance or float(np.abs(force).sum())
-    mean_slip = ratio(energy, allowance)
-    worst = max(
-        map(partial(_worst, mean_slip=mean_slip), groups, behaviours), default=0.0
-    )
+    energy = _elastic_energy(problem, displacement, beyond(force, noise))
+    energy += sum(float(behaviour.dissipated.sum()) for behaviour in behaviours)
+    largest_friction = sum(float(behaviour.bound.sum()) for behaviour in behaviours)
+    if largest_friction == 0.0:
+        largest_friction = float(np.abs(force).sum())
+    mean_slip = ratio(energy, largest_friction)
+    violations = [
+        _worst(group, behaviour, mean_slip)
+        for group, behaviour in zip(groups, behaviours, strict=True)
+    ]
+    worst = max(violations, default=0.0)
     # Against the mean energy per interface, so that many that hold do not hide one that
     # does not.
-    total = ratio(len(problem.rubbing) * worst, energy) + _gap_of_bonds(
-        problem, displacement, force, noise
-    )
+    total = ratio(len(problem.rubbing) * worst, energy)
+    total += _gap_of_bonds(problem, displacement, force, noise)
     return total / _share_of_friction(problem, force)
 
 
 def _known_groups(problem: Problem) -> list[ContactGroup]:
-    """Groups of contacts whose laws are those that `Contact.behaviour` says."""
+    """Groups of contacts whose laws are those of `Contact.behaviour`."""
     groups = problem.contact_groups
     return [group for group in groups if group.law.incremental_form() is not None]
 
 
 def _worst(group: ContactGroup, behaviour: Behaviour, mean_slip: float) -> float:
-    """Violation of the law at that interface of a group where it is largest."""
+    """Largest violation of the law at any interface of a group, an energy, scaled."""
     mean_force: Array | float = 0.0
     if behaviour.pressing is not None:
         pressed = np.maximum(behaviour.pressing, 0.0).mean(axis=1)
@@ -137,7 +145,10 @@ def _worst(group: ContactGroup, behaviour: Behaviour, mean_slip: float) -> float
 
 
 def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> float:
-    """The largest elastic energy over time; body forces work on it like the interfaces."""
+    """Largest elastic energy over time, by the work of interfaces and body forces.
+
+    `displacement` and `force` have shape (n_rows, n_instants), scaled.
+    """
     if problem.body_force_on_rows is not None:
         force = force + problem.body_force_on_rows
     work = np.einsum("ij,ij->j", displacement, force)
@@ -145,7 +156,10 @@ def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> floa
 
 
 def _rounding(displacement: Array, force: Array) -> float:
-    """What rounding makes of W and F alike; where all sticks, all that an iterate moves."""
+    """Largest rounding of W and F, or all displacement where the structure sticks.
+
+    `displacement` and `force` have shape (n_rows, n_instants), scaled.
+    """
     moved = float(np.abs(displacement).max())
     pulled = float(np.abs(force).max())
     if moved <= STILL * pulled / len(force):
@@ -154,13 +168,15 @@ def _rounding(displacement: Array, force: Array) -> float:
 
 
 def _share_of_friction(problem: Problem, force: Array) -> float:
-    """Share of the largest force that friction, or contact that may open, can carry; at most 1."""
+    """Share of the largest force that friction and contacts can carry, at most 1.
+
+    `force` has shape (n_rows, n_instants), scaled.
+    """
     largest = float(np.abs(force).max())
     laws = [group.law for group in problem.contact_groups]
     carried = max((law.carried(force) for law in laws), default=0.0)
-    capacity = max(
-        sum(law.capacity(problem.is_held) for law in laws), SMALL_CONTACT * carried
-    )
+    by_friction = sum(law.capacity(problem.is_held) for law in laws)
+    capacity = max(by_friction, SMALL_CONTACT * carried)
     if capacity > 0.0 and largest > 0.0:
         return min(capacity / largest, 1.0)
     return 1.0
@@ -169,18 +185,22 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
 def _gap_of_bonds(
     problem: Problem, displacement: Array, force: Array, noise: float
 ) -> float:
+    """Relative gaps of displacements and of forces at all other interfaces, added.
+
+    `displacement` and `force` have shape (n_rows, n_instants), scaled; gaps up to
+    `noise` are rounding.
+    """
     k = problem.direction
     gaps_of_laws = [law.gaps(displacement, force, noise, k) for law in problem.laws]
     apart = sum(gaps.displacement for gaps in gaps_of_laws)
     unbalanced = sum(gaps.force for gaps in gaps_of_laws)
-    return float(
-        np.sqrt(ratio(apart, squared(displacement)))
-        + np.sqrt(ratio(unbalanced, squared(force)))
-    )
+    of_displacement = np.sqrt(ratio(apart, squared(displacement)))
+    of_force = np.sqrt(ratio(unbalanced, squared(force)))
+    return float(of_displacement + of_force)
 
 
 def ratio(part: float, whole: float) -> float:
-    """Divide, where nothing of nothing is zero and something of nothing is infinite."""
+    """Quotient, which is 0 for 0 / 0 and infinite for other numbers over 0."""
     if part == 0.0:
         return 0.0
     if whole != 0.0:

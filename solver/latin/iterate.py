@@ -1,4 +1,4 @@
-"""What the iteration shows: read-only snapshots, whose fields are computed when looked at."""
+"""Iterates: read-only snapshots of the iteration, with fields computed on demand."""
 
 from __future__ import annotations
 
@@ -18,23 +18,26 @@ from solver.reduction.basis import SharedBasis
 
 @dataclass(frozen=True, eq=False)
 class UpdateProgress:
-    """How far the update of k has come, and the k of the next iteration, shape (n_rows,).
+    """State of the k update.
 
     Attributes
     ----------
     phase
-        Whether k is that of the start and may change ("first"), another on trial
-        ("updated"), or stays as it is ("returned").
+        State of k: the first one, which may change ("first"), another one on trial
+        ("updated"), or one that stays as it is ("returned").
+    k
+        Search direction of the next iteration, shape (n_rows,), scaled.
     count
-        First: iterations on end with hardly a change of status. Updated: iterations
-        since the last trial.
+        In the phase "first", successive iterations with hardly a change of status; in
+        "updated", iterations since the last trial.
     status
         Contact status of the last iteration, shape (n_points, n_instants), where k
         follows it.
-    fields, violation
+    fields
         W and F of the linear stage at the last trial, shape (n_rows, n_instants) each,
-        from where the next iteration goes on if its k is another; and the k-free
-        indicator of these.
+        scaled. The next iteration starts from them if it has another k.
+    violation
+        The k-free indicator of these fields.
     """
 
     phase: Literal["first", "updated", "returned"]
@@ -47,16 +50,20 @@ class UpdateProgress:
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """From where an iteration can go on: exactly, but for an acceleration, which begins anew.
+    """State from which an iteration goes on exactly, but for its acceleration.
+
+    An acceleration begins anew.
 
     Attributes
     ----------
-    outgoing, bases
-        W + F/k of the linear stage, shape (n_rows, n_instants), scaled, and the bases
-        that hold it, if any do.
+    number, seconds
+        Iterations done, and their time, s.
+    outgoing
+        W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
+    bases
+        Separated bases that hold it, one per substructure; empty for full fields.
     course
-        How far the update of k has come; None where the fields are those of another
-        run.
+        State of the k update; None where the fields are those of another run.
     """
 
     number: int
@@ -68,39 +75,40 @@ class Checkpoint:
 
 @dataclass(frozen=True, eq=False)
 class Iterate:
-    """One LATIN iterate: the linear stage's s and the local stage's s^ that it came from.
+    """LATIN iterate: the linear stage's s and the local stage's s^ that led to it.
 
-    Properties without a leading "boundary" are SI fields of the whole structure.
+    Properties whose names do not begin with "boundary" are SI fields of the whole
+    structure.
 
     Attributes
     ----------
     number, seconds
-        Iterations done, and time that the method took so far, set-up included, looking
-        excluded.
+        Iterations done, and time that the method took so far, set-up included, without
+        the time of its consumer, s.
     k
         Search direction of the rows, shape (n_rows,), scaled.
     outgoing, incoming
         W + F/k and W - F/k of the linear stage, shape (n_rows, n_instants), scaled,
         read-only.
     local_displacement
-        W^ of the local stage, same shape, bit by bit as the laws gave it.
+        W^ of the local stage, same shape, equal to the bit to the result of the laws.
     local_incoming
-        W - F/k that the local stage read, which is its own W^ - F^/k.
+        W - F/k that the local stage read, which is its own W^ - F^/k, same shape.
     bases
-        The separated bases that hold the linear stage, one per substructure, if any do;
-        of a certified solution those of the search that led to it, which hold less than
-        it is.
+        Separated bases that hold the linear stage, one per substructure; empty for full
+        fields. In a certified solution they are those of the search that led to it, and
+        do not hold all of it.
     course
-        How far the update of k has come, with the k of the next iteration.
+        State of the k update, with the k of the next iteration.
     residual
-        Of an iterate that is a certified solution (`solver.latin.end.certified`), its
-        KKT residual relative to the contact force; None of all others.
+        KKT residual of a certified solution (`solver.latin.end.certified`), relative to
+        the contact force; None in all other iterates.
     force
-        F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid
-        motion the digits of F/k may be lost.
+        F of a certified solution, shape (n_rows, n_instants), scaled; None in all other
+        iterates. Beside a body's rigid motion the digits of F/k may be lost.
     is_answer
-        Whether such a one stands beside the iterates of a search that came to its own
-        end, and so is no iteration.
+        Whether a certified solution stands beside the iterates of a search that came to
+        its own end, and so is no iteration.
     """
 
     number: int
@@ -119,21 +127,20 @@ class Iterate:
 
     @property
     def iterations(self) -> int:
-        """Iterations done; an answer beside them is none."""
+        """Number of iterations done, without an answer that stands beside them."""
         return self.number - self.is_answer
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What is needed to go on from here."""
-        new = self.course
-        if new is not None and new.k is not self.k:
-            displacement, force = new.fields
-            outgoing = read_only(displacement + force / new.k[:, None])
-            return Checkpoint(self.number, self.seconds, outgoing, course=new)
+        """State from which the iteration goes on."""
+        course = self.course
+        if course is not None and course.k is not self.k:
+            displacement, force = course.fields
+            outgoing = read_only(displacement + force / course.k[:, None])
+            return Checkpoint(self.number, self.seconds, outgoing, course=course)
+        bases: tuple[SharedBasis, ...] = ()
         if self.residual is None:
             bases = self.bases
-        else:
-            bases = ()
         return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)
 
     @property
@@ -169,16 +176,19 @@ class Iterate:
 
     @cached_property
     def displacement(self) -> Array:
-        """Displacement of the linear stage, shape (n_dofs, n_instants), m; mean at cuts."""
+        """Displacement of the linear stage, shape (n_dofs, n_instants), m.
+
+        At cuts it is the mean of both sides.
+        """
         mean = self.problem.mean_of_rows @ self.boundary_displacement
         return np.asarray(mean) * self.problem.scales.displacement
 
     @cached_property
     def contact_force(self) -> Array:
-        """Nodal forces of all interfaces with friction on the bodies above, linear stage, N.
+        """Nodal forces of interfaces with friction on the bodies above, linear stage.
 
-        Shape (n_forces, n_instants), stacked as `Problem.sum_of_contact` says; friction
-        is as the law says where only its sum with a reaction can be found.
+        Shape (n_forces, n_instants), N, stacked as `Problem.sum_of_contact` says.
+        Friction is that of the law where only its sum with a reaction can be found.
         """
         force = np.asarray(self.problem.sum_of_contact @ self.boundary_force)
         force = self.problem.with_driven_friction(force, self.boundary_displacement)
@@ -186,16 +196,19 @@ class Iterate:
 
     @property
     def friction_force(self) -> Array:
-        """Nodal friction force on the body above, linear stage, (n_points, n_instants), N.
+        """Nodal friction force on the body above, linear stage.
 
-        Points of all interfaces with friction, one interface after the other.
+        Shape (n_points, n_instants), N: points of all interfaces with friction, one
+        interface after the other.
         """
-        places = [own[-1] for own in self.problem.contact_places.values()]
-        nothing = np.zeros((0, self.problem.n_instants))
-        return np.concatenate([nothing, *(self.contact_force[own] for own in places)])
+        forces = [np.zeros((0, self.problem.n_instants))]
+        for components in self.problem.contact_places.values():
+            # The tangential component is the last one.
+            forces.append(self.contact_force[components[-1]])
+        return np.concatenate(forces)
 
     def contact(self, name: str) -> ContactFields:
-        """One interface with friction: forces of the linear stage, status of the local one."""
+        """Fields of an interface with friction, with the status of the local stage."""
         status = self.status[self.problem.contact_points[name]]
         moved = self.boundary_displacement
         return contact_fields(self.problem, name, self.contact_force, moved, status)

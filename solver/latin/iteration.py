@@ -8,7 +8,7 @@ from itertools import count
 
 from numpy.linalg import LinAlgError
 
-from solver.arrays import read_only
+from solver.arrays import Array, read_only
 from solver.checks import Numbers, Part, check_value
 from solver.discrete.problem import Problem
 from solver.latin.anderson import AndersonState
@@ -20,7 +20,7 @@ from solver.latin.stages.local import LocalStage
 from solver.refusal import RefusedError
 
 STARTING = 0.5
-"""Share of the time that a run may take which its start may take."""
+"""Largest share of the run's time limit that the start may use."""
 
 
 def iterations(
@@ -35,8 +35,8 @@ def iterations(
     problem, latin
         What to solve, and the method.
     start
-        Where to go on from; without one the method says where to start, and a body that
-        contact alone holds where it comes to rest.
+        State from which the run goes on. Without one the method has its own start, and
+        a body that contact alone holds starts where it comes to rest.
 
     Yields
     ------
@@ -49,10 +49,14 @@ def iterations(
         check_value("start", start, Part(Checkpoint))
         check_value("start.outgoing", start.outgoing, Numbers((shape,)))
     began = time.perf_counter()
-    seconds = start.seconds if start else 0.0
+    seconds = 0.0
+    first = 1
+    if start is not None:
+        seconds = start.seconds
+        first = start.number + 1
     with one_blas_thread:
         iteration = Iteration(problem, latin, start)
-    for number in count(start.number + 1 if start else 1):
+    for number in count(first):
         with one_blas_thread:
             iteration.local_stage()
             iteration.linear_stage()
@@ -67,10 +71,17 @@ def iterations(
 
 
 class Iteration:
-    """Both stages of the method on a problem, in turn, and what passes between them.
+    """Both stages of the method on a problem, in turn, with one k.
 
-    `incoming` and `outgoing` are W - F/k and W + F/k of the linear stage, (n_rows,
-    n_instants), read-only, and new after every linear stage.
+    Attributes
+    ----------
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
+    linear, local
+        The two stages.
+    incoming, outgoing
+        W - F/k and W + F/k of the linear stage, shape (n_rows, n_instants), scaled,
+        read-only, and new after every linear stage.
     """
 
     def __init__(
@@ -78,21 +89,13 @@ class Iteration:
     ) -> None:
         self._problem = problem
         self._latin = latin
-        course = start.course if start else None
-        self._course = course or latin.direction.begin(problem, start)
+        if start is not None and start.course is not None:
+            self._course = start.course
+        else:
+            self._course = latin.direction.begin(problem, start)
         self.k = self._course.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
-        try:
-            self.linear = LinearStage(
-                problem, self.k, latin.linear, blocks, multiscale=latin.multiscale
-            )
-        except LinAlgError:
-            raise RefusedError(
-                "k_scale",
-                latin.direction.scale,
-                "a k that holds every substructure in the digits of a number",
-                "bring the factors on k nearer to 1, or the sides of the elements to each other",
-            ) from None
+        self.linear = _linear_stage(problem, self.k, latin, blocks)
         self.local = LocalStage(problem, self.k, blocks)
         self._mixture: AndersonState | None = None
         if latin.acceleration is not None and self.linear.is_full:
@@ -107,11 +110,12 @@ class Iteration:
         self._show()
 
     def _show(self) -> None:
+        """Read the fields of the linear stage."""
         self.incoming = read_only(self.linear.incoming())
         self.outgoing = read_only(self.linear.outgoing())
 
     def local_stage(self) -> None:
-        """Obey the laws along E+ (paper, problem 2.1)."""
+        """Apply the interface laws along E+ (paper, problem 2.1)."""
         self.linear.read(self.local(self.incoming))
 
     def linear_stage(self) -> None:
@@ -125,17 +129,17 @@ class Iteration:
         self._show()
 
     def choose_direction(self) -> None:
-        """Choose the k of the next iteration, which is made anew where that is another."""
+        """Choose the k of the next iteration."""
         if self._course.phase != "returned":
             self._course = self._latin.direction.follow(self.snapshot(), self._course)
 
     @property
     def has_new_k(self) -> bool:
-        """Whether the next iteration has another k, and is to be made anew."""
+        """Check whether the next iteration has another k, and so needs new stages."""
         return self._course.k is not self.k
 
     def snapshot(self, number: int = 0, seconds: float = 0.0) -> Iterate:
-        """The iterate of this number, after so many seconds."""
+        """Iterate with a number and a time in seconds."""
         return Iterate(
             number=number,
             seconds=seconds,
@@ -148,3 +152,27 @@ class Iteration:
             bases=self.linear.bases(),
             course=self._course,
         )
+
+
+def _linear_stage(
+    problem: Problem, k: Array, latin: Latin, blocks: Blocks
+) -> LinearStage:
+    """Linear stage of a method with a k of shape (n_rows,), scaled.
+
+    Raises
+    ------
+    RefusedError
+        If k is so far from the stiffness that a substructure becomes singular.
+    """
+    try:
+        return LinearStage(
+            problem, k, latin.linear, blocks, multiscale=latin.multiscale
+        )
+    except LinAlgError:
+        raise RefusedError(
+            "k_scale",
+            latin.direction.scale,
+            "a k that holds every substructure in the digits of a number",
+            "bring the factors on k nearer to 1, or the sides of the elements to each "
+            "other",
+        ) from None

@@ -1,4 +1,4 @@
-"""The method as a value: parts that are plugged together (paper, Fig. 1; solver/README.md, 2)."""
+"""The LATIN method as a value made of parts (paper, Fig. 1; solver/README.md, 2)."""
 
 from __future__ import annotations
 
@@ -28,25 +28,28 @@ class Latin:
     direction
         Search direction k: `Auto`, `Paper`, or `FromStatus` of one of these.
     linear
-        How fields are held: `Full`, or `PGD`.
+        Form of the fields in the linear stage: `Full`, or `PGD`.
     multiscale
-        Whether macro forces are in balance after every iteration, by the coarse
-        problem.
+        Whether the coarse problem brings macro forces into balance in every iteration.
     relaxation
-        Share of the new iterate, the rest being the one before.
+        Share of the new iterate; the rest is the one before.
+    acceleration
+        `Anderson`, or None.
     start
-        `Nested`, or None: zero, and of a body that only contact holds the place where
-        it comes to rest.
+        `Nested`, or None. Without it fields start at zero, and a body that contact
+        alone holds starts where it comes to rest.
     finish
         `StatusStep`, which ends a run with a certified solution, or None.
+    stop
+        Criteria that end a run.
     threads
-        That share an iteration on a large structure, in each of which BLAS has one; the
-        results are the same to the bit.
+        Number of threads that share an iteration on a large structure, each with one
+        thread of BLAS; the results are the same to the bit.
 
     Raises
     ------
     RefusedError
-        For a number out of its range, or what is no such part.
+        For a number out of its range, or a value that is no such part.
 
     Examples
     --------

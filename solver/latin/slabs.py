@@ -1,10 +1,10 @@
-"""Many cycles, in slabs of time: each begins with the fields of the one before.
+"""Many cycles in slabs of time, each of which begins with the fields of the one before.
 
 A load that repeats itself, exactly or nearly, makes the fields of a cycle those of the
-cycle before or nearly so. Over the whole interval an iteration does not know that, and
+cycle before or nearly so. Over the whole interval the iteration does not use that, and
 corrects all cycles alike though the first is soon right. In slabs of a cycle the first
-take as many iterations as one cycle does, the next few, and one or two once friction
-has settled (solver/study/README.md, 9).
+takes as many iterations as one cycle does, the next slabs take few, and once friction
+has settled they take one or two (solver/study/README.md, 9).
 """
 
 from __future__ import annotations
@@ -19,26 +19,34 @@ from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
 from solver.latin.direction.directions import SearchDirection
 from solver.latin.direction.from_status import FromStatus
-from solver.latin.end.status import Decision, Ending
+from solver.latin.end.status import Decision, Ending, Status
 from solver.latin.end.status_step import StatusStep
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.method import Latin
-from solver.latin.solve import Solution, record, solve
+from solver.latin.solve import Record, Solution, record, solve
 from solver.latin.start import Nested
 from solver.reference.distance import Distance
 from solver.refusal import RefusedError
 
 SHARE = 1e-3
-"""Share of the accuracy at which the k-free indicator ends a slab too: what changes
-foretell takes eleven iterations to know, and a field that goes on as before needs
-one."""
+"""Share of the accuracy at which the k-free indicator ends a slab too: an estimate from
+changes needs eleven iterations, and a field that goes on as before needs one."""
 
 
 @dataclass(frozen=True)
 class Slab:
-    """A slab of time, ready to be solved: its instants in the whole, what to solve, and from where.
+    """Slab of time, ready to be solved.
 
-    Slabs of one interval share the method, with its k.
+    Attributes
+    ----------
+    instants
+        Instants of the slab in the whole interval.
+    problem
+        The problem at these instants.
+    latin
+        Method, with its k, which all slabs of an interval share.
+    start
+        State from which the run goes on; None for the first slab.
     """
 
     instants: slice
@@ -49,25 +57,48 @@ class Slab:
 
 @dataclass(frozen=True, kw_only=True)
 class _OfWhole(SearchDirection):
-    """The search direction of the whole interval, whatever acts in a slab of it."""
+    """Search direction of the whole interval, `k` of shape (n_rows,), in a slab."""
 
     k: Array
 
     def rule(self, problem: Problem) -> Array:
+        """Search direction k of the rows, shape (n_rows,), scaled."""
         return self.k
 
 
 def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
-    """The first slab of a problem.
+    """First slab of a problem.
 
-    It has `length` instants, those of a cycle or of several, and one more, the state of
-    rest at which time begins.
+    The slab has `length` instants, those of a cycle or of several, and one more, the
+    state of rest at which time begins.
 
     Raises
     ------
     RefusedError
-        If the problem or the method goes by more than fields and where sliders stand.
+        If the problem or the method remembers more than fields and sliders.
     """
+    _check_slabs(problem, latin, length)
+    instants = slice(0, min(1 + length, problem.n_instants))
+    stop = latin.stop
+    if np.isfinite(stop.accuracy):
+        stop = replace(stop, sufficient=min(SHARE * stop.accuracy, 1.0) ** 2)
+    start = None
+    nested = latin.start
+    if nested is not None:
+        start = Nested(
+            lambda: (_during(coarser, instants) for coarser in nested.coarser())
+        )
+    method = replace(
+        latin,
+        direction=_OfWhole(k=latin.direction.of(problem)),
+        start=start,
+        stop=stop,
+    )
+    return Slab(instants, _during(problem, instants), method)
+
+
+def _check_slabs(problem: Problem, latin: Latin, length: int) -> None:
+    """Refuse a problem that slabs of `length` instants cannot solve one by one."""
     if length < 1:
         raise RefusedError(
             "slab", length, "instants, from 1 on", "give those of a cycle"
@@ -87,51 +118,43 @@ def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
                 "laws that remember nothing but where sliders stand",
                 "solve the whole interval at once",
             )
-    instants = slice(0, min(1 + length, problem.n_instants))
-    start = None
-    nested = latin.start
-    stop = latin.stop
-    if nested is not None:
-        start = Nested(
-            lambda: (_during(coarser, instants) for coarser in nested.coarser())
-        )
-    if np.isfinite(stop.accuracy):
-        stop = replace(stop, sufficient=min(SHARE * stop.accuracy, 1.0) ** 2)
-    method = replace(
-        latin,
-        direction=_OfWhole(k=latin.direction.of(problem)),
-        start=start,
-        stop=stop,
-    )
-    return Slab(instants, _during(problem, instants), method)
 
 
 def _during(
     problem: Problem, some: slice, start: Mapping[str, Array] | None = None
 ) -> Problem:
-    """A problem at instants that follow each other.
+    """Problem at some successive instants.
 
-    `start` is where the sliders of every interface with friction stand before the first
-    of them, as of `Friction.slider`, (n_pairs,) each; None at zero.
+    Parameters
+    ----------
+    problem
+        Problem of the whole interval.
+    some
+        The instants.
+    start
+        Positions of the sliders of interfaces with friction before the first of them,
+        as of `Friction.slider`, shape (n_pairs,) each, scaled; None: all zero.
     """
 
     def during(field: Array | None) -> Array | None:
+        """Values of a field of shape (n, n_instants), if there is one."""
         if field is None:
             return None
         return field[:, some]
 
-    parts = tuple(
+    parts = [
         replace(
             part, body_force=during(part.body_force), free_force=during(part.free_force)
         )
         for part in problem.substructures
-    )
+    ]
     interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
-    for name, before in (start or {}).items():
-        interfaces[name] = problem.rubbing[name].during(some).begun(before)
+    if start is not None:
+        for name, slider in start.items():
+            interfaces[name] = problem.rubbing[name].during(some).begun(slider)
     return replace(
         problem,
-        substructures=parts,
+        substructures=tuple(parts),
         interfaces=interfaces,
         instants=problem.instants[some],
         rest=during(problem.rest),
@@ -143,7 +166,7 @@ def _during(
 def next_slab(
     problem: Problem, slab: Slab, solved: Iterate, length: int
 ) -> Slab | None:
-    """The slab that follows one, and its solution; None after the last."""
+    """Slab of `length` instants after one that is solved; None after the last."""
     first = slab.instants.stop
     if first == problem.n_instants:
         return None
@@ -173,32 +196,43 @@ def solve_in_slabs(
     distance: Distance | None = None,
     spent: float = 0.0,
 ) -> Solution:
-    """Solution of the whole interval, slab after slab, each until the stop rule ends it.
+    """Solve the whole interval, slab after slab, each until a stop rule ends it.
 
-    The first is certified where that can be, whatever the method says: its error would
-    go on into all others. These end by estimate, as incremental solvers begin at rest.
-    The status is the first that is not convergence; a limit on seconds is on all slabs
-    together, and on those `spent` before. The last record has the distance to a
-    reference of the whole interval, if any.
+    The first slab is certified if it can be, whatever the method says, as its error
+    would go on into all others. These end by estimate, as incremental solvers begin at
+    rest. The status is the first that is not convergence.
+
+    Parameters
+    ----------
+    problem, latin
+        The problem to be solved, and the method.
+    length
+        Number of instants of a slab.
+    distance
+        Distance to a reference of the whole interval, for the last record.
+    spent
+        Time that the run took before, s; a limit on seconds is on all slabs together,
+        and on this time.
     """
     began = time.perf_counter()
     slab: Slab | None = first_slab(problem, latin, length)
     solutions: list[Solution] = []
     while slab is not None:
-        method = replace(slab.latin, finish=None if solutions else StatusStep())
+        finish = None
+        if not solutions:
+            finish = StatusStep()
+        method = replace(slab.latin, finish=finish)
         billed = spent + time.perf_counter() - began
         solutions.append(
             solve(slab.problem, method, start=slab.start, watch=False, spent=billed)
         )
         slab = next_slab(problem, slab, solutions[-1].iterate, length)
-    missed = (
-        solution
-        for solution in solutions
-        if solution.status.ending is not Ending.CONVERGED
-    )
-    status = next(missed, solutions[-1]).status
+    status = _first_failure(solutions)
     joined = _together(problem, [solution.iterate for solution in solutions])
-    *records, last = (entry for solution in solutions for entry in solution.records)
+    records: list[Record] = []
+    for solution in solutions:
+        records += solution.records
+    last = records.pop()
     records = [
         replace(entry, iteration=number) for number, entry in enumerate(records, 1)
     ]
@@ -206,15 +240,23 @@ def solve_in_slabs(
     return Solution(joined, [*records, record(joined, of_whole, distance)], status)
 
 
+def _first_failure(solutions: Sequence[Solution]) -> Status:
+    """Status of the first slab that has not converged, or of the last slab."""
+    for solution in solutions:
+        if solution.status.ending is not Ending.CONVERGED:
+            return solution.status
+    return solutions[-1].status
+
+
 def _together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
-    """Iterates of all slabs one after the other; they have no common bases."""
+    """Iterate of the whole interval, without bases, from those of all slabs."""
     if len(parts) == 1:
         return parts[0]
 
     def joined(name: str) -> Array:
-        return read_only(
-            np.concatenate([getattr(part, name) for part in parts], axis=1)
-        )
+        """Field of a name, shape (n_rows, n_instants), scaled, read-only."""
+        fields = [getattr(part, name) for part in parts]
+        return read_only(np.concatenate(fields, axis=1))
 
     return Iterate(
         number=sum(part.number for part in parts),

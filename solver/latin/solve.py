@@ -1,4 +1,4 @@
-"""Driving the iteration to an end, with a record of every iterate."""
+"""Driver of the iteration to its end, with a record of every iterate."""
 
 from __future__ import annotations
 
@@ -18,24 +18,25 @@ from solver.reference.distance import Distance
 
 @dataclass(frozen=True)
 class Record:
-    """The scalars of one iteration; an error is NaN while no reference is at hand.
+    """Scalars of one iteration.
 
     Attributes
     ----------
+    iteration
+        Number of the iteration.
     seconds
-        Time that the run took so far, s: set-up, iterations, and all that its stop
-        rules compute.
+        Time that the run took so far, with its set-up and its stop rules, s.
     indicator, behaviour
         LATIN indicator eta (paper, eq. 2), and the k-free indicator.
     estimated_error
-        Of the contact force, relative, without a reference; NaN where it is not
-        estimated.
+        Relative error of the contact force, estimated without a reference; NaN where it
+        is not estimated.
     error_displacement, error_force
-        Relative L2 distance to the reference over space and time.
+        Relative L2 distance to the reference over space and time; NaN without one.
     modes
-        Of the separated basis of every substructure; empty without bases.
+        Number of modes of every substructure; empty for full fields.
     is_answer
-        As in `Iterate`.
+        Whether the iterate is an answer beside the iterations, as in `Iterate`.
     """
 
     iteration: int
@@ -51,7 +52,7 @@ class Record:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The last good iterate of a run, its records, and how it ended."""
+    """Solution of a run: its last good iterate, its records, and its status."""
 
     iterate: Iterate
     records: list[Record]
@@ -59,7 +60,7 @@ class Solution:
 
     @property
     def is_certified(self) -> bool:
-        """Whether a status step ended it with the solution of the discrete problem."""
+        """Check whether the iterate is a certified solution of the problem."""
         return self.iterate.residual is not None
 
 
@@ -70,24 +71,43 @@ def record(
     *,
     watch: bool = True,
 ) -> Record:
-    """The scalars of an iterate; what the rules did not need is off the run's clock.
+    """Scalars of an iterate; those that no stop rule needed are off the run's clock.
 
-    `watch` says whether anybody wants indicators and estimate of every iteration, not
-    only of that at which a run ends.
+    Parameters
+    ----------
+    iterate, verdict
+        The iterate, and the decision of the stop rules on it.
+    distance
+        Distance to a reference, if there is one.
+    watch
+        Whether indicators and estimate are wanted of every iteration, and not only of
+        the last.
     """
-    estimated = verdict.estimated_error
     watch = watch or verdict.status is not None
-    known = vars(iterate)  # that is, computed for the stop rules
+    estimated = verdict.estimated_error
     if watch and math.isnan(estimated) and verdict.certificate is not None:
         estimated = verdict.certificate.distance.of_friction_force(iterate)
+    # A stop rule that needed an indicator has left it with the iterate.
+    known = vars(iterate)
+    indicator = math.nan
+    if watch or "indicator" in known:
+        indicator = iterate.indicator
+    behaviour = math.nan
+    if watch or "behaviour" in known:
+        behaviour = iterate.behaviour
+    error_displacement = math.nan
+    error_force = math.nan
+    if distance:
+        error_displacement = distance.of_displacement(iterate)
+        error_force = distance.of_friction_force(iterate)
     return Record(
         iteration=iterate.number,
         seconds=verdict.seconds,
-        indicator=iterate.indicator if watch or "indicator" in known else math.nan,
-        behaviour=iterate.behaviour if watch or "behaviour" in known else math.nan,
+        indicator=indicator,
+        behaviour=behaviour,
         estimated_error=estimated,
-        error_displacement=distance.of_displacement(iterate) if distance else math.nan,
-        error_force=distance.of_friction_force(iterate) if distance else math.nan,
+        error_displacement=error_displacement,
+        error_force=error_force,
         modes=tuple(basis.n_modes for basis in iterate.bases),
         is_answer=iterate.is_answer,
     )
@@ -100,11 +120,26 @@ def judged(
     spent: float = 0.0,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> Iterator[tuple[Iterate, Decision]]:
-    """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
+    """Iterate, and judge every iterate by the stop rules.
 
-    It goes on though a verdict says that the run ends. The run took `spent` seconds
-    before, to make the problem. Where `interrupted` returns True a status step is given
-    up, so that the iterate before it is there at once.
+    The generator goes on though a decision says that the run ends. Where a status step
+    holds, its certified solution is the last iterate.
+
+    Parameters
+    ----------
+    problem, latin
+        The problem to be solved, and the method.
+    start
+        State from which the run goes on, as for `iterations`.
+    spent
+        Time that the run took before, to make the problem, s.
+    interrupted
+        Returns True where a status step is to be given up, so that the iterate before
+        it is there at once.
+
+    Yields
+    ------
+    Iterates, and the decisions on them.
     """
     rules = StopState(latin, spent, interrupted)
     for iterate in iterations(problem, latin, start):
@@ -131,13 +166,14 @@ def solve(
     Parameters
     ----------
     problem, latin, start, spent
-        As for `judged`; the method is the fast one by default, from zero.
+        As for `judged`; by default the method is the fast one, from zero.
     distance
-        To a reference, for the errors in the records.
+        Distance to a reference, for the errors in the records.
     watch
-        Whether the records shall hold the indicators of every iteration.
+        Whether the records hold the indicators of every iteration.
     cancelled
-        Asked after every iteration, and before every linear system of a status step.
+        Returns True where the run is to end: called after every iteration, and before
+        every linear system of a status step.
     """
     records: list[Record] = []
     last = None

@@ -1,4 +1,4 @@
-"""The search direction k of every boundary row, and how it may change in a run."""
+"""Search direction k of every boundary row, and its changes in a run."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from solver.arrays import Array, read_only
 from solver.checks import POSITIVE, check
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
-from solver.laws import Bodies
+from solver.laws import Bodies, Contact
 
 LOOK = 3
-"""The iteration that tells whether bodies slip on each other anywhere. In the second
-what will stick may still slip; of 33 stacks all that slip by more than next to nothing
-showed it (measured).
+"""Iteration that shows whether bodies slip on each other anywhere. In the second,
+points that will stick may still slip; of 33 stacks all that slip by more than next to
+nothing showed it (measured).
 """
 SOFTENING = 2.0
-"""k at least, over the slope by which a friction of known bound falls with slip: below
-once the slope the local stage has several solutions. Faults with friction_ratio 0.7 to
+"""Smallest k, over the slope by which a friction of known bound falls with slip: with a
+ratio below 1 the local stage has several solutions. Faults with friction_ratio 0.7 to
 0.9: 1 % of the contact force takes 11 to 77 iterations, as many with 1.5 and 3, more
 than 300 with 1.1 (measured).
 """
@@ -28,7 +28,7 @@ than 300 with 1.1 (measured).
 
 @dataclass(frozen=True)
 class SearchDirection(ABC):
-    """A rule for k, and a factor on it (solver/README.md, 5).
+    """Rule for k, with a factor on it (solver/README.md, 5).
 
     Attributes
     ----------
@@ -48,18 +48,18 @@ class SearchDirection(ABC):
 
     @abstractmethod
     def rule(self, problem: Problem) -> Array:
-        """Search direction k of every row without the factor, shape (n_rows,), scaled."""
+        """Search direction k of rows without the factor, shape (n_rows,), scaled."""
 
     def of(self, problem: Problem) -> Array:
-        """Search direction k of every row at the start, shape (n_rows,), scaled, read-only."""
+        """Search direction k at the start, shape (n_rows,), scaled, read-only."""
         return read_only(self.scale * self.rule(problem))
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """Progress of a run from a checkpoint without any, or from none: k, and how it changes."""
+        """State of the k update at the start of a run, which may go on from another."""
         return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """Progress after an iteration, with the k of the next."""
+        """State of the k update after an iteration, with the k of the next."""
         return progress
 
 
@@ -68,65 +68,89 @@ class Paper(SearchDirection):
     """The paper's k: the stiffness of a substructure."""
 
     def rule(self, problem: Problem) -> Array:
-        """Search direction k of every row without the factor, shape (n_rows,), scaled."""
+        """Search direction k of rows without the factor, shape (n_rows,), scaled."""
         return problem.direction
 
 
 @dataclass(frozen=True)
 class Auto(SearchDirection):
-    """The automatic k, which needs no tuning; between bodies that nowhere slip it becomes larger.
+    """Automatic k, which needs no tuning, and becomes larger if no bodies slip.
 
-    Small k is for what slips: there friction is known, and the place is sought. What
-    has never slipped has its place from the start, so it loses nothing by a large k; it
-    is the force that is sought. Where a point sticks after it has slipped, a large k
-    would make force of all that its place is wrong by: stacks of which 13 % slip take
-    more than 80 iterations to 1 % of the contact force with it, 72 without (measured).
-    So k changes only if nothing slips at all.
+    A small k suits points that slip: there friction is known, and the position is
+    sought. A point that has never slipped has its position from the start, and its
+    force is sought, so a large k costs nothing. Where a point sticks after it has
+    slipped, a large k would turn the error of its position into force: stacks of which
+    13 % slip take more than 80 iterations to 1 % of the contact force with a large k,
+    72 without (measured). So k changes only if nothing slips at all.
 
-    The run then begins anew. From its fields at that time, which the small k left apart
-    from point to point, 22 to more than 120 iterations to 1 % follow, and 9 to 15 from
-    zero (measured).
+    The run then begins anew, from zero. From its fields at that time, which the small k
+    left apart from point to point, 1 % would take 22 to more than 120 iterations, and
+    it takes 9 to 15 from zero (measured).
     """
 
     def rule(self, problem: Problem) -> Array:
-        """Search direction k of every row without the factor, shape (n_rows,), scaled."""
+        """Search direction k of rows without the factor, shape (n_rows,), scaled."""
         return automatic(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """Progress at the start; k stays in a run from the fields of another, which are near."""
+        """State of the k update at the start: k may change between bodies only.
+
+        In a run from the fields of another, which are near, k stays.
+        """
         laws = problem.rubbing.values()
-        may_stick = start is None and any(
-            law.opens and not law.is_on_support for law in laws
-        )
-        return UpdateProgress("first" if may_stick else "returned", self.of(problem))
+        has_bodies = any(law.opens and not law.is_on_support for law in laws)
+        if start is None and has_bodies:
+            return UpdateProgress("first", self.of(problem))
+        return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """Progress, which ends in the third iteration: k stays if anything slips."""
-        problem = iterate.problem
-        if progress.count + 1 < LOOK:
-            return replace(progress, count=progress.count + 1)
-        local = iterate.local_displacement, iterate.boundary_local_force
-        between = (
-            group for group in problem.contact_groups if not group.law.is_on_support
-        )
-        if any(np.any(np.abs(group.status(*local)) == 1) for group in between):
+        """State of the k update, which ends in the third iteration.
+
+        k stays if any bodies slip on each other then.
+        """
+        count = progress.count + 1
+        if count < LOOK:
+            return replace(progress, count=count)
+        if _slips_between_bodies(iterate):
             return UpdateProgress("returned", progress.k)
-        k = read_only(self.scale * automatic(problem, sticks=True))
+        k = read_only(self.scale * automatic(iterate.problem, sticks=True))
         zero = np.zeros_like(iterate.outgoing)
         return UpdateProgress("returned", k, fields=(zero, zero))
 
 
+def _slips_between_bodies(iterate: Iterate) -> bool:
+    """Check whether bodies slip on each other anywhere, by the local stage."""
+    moved = iterate.local_displacement
+    force = iterate.boundary_local_force
+    for group in iterate.problem.contact_groups:
+        if not group.law.is_on_support:
+            status = group.status(moved, force)
+            if np.any(np.abs(status) == 1):
+                return True
+    return False
+
+
 def automatic(problem: Problem, *, sticks: bool = False) -> Array:
-    """Search direction k of every row by a rule that needs no tuning, shape (n_rows,), scaled.
+    """Search direction k of every row by a rule that needs no tuning.
 
-    It is that of bodies that slip on each other, or of bodies that nowhere do.
-
-    Where bodies rub it is what `solver.laws.stiffness` says, and where contact gives
-    way before it slips that in series with its spring; elsewhere the paper's, times a
+    Where bodies rub, k is that of `solver.laws.stiffness`, in series with the spring of
+    a contact that gives way before it slips; elsewhere it is the paper's k times a
     factor. With the spring left out, 1e-6 of friction force takes 52 iterations of the
     bar instead of 16, and 73 of the strand instead of 15 (measured, geometric means
-    over contact stiffnesses of 3 to 3000 and four load paths). Where friction softens
-    it is more than the slope by which it falls.
+    over contact stiffnesses of 3 to 3000 and four load paths). Where friction softens,
+    k is larger than the slope by which it falls.
+
+    Parameters
+    ----------
+    problem
+        The problem to be solved.
+    sticks
+        Whether k is that of bodies that nowhere slip on each other, and not that of
+        bodies that do.
+
+    Returns
+    -------
+    k, shape (n_rows,), scaled.
     """
     laws = list(problem.rubbing.values())
     if not laws:
@@ -136,43 +160,61 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     for first, second in problem.cuts:
         k[first] *= around.on_cuts
         k[second] *= around.on_cuts
+    parts = _sliding_parts(problem)
+    for law in laws:
+        law.around.choose(law, k, parts)
+        if sticks and isinstance(law.around, Bodies):
+            law.around.stick(law, k)
+        _raise_above_slope(law, k)
+        _soften_by_contact(law, k)
+    return k
+
+
+def _sliding_parts(problem: Problem) -> float:
+    """Number of interfaces that slide, over the share of one of them that slides."""
+    laws = problem.rubbing.values()
     # Rods on supports of their own slide all alike; of those beside each other one
     # slides far.
     if all(law.is_on_support for law in laws):
         several = 1
     else:
         several = len(laws)
-    parts = several / sliding_share(problem)
-    for law in laws:
-        law.around.choose(law, k, parts)
-        if sticks and isinstance(law.around, Bodies):
-            law.around.stick(law, k)
-        if law.tangential.softens:
-            for rows in law.tangent.sides:
-                least = (
-                    SOFTENING * len(law.tangent.sides) * law.tangential.steepest_fall
-                )
-                k[rows] = np.maximum(k[rows], least)
-        if law.tangential.softness is not None:
-            softness = law.in_parallel(law.tangential.softness)[law.points] / law.shares
-            for rows in law.tangent.sides:
-                k[rows] /= 1.0 + softness * k[rows]
-    return k
+    return several / sliding_share(problem)
+
+
+def _raise_above_slope(law: Contact, k: Array) -> None:
+    """Raise k, (n_rows,), in place, above the slope of a friction that softens."""
+    if not law.tangential.softens:
+        return
+    sides = law.tangent.sides
+    smallest = SOFTENING * len(sides) * law.tangential.steepest_fall
+    for rows in sides:
+        k[rows] = np.maximum(k[rows], smallest)
+
+
+def _soften_by_contact(law: Contact, k: Array) -> None:
+    """Put k, (n_rows,), in place, in series with the spring of a contact, if any."""
+    if law.tangential.softness is None:
+        return
+    compliance = law.in_parallel(law.tangential.softness)[law.points] / law.shares
+    for rows in law.tangent.sides:
+        k[rows] /= 1.0 + compliance * k[rows]
 
 
 def sliding_share(problem: Problem) -> float:
     """Estimate the largest share of one frictional interface that ever slides.
 
-    It is that load over all that friction can carry then, between two points and all:
-    the load of one body over one interface, where there are several alike. Where
-    displacements are prescribed the load is not known beforehand: on a rigid support
-    all may slide; bodies that rub on each other carry no more than what the
-    displacement alone makes of a rod, whose scaled stiffness is 1. Bodies on supports
-    of their own are taken to slide all along.
+    The share is the load of one body over the friction that one interface can carry at
+    the same time, and lies between that of two points and 1. Where displacements are
+    prescribed the load is not known beforehand. On a rigid support all points may slide
+    then. Bodies that rub on each other carry at most the force that the displacement
+    makes of a rod, whose scaled stiffness is 1. Bodies on supports of their own count
+    as sliding everywhere.
     """
     first, *others = problem.rubbing.values()
     if others and all(law.is_on_support for law in problem.rubbing.values()):
         return 1.0
+    # Interfaces are alike, so the first one stands for all.
     capacity = first.tangential.bound.sum(axis=0)
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)

@@ -1,4 +1,4 @@
-"""A search direction k that follows what sticks and slips (solver/README.md, 5)."""
+"""Search direction k that follows the contact status (solver/README.md, 5)."""
 
 from __future__ import annotations
 
@@ -15,38 +15,39 @@ from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
 
 SETTLED = 0.1
+"""Largest share of all points and instants whose status may change in an iteration
+while it counts as settled; at a smaller share some loads wait past 100 iterations."""
 CALM = 25
-"""The status has settled when no larger share of all points and instants than this
-changed, so many iterations on end. Sooner, 1 % is reached later; at a smaller share
-some loads wait past 100."""
+"""Successive iterations with so few changes after which the status has settled; with
+fewer, 1 % is reached later."""
 SLIDING = 0.3
-"""Factor on the automatic k of a point that always slips; at one that sticks for a
-share of the instants, this to the power of the other share. With 0.1 it is worse than
-no update (measured)."""
+"""Factor on the automatic k of a point that always slips; for a point that slips for a
+share of the instants, this factor to the power of the share. With 0.1 the update is
+worse than none (measured)."""
 TRIAL = 20
-"""Iterations after which the new k must have made the k-free indicator smaller, again
-and again."""
+"""Iterations between two trials, in each of which the k-free indicator must be smaller
+than in the one before."""
 
 
 @dataclass(frozen=True)
 class FromStatus:
-    """A search direction that follows the contact status, once that has settled.
+    """Search direction that follows the contact status, once that has settled.
 
-    k(x, t) in separated form: a profile in x from the status, constant in t. A slipping
-    point carries its bound whatever its place, so the small k that leaves its place
-    free is the better one; at a point that never slips any k serves. The profile
-    multiplies the automatic k, whatever k was before. It is constant in time, so each
-    substructure keeps one operator for all instants.
+    k(x, t) has a separated form: a profile in x from the status, constant in t. A
+    slipping point carries its bound whatever its position, so the small k that leaves
+    its position free is the better one; at a point that never slips any k serves. The
+    profile multiplies the automatic k, whatever k was before. It is constant in time,
+    so each substructure keeps one operator for all instants.
 
-    It never diverges where the constant k converges: at every `TRIAL` iterations the
-    k-free indicator of W and F must be below that of the trial before, the update being
-    the first. Otherwise the run goes back to W, F of that trial and to the old k, and
-    stays there.
+    The iteration never diverges where the constant k converges: at every `TRIAL`
+    iterations the k-free indicator of W and F must be below that of the trial before,
+    the update being the first. Otherwise the run goes back to W and F of that trial and
+    to the old k, and stays there.
 
     Attributes
     ----------
     first
-        The search direction until then.
+        Search direction until the status has settled.
     """
 
     first: SearchDirection = Auto()
@@ -60,41 +61,64 @@ class FromStatus:
         return self.first.scale
 
     def of(self, problem: Problem) -> Array:
-        """Search direction k of every row at the start, shape (n_rows,), scaled, read-only."""
+        """Search direction k at the start, shape (n_rows,), scaled, read-only."""
         return self.first.of(problem)
 
     def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """As `SearchDirection.begin`; without contact there is no status to follow."""
-        return UpdateProgress(
-            "first" if problem.rubbing else "returned", self.of(problem)
-        )
+        """State of the k update at the start; without contact k stays."""
+        if problem.rubbing:
+            return UpdateProgress("first", self.of(problem))
+        return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
-        """Progress by what sticks and slips in the local stage, or by what an update has made."""
-        problem = iterate.problem
-        status = None
-        count = progress.count + 1
-        is_calm = True
+        """State of the k update after an iteration, with the k of the next."""
         if progress.phase == "first":
-            status = _crept(iterate)
-            before = progress.status
-            is_calm = before is not None and float(np.mean(status != before)) <= SETTLED
-        if not is_calm or count < (TRIAL if status is None else CALM):
-            return replace(progress, status=status, count=count if is_calm else 0)
-        moved = iterate.boundary_displacement
-        fields = moved, iterate.k[:, None] * (iterate.outgoing - moved)
-        if status is None:
-            k = progress.k
-        else:
-            k = _profile(problem, status)
-        violation = behaviour_of(problem, *fields)
-        if status is not None or violation < progress.violation:
-            return UpdateProgress("updated", k, fields=fields, violation=violation)
-        return UpdateProgress("returned", self.of(problem), fields=progress.fields)
+            return self._until_settled(iterate, progress)
+        return self._on_trial(iterate, progress)
+
+    def _until_settled(
+        self, iterate: Iterate, progress: UpdateProgress
+    ) -> UpdateProgress:
+        """State of the first k, which is updated once the status has settled."""
+        status = _crept(iterate)
+        before = progress.status
+        count = 0
+        if before is not None and float(np.mean(status != before)) <= SETTLED:
+            count = progress.count + 1
+        if count < CALM:
+            return replace(progress, status=status, count=count)
+        fields = _fields(iterate)
+        k = _profile(iterate.problem, status)
+        violation = behaviour_of(iterate.problem, *fields)
+        return UpdateProgress("updated", k, fields=fields, violation=violation)
+
+    def _on_trial(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
+        """State of an updated k, which stays while the violation of the laws falls."""
+        count = progress.count + 1
+        if count < TRIAL:
+            return replace(progress, status=None, count=count)
+        fields = _fields(iterate)
+        violation = behaviour_of(iterate.problem, *fields)
+        if violation < progress.violation:
+            return UpdateProgress(
+                "updated", progress.k, fields=fields, violation=violation
+            )
+        return UpdateProgress(
+            "returned", self.of(iterate.problem), fields=progress.fields
+        )
+
+
+def _fields(iterate: Iterate) -> tuple[Array, Array]:
+    """W and F of the linear stage, shape (n_rows, n_instants) each, scaled."""
+    displacement = iterate.boundary_displacement
+    return displacement, iterate.k[:, None] * (iterate.outgoing - displacement)
 
 
 def _crept(iterate: Iterate) -> NDArray[np.int8]:
-    """Contact status of the local stage, (n_points, n_instants): what creeps has not settled."""
+    """Contact status of the local stage, in which creep counts as slip.
+
+    Shape (n_points, n_instants). A point that creeps has not settled.
+    """
     groups = iterate.problem.contact_groups
     moved = iterate.local_displacement
     force = None
@@ -110,7 +134,10 @@ def _crept(iterate: Iterate) -> NDArray[np.int8]:
 
 
 def _profile(problem: Problem, status: NDArray[np.int8]) -> Array:
-    """The automatic k, smaller where points slip, shape (n_rows,)."""
+    """Automatic k, smaller where points slip, shape (n_rows,), scaled, read-only.
+
+    `status` has shape (n_points, n_instants).
+    """
     share = np.count_nonzero(status, axis=1) / status.shape[1]
     k = automatic(problem)
     for name, law in problem.rubbing.items():

@@ -1,4 +1,4 @@
-"""From a certified solution to an iterate in which both stages agree."""
+"""Certified solution as an iterate in which both stages agree."""
 
 from __future__ import annotations
 
@@ -10,23 +10,33 @@ from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
 from solver.latin.end.status_step import Certificate
 from solver.latin.iterate import Iterate
+from solver.reduction.basis import SharedBasis
 
 ENOUGH = 1e-14
-"""Share of the largest force at which the forces on rows are in balance, up to
-rounding."""
+"""Share of the largest force up to which the forces on rows count as balanced."""
 MOST_STEPS = 60
-"""Steps of the conjugate gradients, at most; the rows of one point are few, so a dozen
-suffice."""
+"""Largest number of steps of the conjugate gradients; the rows of one point are few, so
+a dozen suffice."""
 
 
 def finished(
     problem: Problem, k: Array, certificate: Certificate, last: Iterate | None = None
 ) -> Iterate:
-    """The iterate that a certified solution is, after the `last` of the run that led to it.
+    """Certified solution as an iterate.
 
     Its linear and its local stage are the same fields, a fixed point of the method for
-    every k, of the rows, (n_rows,), read-only. Its bases are those of the search, if it
-    had any.
+    every k. Its bases are those of the search, if it had any.
+
+    Parameters
+    ----------
+    problem
+        The problem that is solved.
+    k
+        Search direction of the rows, shape (n_rows,), scaled, read-only.
+    certificate
+        The certified solution.
+    last
+        Last iterate of the run that led to the solution.
     """
     scales = problem.scales
     solution = certificate.solution
@@ -34,66 +44,105 @@ def finished(
     force = row_forces(problem, deformation, solution.contact_force / scales.force)
     moved = (solution.displacement / scales.displacement)[problem.row_dofs]
     stretched = force / k[:, None]
-    fields = moved + stretched, moved - stretched, moved, force
-    outgoing, incoming, local, force = (
-        read_only(np.asfortranarray(field)) for field in fields
-    )
+    incoming = _field(moved - stretched)
+    number = 1
+    seconds = 0.0
+    bases: tuple[SharedBasis, ...] = ()
+    if last is not None:
+        number = last.number + 1
+        seconds = last.seconds
+        bases = last.bases
     return Iterate(
-        number=last.number + 1 if last else 1,
-        seconds=last.seconds if last else 0.0,
+        number=number,
+        seconds=seconds,
         problem=problem,
         k=k,
-        outgoing=outgoing,
+        outgoing=_field(moved + stretched),
         incoming=incoming,
-        local_displacement=local,
+        local_displacement=_field(moved),
         local_incoming=incoming,
-        bases=last.bases if last else (),
+        bases=bases,
         residual=certificate.residual,
-        force=force,
+        force=_field(force),
     )
+
+
+def _field(values: Array) -> Array:
+    """Field of shape (n_rows, n_instants), contiguous in space, read-only."""
+    return read_only(np.asfortranarray(values))
 
 
 def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> Array:
-    """Share out the forces on every substructure's boundary among its rows.
+    """Forces of rows, shared out from those on the boundary of every substructure.
 
-    Where contact and loads act they are known. What the elasticity of a substructure
-    needs beyond them at a degree of freedom is carried by its other rows there, and
-    what one side of a cut takes the other gives; where several cuts meet, which leaves
-    a choice, the smallest such forces. From how the structure deforms, (n_dofs,
-    n_instants), and contact forces as stacked by `Problem.sum_of_contact`, F of every
-    row, (n_rows, n_instants); all scaled.
+    The forces of contacts and loads are known. The rest of the force that the
+    elasticity of a substructure needs at a degree of freedom is carried by its other
+    rows there, and the forces on both sides of a cut are opposite. Where several cuts
+    meet this leaves a choice: then the forces are the smallest ones.
+
+    Parameters
+    ----------
+    problem
+        The problem that is solved.
+    displacement
+        Displacement that deforms the structure, shape (n_dofs, n_instants), scaled.
+    contact_force
+        Contact forces stacked by `Problem.sum_of_contact`, shape (n_forces,
+        n_instants), scaled.
+
+    Returns
+    -------
+    F of every row, shape (n_rows, n_instants), scaled.
     """
-    known, is_known = known_forces(problem, contact_force)
+    force, is_known = known_forces(problem, contact_force)
     balance, needed = balance_of_rows(problem, displacement)
-    sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *problem.cuts], axis=1)
-    pairs = np.arange(sides.shape[1])
-    opposite = sparse.csr_array(
-        (np.ones(sides.size), (np.tile(pairs, 2), sides.ravel())),
-        shape=(len(pairs), problem.n_rows),
-    )
+    # Unknown forces balance the elasticity, and are opposite across cuts.
+    opposite = _sum_of_sides(problem)
     right = np.concatenate(
-        [needed - balance @ known, np.zeros((len(pairs), problem.n_instants))]
+        [needed - balance @ force, np.zeros((opposite.shape[0], problem.n_instants))]
     )
     system = sparse.csr_array(sparse.vstack([balance, opposite]))
     open_rows = np.flatnonzero(~is_known)
-    known[open_rows] = _smallest(sparse.csr_array(system[:, open_rows]), right)
-    return known
+    force[open_rows] = _smallest(sparse.csr_array(system[:, open_rows]), right)
+    return force
+
+
+def _sum_of_sides(problem: Problem) -> sparse.csr_array:
+    """Sum of the forces on both sides of cuts, shape (n_pairs, n_rows)."""
+    nothing = np.zeros((2, 0), dtype=np.intp)
+    sides = np.concatenate([nothing, *problem.cuts], axis=1)
+    n_pairs = sides.shape[1]
+    entries = np.ones(sides.size), (np.tile(np.arange(n_pairs), 2), sides.ravel())
+    return sparse.csr_array(entries, shape=(n_pairs, problem.n_rows))
 
 
 def known_forces(
     problem: Problem, contact_force: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """The forces of rows that rub or are loaded, and which rows these are."""
+    """Forces of rows that rub or are loaded.
+
+    Parameters
+    ----------
+    problem
+        The problem that is solved.
+    contact_force
+        Contact forces stacked by `Problem.sum_of_contact`, shape (n_forces,
+        n_instants), scaled.
+
+    Returns
+    -------
+    F of the rows, shape (n_rows, n_instants), scaled, zero where it is unknown; and
+    whether it is known, shape (n_rows,).
+    """
     force = np.zeros((problem.n_rows, problem.n_instants))
     is_known = np.zeros(problem.n_rows, dtype=bool)
     for loaded in problem.given_forces:
         force[loaded.rows] = loaded.values
         is_known[loaded.rows] = True
     for name, law in problem.rubbing.items():
-        for place, component in zip(
-            problem.contact_places[name], law.components, strict=True
-        ):
-            carried = law.shares[:, None] * contact_force[place][law.points]
+        forces = problem.contact_places[name]
+        for numbers, component in zip(forces, law.components, strict=True):
+            carried = law.shares[:, None] * contact_force[numbers][law.points]
             for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):
                 force[rows] = sign * carried
                 is_known[rows] = True
@@ -103,43 +152,52 @@ def known_forces(
 def balance_of_rows(
     problem: Problem, displacement: Array
 ) -> tuple[sparse.csr_array, Array]:
-    """What sums the rows of every boundary point, (n, n_rows), and the force that it needs."""
+    """Sum of the forces of rows at every boundary point, and the forces needed there.
+
+    `displacement` has shape (n_dofs, n_instants), scaled. With n points on the
+    boundaries of all substructures, the sum has shape (n, n_rows), and the needed
+    forces have shape (n, n_instants), scaled.
+    """
     rows = []
-    places = []
+    points_of_rows = []
     needed = []
     size = 0
     for part in problem.substructures:
-        points, place, stiffness = part.elasticity.boundary
+        points, point_of_row, stiffness = part.elasticity.boundary
         force = np.asarray(stiffness @ displacement[part.dofs])
         if part.body_force is not None:
             force = force - part.body_force[points]
         needed.append(force)
         rows.append(part.rows)
-        places.append(size + place)
+        points_of_rows.append(size + point_of_row)
         size += len(points)
-    entries = np.ones(problem.n_rows), (np.concatenate(places), np.concatenate(rows))
-    return sparse.csr_array(entries, shape=(size, problem.n_rows)), np.concatenate(
-        needed
+    positions = np.concatenate(points_of_rows), np.concatenate(rows)
+    balance = sparse.csr_array(
+        (np.ones(problem.n_rows), positions), shape=(size, problem.n_rows)
     )
+    return balance, np.concatenate(needed)
 
 
 def _smallest(system: sparse.csr_array, right: Array) -> Array:
-    """The smallest x with A x = b, by conjugate gradients on A A^T, all columns together."""
+    """Smallest x with A x = b, by conjugate gradients on A A^T, all columns together.
+
+    A has shape (m, n), b shape (m, n_instants), x shape (n, n_instants).
+    """
     solution = np.zeros((system.shape[1], right.shape[1]))
-    rest = right.copy()
-    way = solution
+    residual = right.copy()
+    direction = solution
     before = 1.0
     enough = ENOUGH * float(np.abs(right).max(initial=0.0))
     for _ in range(MOST_STEPS):
-        gradient = system.T @ rest
-        # What no x takes away is rounding in the equilibrium of the whole.
+        gradient = system.T @ residual
+        # A residual without gradient is rounding in the equilibrium of the whole.
         if np.abs(gradient).max(initial=0.0) <= enough:
             break
-        steep = float(np.vdot(gradient, gradient))
-        way = gradient + (steep / before) * way
-        image = system @ way
-        length = steep / float(np.vdot(image, image))
-        solution += length * way
-        rest -= length * image
-        before = steep
+        steepness = float(np.vdot(gradient, gradient))
+        direction = gradient + (steepness / before) * direction
+        image = system @ direction
+        length = steepness / float(np.vdot(image, image))
+        solution += length * direction
+        residual -= length * image
+        before = steepness
     return solution

@@ -1,4 +1,4 @@
-"""How wrong the contact force of an iterate is, without any reference (solver/README.md, 7)."""
+"""Error estimate of the contact force, without a reference (solver/README.md, 7)."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from solver.latin.iterate import Iterate
 from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.distance import LEAST_SHARE, VANISHING
 from solver.reference.incremental import Incremental, incremental_solver
+from solver.reference.solution import Reference
 
 SETTLED = 0.04
 """Relative change of the whole contact force at which most statuses are right. If
@@ -28,44 +29,58 @@ SOLVED = 1e-20
 """LATIN indicator, a ratio of squares, of a run that begins with its solution."""
 LONG = 100
 """Iterations from which on a status step is tried at every doubling, whatever has
-changed: a contact force that dies out changes by much of itself for ever."""
+changed: the relative change of a contact force that dies out stays large for ever."""
 LAST = 10.0
-"""Times more that a run's last trial may cost: without it the run has no answer."""
+"""Factor on the cost that the last trial of a run may have: without the step the run
+has no answer."""
 AGAIN = 2.0
-"""Ratio of the iterations at which a failed status step is tried again, its cost is
-estimated anew, and which forces count as none: rough numbers, and dear beside a small
-iteration."""
+"""Ratio of the iterations at which a failed status step is tried again, and at which
+two rough numbers are computed anew, as both cost much beside a small iteration: the
+cost of the step, and the force that counts as none."""
 LOOK_BACK = 0.7
-"""A change of the contact force is that since the iterate at this share of the
-iterations."""
+"""Share of the iterations at which the contact force is compared with that of now."""
 SAFETY = 4.0
-"""On what is left, if the changes go on to fall by the slower of their last two ratios,
-which a power of the iterations has as well as a power of a number: of 20 iterates of
-bars and strands one had a larger error, by five times (measured)."""
+"""Factor on the error that is left if the changes go on to fall by the slower of their
+last two ratios, which a power of the iterations has as well as a power of a number. Of
+20 iterates of bars and strands one had a larger error, by five times (measured)."""
 SLOWEST = 0.97
-"""Ratio at most: that of a force that converges as the iterations to the power of
--0.085."""
+"""Largest ratio of changes that the estimate uses: that of a force that converges as
+the iterations to the power of -0.085."""
 FEW = 10
 """Iterations up to which changes foretell nothing: a nested start makes them small at
 once."""
 SPACING = 1.1
-"""Ratio of the iterations whose contact forces are kept to look back at."""
+"""Ratio of the iterations whose contact forces are kept for comparison."""
 
 
 class ErrorEstimate:
-    """The relative error of the contact force, iterate after iterate.
+    """Relative error of the contact force, iterate after iterate.
 
-    Once a status step is certified it is the distance to that solution. Before, and
-    where the step costs more than it saves, it is what the last changes let expect,
-    with a factor for safety.
+    Once a status step is certified, the error is the distance to the certified
+    solution. Before, and where the step costs more than it saves, the error is
+    estimated from the last changes, with a factor for safety.
 
-    With `needs_proof` a certified solution alone counts, whatever it costs: bases that
-    are too small converge to something else, which no change shows. The `certificate`
-    is None until it is known; for ever, where the problem has no reference. A status
-    step is given up at the `deadline`, by `time.perf_counter`, and none begins that
-    would take longer. Where `interrupted` returns True it is given up, too, and tried
-    again after the next iteration. The `ending` is that of a run whose last status step
-    came to where no equilibrium goes on.
+    A status step is given up at the `deadline`, by `time.perf_counter`, and none begins
+    that would take longer.
+
+    Parameters
+    ----------
+    accuracy
+        Relative error that the run asks for.
+    needs_proof
+        Whether only a certified solution counts, whatever it costs: bases that are too
+        small converge to something else, which no change shows.
+    interrupted
+        Returns True where a status step is to be given up; it is tried again after the
+        next iteration.
+
+    Attributes
+    ----------
+    certificate
+        The certified solution; None until it is known, and for ever where the problem
+        has no reference.
+    ending
+        Status of a run whose last status step came to an instant without equilibrium.
     """
 
     def __init__(
@@ -88,39 +103,52 @@ class ErrorEstimate:
         self.ending: Status | None = None
 
     def __call__(self, iterate: Iterate) -> float:
-        """The estimate for the next iterate of a run; NaN where there is none."""
-        number = iterate.number
-        worst = math.nan
+        """Estimate the relative error of the next iterate of a run; NaN if unknown."""
+        error = math.nan
         if self.certificate is None:
-            worst, whole = self._changes.left(iterate)
-            ends_soon = worst <= self._accuracy or whole <= self._accuracy
-            # A run may begin with its solution, so that no change shows it.
-            is_near = self._changes.last.whole <= SETTLED or number >= LONG
-            is_near |= number == 1 and iterate.indicator <= SOLVED
-            is_due = number >= self._next_trial and not iterate.problem.no_reference
-            if is_due and (is_near or number >= self._costs_of(iterate).small_from):
-                self.try_step(iterate, least=WAIT if ends_soon else 0.0)
+            left = self._changes.left(iterate)
+            error = left.worst
+            if self._is_trial_due(iterate):
+                allowed = 0.0
+                if error <= self._accuracy or left.whole <= self._accuracy:
+                    allowed = WAIT
+                self.try_step(iterate, least=allowed)
         if self.certificate is None:
-            return worst
+            return error
         return self.certificate.distance.of_friction_force(iterate)
+
+    def _is_trial_due(self, iterate: Iterate) -> bool:
+        """Check whether a status step is due, as statuses or costs promise success."""
+        number = iterate.number
+        # A run may begin with its solution, so that no change shows it.
+        begins_solved = number == 1 and iterate.indicator <= SOLVED
+        if number < self._next_trial or iterate.problem.no_reference:
+            return False
+        if begins_solved or self._changes.last.whole <= SETTLED or number >= LONG:
+            return True
+        return number >= self._costs_of(iterate).small_from
 
     @property
     def is_proven(self) -> bool:
-        """Whether it is the distance to a certified solution."""
+        """Check whether the error is the distance to a certified solution."""
         return self.certificate is not None
 
     def is_proven_within(self, share: float, iterate: Iterate) -> bool:
-        """Whether displacement and contact force are that near to a certified solution."""
+        """Check whether an iterate is near to a certified solution.
+
+        `share` is the largest relative error of its displacement and contact force.
+        """
         if self.certificate is None:
             return False
         distance = self.certificate.distance
-        errors = distance.of_friction_force(iterate), distance.of_displacement(iterate)
-        return max(errors) <= share
+        of_force = distance.of_friction_force(iterate)
+        of_displacement = distance.of_displacement(iterate)
+        return max(of_force, of_displacement) <= share
 
     def can_be_proven(
         self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
     ) -> bool:
-        """Whether a status step is worth its cost by now.
+        """Check whether a status step is worth its cost by now.
 
         It may cost `patience` times more than usual, and in any case `least` seconds.
         """
@@ -134,15 +162,14 @@ class ErrorEstimate:
     def try_step(
         self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
     ) -> None:
-        """Try the status step, unless it costs too much, as above."""
+        """Try the status step, unless it costs too much by `can_be_proven`."""
         if not self.can_be_proven(iterate, patience, least):
             return
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
         systems = self._costs_of(iterate).systems(patience * iterate.number)
         try:
-            self._solver = self._solver or incremental_solver(
-                iterate.problem, self._stops
-            )
+            if self._solver is None:
+                self._solver = incremental_solver(iterate.problem, self._stops)
             solution, certificate = status_step(
                 self._solver,
                 iterate.problem,
@@ -157,34 +184,46 @@ class ErrorEstimate:
             if self._left() >= 0.0:
                 self._next_trial = iterate.number + 1
             return
-        self.ending = None
-        if solution.collapse is not None:
-            self.ending = collapses(iterate.problem, solution.collapse)
-        elif solution.jumps_at is not None and solution.is_lost:
-            lost_from = int(np.argmin(solution.converged))
-            self.ending = lost_jump(iterate.problem, solution.jumps_at, lost_from)
+        self.ending = _lost_equilibrium(iterate.problem, solution)
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
 
     def _stops(self) -> bool:
-        """Whether a status step is to be given up."""
+        """Check whether a status step is to be given up."""
         return self._left() < 0.0 or self._interrupted()
 
     def _left(self) -> float:
-        """Seconds that are left of the run's limit."""
+        """Rest of the run's time limit, s."""
         return self.deadline - time.perf_counter()
 
     def _costs_of(self, iterate: Iterate) -> Costs:
-        """Estimate the costs by the statuses that an iterate shows, now and then anew."""
+        """Costs by the statuses of an iterate, new at every doubling of iterations."""
         if self._costs is None or iterate.number >= AGAIN * self._costs[0]:
             self._costs = iterate.number, costs_of(iterate.problem, states_of(iterate))
         return self._costs[1]
 
 
-class Change(NamedTuple):
-    """Relative changes of the forces that are sought: of one kind, the largest, and of all.
+def _lost_equilibrium(problem: Problem, solution: Reference) -> Status | None:
+    """Status of a run whose solution has no equilibrium at an instant, or None."""
+    if solution.collapse is not None:
+        return collapses(problem, solution.collapse)
+    if solution.jumps_at is not None and solution.is_lost:
+        lost_from = int(np.argmin(solution.converged))
+        return lost_jump(problem, solution.jumps_at, lost_from)
+    return None
 
-    Kinds are friction, pressure, and what laws of one's own carry.
+
+class Change(NamedTuple):
+    """Relative change of the contact forces, or relative error that is left.
+
+    The kinds of force are friction, pressure, and the forces of laws of one's own.
+
+    Attributes
+    ----------
+    worst
+        Change of the kind that changes most.
+    whole
+        Change of all forces together.
     """
 
     worst: float = math.nan
@@ -192,7 +231,17 @@ class Change(NamedTuple):
 
 
 class _Past(NamedTuple):
-    """Forces on `Problem.sought_rows`, (n_instants, n_rows), and how they had changed by then."""
+    """Contact forces of an earlier iterate.
+
+    Attributes
+    ----------
+    number
+        Number of the iterate.
+    force
+        Forces on `Problem.sought_rows`, shape (n_instants, n_rows), scaled.
+    change
+        Change of the forces up to that iterate.
+    """
 
     number: int
     force: Array
@@ -200,53 +249,88 @@ class _Past(NamedTuple):
 
 
 class ForceChanges:
-    """How the contact force changes along a run; `last` since the iterate looked back at."""
+    """Changes of the contact force along a run.
+
+    `last` is the change up to the newest iterate, since the one at the share
+    `LOOK_BACK` of the iterations.
+    """
 
     def __init__(self) -> None:
         self._past: list[_Past] = []
-        self._least = 0.0
-        self._least_next = 0.0
+        self._smallest_size = 0.0
+        self._next_size = 0.0
         self.last = Change()
 
     def left(self, iterate: Iterate) -> Change:
-        """The relative error that is left, if changes go on to fall as they did, or NaN."""
+        """Relative error that is left if changes go on to fall; NaN if unknown."""
         number = iterate.number
-        (rows, _) = iterate.problem.sought_rows
-        outgoing = iterate.outgoing.T[:, rows]
-        incoming = iterate.incoming.T[:, rows]
-        force = np.ascontiguousarray(outgoing - incoming)
-        force *= 0.5 * iterate.k[rows]
+        force = _force_of(iterate)
         before = self._at(LOOK_BACK * number)
+        earlier = None
         self.last = Change()
         if before is not None:
+            earlier = self._at(LOOK_BACK * before.number)
             self.last = _change(
-                iterate.problem, force - before.force, force, self._least
+                iterate.problem, force - before.force, force, self._smallest_size
             )
-        earlier = before and self._at(LOOK_BACK * before.number)
         if not self._past or number >= SPACING * self._past[-1].number:
-            oldest = earlier.number if earlier else 0
-            self._past = [entry for entry in self._past if entry.number >= oldest]
-            self._past.append(_Past(number, force, self.last))
-            if number >= self._least_next:
-                around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
-                blurred = ROUNDING * float(
-                    np.linalg.norm(iterate.k[:, None] * iterate.outgoing)
-                )
-                self._least = max(around, blurred)
-                self._least_next = AGAIN * number
+            self._keep(_Past(number, force, self.last), earlier)
+            if number >= self._next_size:
+                self._smallest_size = _vanishing_size(iterate)
+                self._next_size = AGAIN * number
         if before is None or earlier is None or number <= FEW:
-            return Change(*(0.0 if last == 0.0 else math.nan for last in self.last))
-        return Change(*map(_left, self.last, before.change, earlier.change))
+            return _left_early(self.last)
+        return Change(
+            worst=_left(self.last.worst, before.change.worst, earlier.change.worst),
+            whole=_left(self.last.whole, before.change.whole, earlier.change.whole),
+        )
+
+    def _keep(self, newest: _Past, earlier: _Past | None) -> None:
+        """Keep the forces of an iterate, and forget those before the `earlier` one."""
+        if earlier is not None:
+            self._past = [
+                entry for entry in self._past if entry.number >= earlier.number
+            ]
+        self._past.append(newest)
 
     def _at(self, number: float) -> _Past | None:
-        """What was last kept up to a number of iterations."""
-        return next(
-            (entry for entry in reversed(self._past) if entry.number <= number), None
-        )
+        """Newest entry up to a number of iterations; None without one."""
+        for entry in reversed(self._past):
+            if entry.number <= number:
+                return entry
+        return None
+
+
+def _force_of(iterate: Iterate) -> Array:
+    """Contact forces on `Problem.sought_rows`, shape (n_instants, n_rows), scaled."""
+    rows, _ = iterate.problem.sought_rows
+    outgoing = iterate.outgoing.T[:, rows]
+    incoming = iterate.incoming.T[:, rows]
+    force = np.ascontiguousarray(outgoing - incoming)
+    force *= 0.5 * iterate.k[rows]
+    return force
+
+
+def _vanishing_size(iterate: Iterate) -> float:
+    """Norm of contact forces that counts as none beside other forces, scaled."""
+    hidden = VANISHING * float(np.linalg.norm(iterate.boundary_force))
+    rounding = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
+    return max(hidden, rounding)
+
+
+def _left_early(last: Change) -> Change:
+    """Relative error that is left early in a run: 0 without a change, else NaN."""
+    worst = math.nan
+    whole = math.nan
+    if last.worst == 0.0:
+        worst = 0.0
+    if last.whole == 0.0:
+        whole = 0.0
+    return Change(worst, whole)
 
 
 def _left(last: float, before: float, earlier: float) -> float:
-    """What is left of a force, of which these are the last three changes."""
+    """Relative error that is left of a force, by its last three changes."""
     fall = max(ratio(last, before), ratio(before, earlier))
     if math.isnan(fall):
         fall = SLOWEST
@@ -255,19 +339,31 @@ def _left(last: float, before: float, earlier: float) -> float:
     return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
 
 
-def _change(problem: Problem, change: Array, force: Array, least: float) -> Change:
-    """A change relative to what `solver.reference.distance` divides an error by."""
-    _, kinds = problem.sought_rows
-    changes, squares = (
-        np.einsum("ij,ij->j", field, field) for field in (change, force)
-    )
+def _change(
+    problem: Problem, change: Array, force: Array, smallest_size: float
+) -> Change:
+    """Change of forces over the sizes in the errors of `solver.reference.distance`.
 
-    def share(kind: Flags | slice, least: float) -> float:
-        size = max(math.sqrt(float(squares[kind].sum())), least)
+    Parameters
+    ----------
+    problem
+        The problem of the iterates.
+    change, force
+        Change of the forces, and the forces, on `Problem.sought_rows`, shape
+        (n_instants, n_rows), scaled.
+    smallest_size
+        Norm of forces that counts as none, scaled.
+    """
+    _, kinds = problem.sought_rows
+    changes = np.einsum("ij,ij->j", change, change)
+    squares = np.einsum("ij,ij->j", force, force)
+
+    def share(kind: Flags | slice, smallest: float) -> float:
+        size = max(math.sqrt(float(squares[kind].sum())), smallest)
         if size > 0.0:
             return math.sqrt(float(changes[kind].sum())) / size
         return 0.0
 
-    hidden = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
+    hidden = max(smallest_size, LEAST_SHARE * math.sqrt(float(squares.sum())))
     worst = max((share(kind, hidden) for kind in kinds), default=0.0)
-    return Change(worst, share(slice(None), least))
+    return Change(worst, share(slice(None), smallest_size))

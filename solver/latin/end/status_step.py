@@ -1,11 +1,10 @@
-"""The status step: from the stick, slip and opening of an iterate to the solution itself.
+"""Status step: from the stick, slip and opening of an iterate to the solution itself.
 
-Statuses that an iterate shows make the problem linear, instant after instant. Those
-that the linear solution itself shows to be wrong are mended where they stand, a Newton
-method that begins where LATIN ends. If statuses and solution agree at every instant,
-all laws and equilibrium hold: then it is the solution of the discrete problem up to
-rounding, whatever k and the method were, and it is called certified (solver/README.md,
-7). LATIN finds the fronts, the step finishes.
+The statuses of an iterate make the problem linear, instant after instant. Statuses that
+the linear solution shows to be wrong are corrected where they stand: a Newton method
+that begins where LATIN ends. If statuses and solution agree at every instant, all laws
+and equilibrium hold. Then the solution is that of the discrete problem up to rounding,
+whatever k and the method were, and is called certified (solver/README.md, 7).
 """
 
 from __future__ import annotations
@@ -27,25 +26,32 @@ from solver.reference.rules import States
 from solver.reference.solution import Reference
 
 STILL = 1e-3
-"""Share of the largest slip of an interface below which a point counts as stuck, at
-most."""
+"""Share of the largest slip of an interface below which a point counts as stuck, if
+`FRONT` does not make it smaller."""
 FRONT = 2.0
-"""The same over the square of a point's share of the length, as slip grows behind a
-front. To call a point stuck that slips is the dearer mistake, as mending frees one at a
-time: on 800 elements and 101 instants a step takes 480 systems with `STILL` alone, 180
-with this, 190 with 1e-9 (measured)."""
+"""Same share over the square of a point's share of the interface, as slip grows behind
+a front. To call a point stuck that slips costs more than the reverse, as corrections
+free one at a time: on 800 elements and 101 instants a step takes 480 systems with
+`STILL` alone, 180 with this, 190 with 1e-9 (measured)."""
 CERTIFIED = 1e-7
-"""KKT residual of a certified solution at most, relative to the contact force. Its
+"""Largest KKT residual of a certified solution, relative to the contact force. Its
 statuses agree with it exactly; on four wires of 320 elements the linear systems leave
 1e-8 (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """A solution of the discrete problem, proven by its own residual, and the distance to it.
+    """Solution of the discrete problem, proven by its own residual.
 
-    The KKT residual is relative to the contact force: the largest of all points and
-    instants as if it were that of each.
+    Attributes
+    ----------
+    solution
+        The solution.
+    distance
+        Distance of an iterate to the solution.
+    residual
+        KKT residual relative to the contact force: the largest of all points and
+        instants as if it were that of each.
     """
 
     solution: Reference
@@ -55,11 +61,14 @@ class Certificate:
 
 @dataclass(frozen=True)
 class StatusStep:
-    """Ends a run with the certified solution, once a status step from an iterate holds.
+    """End of a run with the certified solution, once a status step holds.
 
-    That is as soon as it holds, if `at_once`. Otherwise the method goes on by itself
-    until its own force is within the accuracy, or until it gives up; what is certified
-    is then put beside its iterates, as the answer, and is none of them.
+    Attributes
+    ----------
+    at_once
+        Whether the run ends as soon as the step holds. Otherwise the method goes on by
+        itself until its own force is within the accuracy, or until it gives up; the
+        certified solution then stands beside the iterates, as the answer.
     """
 
     at_once: bool = True
@@ -75,10 +84,24 @@ def status_step(
     most: int,
     stop: Callable[[], bool] | None = None,
 ) -> tuple[Reference, Certificate | None]:
-    """What the solver makes of states, mended, and its certificate if it is a solution.
+    """Correct the states of an iterate to a solution, and certify that if it is one.
 
-    It begins with `states`, as `states_of` returns those of an iterate, may solve
-    `most` linear systems, and asks `stop` before each of them.
+    Parameters
+    ----------
+    solver
+        Incremental solver of the problem.
+    problem
+        The problem to be solved.
+    states
+        States to begin with, as of `states_of`, shape (n_forces, n_instants).
+    most
+        Largest number of linear systems.
+    stop
+        Called before each system; returns True where the step is to be given up.
+
+    Returns
+    -------
+    The solver's result, and its certificate; None if it is no solution.
 
     Raises
     ------
@@ -91,29 +114,30 @@ def status_step(
     if not solution.converged.all():
         return solution, None
     distance = distance_to(solution, problem)
-    residual = (
-        solution.unbalanced * np.sqrt(len(solution.contact_force)) / distance.force_size
-    )
-    most_residual = BLURRED if solution.unbalanced <= solution.rounding else CERTIFIED
-    if not 0.0 <= residual <= most_residual:
+    whole = solution.unbalanced * np.sqrt(len(solution.contact_force))
+    residual = whole / distance.force_size
+    largest = CERTIFIED
+    if solution.unbalanced <= solution.rounding:
+        largest = BLURRED
+    if not 0.0 <= residual <= largest:
         return solution, None
     return solution, Certificate(solution, distance, float(residual))
 
 
 def states_of(iterate: Iterate) -> States:
-    """States of an iterate, as the incremental solvers take them for a guess.
+    """States of an iterate, as a guess for the incremental solvers.
 
-    Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants): -1, 0, +1 of
-    tangential components; of normal ones 0 where they are closed; `OPEN` of both where
-    they are not.
+    Shape (n_forces, n_instants), stacked as by `Problem.sum_of_contact`: -1, 0, +1 of
+    tangential components, 0 of normal components of closed contacts, and `OPEN` of both
+    components of open ones.
     """
     problem = iterate.problem
     sizes = np.array([len(law.positions) for law in problem.rubbing.values()])
     status = contact_status(iterate, np.minimum(STILL, FRONT / sizes**2))
     states: list[States] = []
     for name, law in problem.rubbing.items():
-        own = status[problem.contact_points[name]]
+        tangential = status[problem.contact_points[name]]
         if law.normal is not None:
-            states.append(np.where(own == OPEN, OPEN, 0).astype(np.int8))
-        states.append(own)
+            states.append(np.where(tangential == OPEN, OPEN, 0).astype(np.int8))
+        states.append(tangential)
     return np.concatenate(states)

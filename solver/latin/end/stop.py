@@ -1,4 +1,4 @@
-"""When a run ends: what is asked of it, and what it remembers to see its end."""
+"""Stop rules: criteria (`Stop`), and their state during a run (`StopState`)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -15,10 +15,14 @@ from solver.latin.end.certified import finished
 from solver.latin.end.cost import WAIT
 from solver.latin.end.estimate import LAST, SOLVED, ErrorEstimate
 from solver.latin.end.status import (
+    ABOVE,
+    AT_LIMIT,
     BELOW,
     EXPECTED,
+    INACCURATE,
     PROVEN,
     UNPROVABLE,
+    UNPROVEN,
     Decision,
     Ending,
     Status,
@@ -26,63 +30,62 @@ from solver.latin.end.status import (
     diverged,
     exhausted,
     obeyed,
+    remedies_of,
     stalled,
     unprovable,
     with_jump,
 )
+from solver.latin.end.status_step import Certificate, StatusStep
 from solver.latin.iterate import Iterate
 from solver.latin.stages.pgd import PGD
 from solver.reference.distance import HIDDEN, kkt_residual
 
-if TYPE_CHECKING:
-    from solver.latin.method import Latin
-
 DEFAULT_ACCURACY = 0.01
-"""Of a status step that ends a run which nobody asks to be accurate."""
+"""Accuracy of a status step in a run without a criterion on the accuracy."""
 LEAST_VIOLATION = 1e-12
 LARGEST_VIOLATION = 1e-2
-"""Bounds on what the k-free indicator may be at the end. Between them it is the root of
-the tolerance on eta, a ratio of squares: by default the friction force is then within
-0.1 % (block, layers) to 2 % (40 wires) of the reference; with 100 times as much it was
-up to 20 % off (measured).
+"""Bounds on the limit of the k-free indicator at the end. Between them the limit is the
+root of the tolerance on eta, which is a ratio of squares. By default the friction force
+is then within 0.1 % (block, layers) to 2 % (40 wires) of the reference; with a limit
+100 times as large it was up to 20 % off (measured).
 """
 SHARE = 8
-"""What may be low enough is computed again at the latest after this part of the
-iterations."""
+"""Part of the iterations so far after which, at the latest, a number that may be low
+enough is computed again: the eighth part."""
 WINDOW = 200
 """Iterations without a lower indicator after which a run is called stalled."""
 OBEYED = 1e-10
 """KKT residual up to which an iterate is a solution of the discrete problem by
 itself."""
 FACTOR = 0.99
-"""A lower indicator is one below this part of the lowest so far."""
+"""Factor on the lowest indicator so far, below which an indicator counts as lower."""
 SELDOM = 16
-"""Every so many iterations the LATIN indicator is computed, for nothing but to see a
-stall."""
+"""Iterations between two looks at a stall, and at an iterate that may be a solution."""
 
 
 @dataclass(frozen=True)
 class Stop:
-    """When a run ends; what is infinite is not asked.
+    """Criteria that end a run; an infinite one is not applied.
 
-    Accuracy and tolerance, where both are asked, have to hold together; it ends in any
-    case after so many iterations or seconds.
+    Accuracy and tolerance, where both are finite, have to hold together. A run ends in
+    any case at its limit of iterations or seconds.
 
     Attributes
     ----------
     accuracy
-        Share that the contact force may be wrong by, by estimate; where a status step
-        is worth its cost, the exact solution has to prove it.
+        Largest relative error of the contact force, by estimate; where a status step is
+        worth its cost, the exact solution has to prove it.
     tolerance
         LATIN indicator eta, a ratio of squares, that is low enough if the k-free
         indicator agrees.
     iterations
-        Most iterations.
+        Largest number of iterations.
     seconds
-        Most seconds; a start or a status step that takes longer is given up.
+        Largest time of a run, s; a start or a status step that takes longer is given
+        up.
     sufficient
-        LATIN indicator that ends a run by itself, though the accuracy is not known; 0:
-        none does.
+        LATIN indicator that ends a run by itself, though the accuracy is not known; 0
+        switches this criterion off.
 
     Raises
     ------
@@ -108,47 +111,80 @@ class Stop:
         )
 
 
+class JudgedMethod(Protocol):
+    """Parts of a method that the end of a run depends on: a `solver.latin.Latin`."""
+
+    @property
+    def stop(self) -> Stop:
+        """Criteria that end the run."""
+
+    @property
+    def finish(self) -> StatusStep | None:
+        """Status step that may end the run with a certified solution."""
+
+    @property
+    def linear(self) -> object:
+        """Form in which the linear stage holds its fields."""
+
+    @property
+    def relaxation(self) -> float:
+        """Share of the new iterate in a relaxed one."""
+
+
 class StopState:
-    """What a run remembers to see its end, and what that costs.
+    """State of the stop rules during a run, with their own cost.
 
     A run has converged when accuracy and tolerance hold, or when a status step ends it
-    with a certified solution: at once, or once the iterates themselves are that near to
-    it. It also ends when the LATIN indicator has stopped falling, or numbers to be
-    finite. Most numbers cost as much as an iteration: they are computed when they may
-    be low enough, and at the first and the last. Beside its iterations the run took so
-    many `seconds` so far. A status step is given up where `interrupted` returns True.
+    with a certified solution: at once, or as soon as the iterates themselves are within
+    the accuracy of that solution. A run also ends when the LATIN indicator has stopped
+    falling, or when fields are no longer finite.
+
+    Most of these numbers cost as much as an iteration. They are computed at the first
+    and the last iteration, and when they may be low enough.
+
+    Parameters
+    ----------
+    latin
+        Method of the run.
+    spent
+        Time that the run took beside its iterations so far, s.
+    interrupted
+        Returns True where a status step is to be given up.
     """
 
     def __init__(
         self,
-        latin: Latin,
+        latin: JudgedMethod,
         spent: float = 0.0,
         interrupted: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._latin = latin
         self._stop = latin.stop
+        self._relaxation = latin.relaxation
         self.seconds = spent
         self._may_finish = latin.finish is not None
         self._searches = latin.finish is not None and not latin.finish.at_once
         self._asks_accuracy = math.isfinite(self._stop.accuracy)
+        self._has_bases = isinstance(latin.linear, PGD)
+        self._remedies = remedies_of(
+            may_finish=self._may_finish, has_bases=self._has_bases
+        )
+        accuracy = DEFAULT_ACCURACY
         if self._asks_accuracy:
             accuracy = self._stop.accuracy
-        else:
-            accuracy = DEFAULT_ACCURACY
-        has_bases = isinstance(latin.linear, PGD)
         self.estimate = ErrorEstimate(
-            accuracy, needs_proof=has_bases, interrupted=interrupted
+            accuracy, needs_proof=self._has_bases, interrupted=interrupted
         )
-        self._on_goal = NextCheck()
-        self._on_sufficient = NextCheck()
+        self._goal = NextCheck()
+        self._sufficient = NextCheck()
         self._stall = StallCheck()
 
     def judge(self, iterate: Iterate) -> Decision:
-        """Whether the run ends after an iterate, and how."""
+        """Decide whether the run ends after an iterate, and how."""
         began = time.perf_counter()
         self.estimate.deadline = (
             began + self._stop.seconds - iterate.seconds - self.seconds
         )
+        # One number that is not finite makes the sum of squares not finite.
         if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             return Decision(
                 self._billed(iterate, began), status=diverged(iterate.number)
@@ -156,151 +192,211 @@ class StopState:
         error, status = self._ending(iterate)
         certificate = self.estimate.certificate
         residual = self._residual(iterate, status)
-        if residual <= OBEYED:
+        is_solution = residual <= OBEYED
+        if is_solution:
             status = obeyed(residual)
         decision = Decision(self._billed(iterate, began), error, status, certificate)
-        if residual <= OBEYED and self._may_finish:
-            answer = replace(
-                iterate,
-                number=iterate.number + 1,
-                residual=residual,
-                is_answer=self._searches,
-            )
-            last = replace(decision, estimated_error=residual)
-            return replace(decision, status=None, finished=(answer, last))
+        if is_solution and self._may_finish:
+            return self._finished_by_itself(iterate, decision, residual)
+        # A search goes on though its answer is known, until it comes to its own end.
         goes_on = self._searches and status is None
         if certificate is None or not self._may_finish or goes_on:
             return decision
+        return self._finished(iterate, decision, certificate)
+
+    def _finished_by_itself(
+        self, iterate: Iterate, decision: Decision, residual: float
+    ) -> Decision:
+        """End a run with an iterate that is a solution, by its KKT residual."""
+        answer = replace(
+            iterate,
+            number=iterate.number + 1,
+            residual=residual,
+            is_answer=self._searches,
+        )
+        last = replace(decision, estimated_error=residual)
+        return replace(decision, status=None, finished=(answer, last))
+
+    def _finished(
+        self, iterate: Iterate, decision: Decision, certificate: Certificate
+    ) -> Decision:
+        """End a run with its certified solution, as one more iterate."""
         began = time.perf_counter()
         error = certificate.distance.of_friction_force(iterate)
         answer = finished(iterate.problem, iterate.k, certificate, iterate)
         answer = replace(answer, is_answer=self._searches)
-        gave_up = status is not None and status.ending is not Ending.CONVERGED
-        end = certified(
-            answer, certificate, error, status.advice if status and gave_up else ""
-        )
-        last = Decision(
-            self._billed(iterate, began), certificate.residual, end, certificate
-        )
+        advice = ""
+        if decision.status is not None and _is_failure(decision.status):
+            advice = decision.status.advice
+        status = certified(answer, certificate, error, advice)
+        seconds = self._billed(iterate, began)
+        last = Decision(seconds, certificate.residual, status, certificate)
         return replace(
             decision, estimated_error=error, status=None, finished=(answer, last)
         )
 
     def _residual(self, iterate: Iterate, status: Status | None) -> float:
-        """KKT residual of an iterate that may be a solution though none is certified, or NaN.
+        """KKT residual of an iterate that may be a solution, NaN if not computed.
 
-        It may be where the stages agree up to rounding. It is dear: so it is computed
-        now and then, and where a run would end without an answer.
+        An iterate may be one where both stages agree up to rounding. The residual costs
+        much, so it is computed every `SELDOM` iterations, and where a run would end
+        without an answer.
         """
-        gives_up = status is not None and status.ending is not Ending.CONVERGED
-        ends = self._may_finish and not self._searches
-        is_due = gives_up or (ends and status is None and iterate.number % SELDOM == 0)
-        problem = iterate.problem
-        is_judged = not (problem.no_reference or problem.goes_on)
+        runs_to_answer = self._may_finish and not self._searches
+        is_turn = runs_to_answer and status is None and iterate.number % SELDOM == 0
+        is_due = is_turn or _is_failure(status)
         if self.estimate.is_proven or not is_due or iterate.indicator > SOLVED:
             return math.nan
-        if is_judged:
-            return kkt_residual(iterate, problem, HIDDEN)
-        return math.nan
+        problem = iterate.problem
+        if problem.no_reference or problem.goes_on:
+            return math.nan
+        return kkt_residual(iterate, problem, HIDDEN)
 
     def _billed(self, iterate: Iterate, began: float) -> float:
-        """Seconds of the whole run, with those since `began`."""
+        """Bill the time since `began` to the rules; seconds of the whole run."""
         self.seconds += time.perf_counter() - began
         return iterate.seconds + self.seconds
 
     def _ending(self, iterate: Iterate) -> tuple[float, Status | None]:
-        """Estimated error of an iterate, NaN where nobody asks, and how the run ends, or None."""
-        stop = self._stop
+        """Estimated error, NaN if not needed, and status, None if the run goes on."""
         estimate = self.estimate
-        number = iterate.number
-        is_last = (
-            number >= stop.iterations or iterate.seconds + self.seconds >= stop.seconds
-        )
-        is_due = is_last or number >= self._on_goal.next
+        is_last = self._is_last(iterate)
+        is_due = is_last or iterate.number >= self._goal.next
         error = math.nan
-        status = None
-        # How many iterations a search takes is asked; a distance costs a hundredth to a
-        # sixth of one (measured on the five scenes).
+        # The iterations of a search are counted, so its error is needed at each of
+        # them; a distance costs a hundredth to a sixth of one (measured on the five
+        # scenes).
         if self._asks_accuracy and (is_due or self._searches):
             error = estimate(iterate)
-        if self._searches and estimate.is_proven and error <= stop.accuracy:
-            status = PROVEN
-        elif is_due:
-            status = self._converged(iterate, error)
-        if status is None and stop.sufficient > 0.0:
-            check = self._on_sufficient
-            if (is_last or number >= check.next) and self._is_low(
-                iterate, stop.sufficient, check
-            ):
-                status = BELOW
-        if status is None and self._stall.has_stalled(iterate):
-            status = stalled(self._latin, self._stall.indicator)
-        if status is None:
-            gives_up = is_last
-        else:
-            gives_up = status.ending is not Ending.CONVERGED
+        status = self._reached(iterate, error, is_due=is_due, is_last=is_last)
+        gives_up = _is_failure(status) or (status is None and is_last)
         if gives_up and self._may_finish and not estimate.is_proven:
-            # Whatever it costs, where a run that may end with it would give up.
+            # Without a certified solution the run would have no answer.
             estimate.try_step(iterate, LAST)
         if estimate.ending is not None:
             return error, estimate.ending
         if status is None and is_last:
-            status = exhausted(self._latin, iterate, is_proven=estimate.is_proven)
+            status = self._exhausted(iterate)
         if status is not None:
-            status = with_jump(status, iterate.problem, estimate.certificate)
-            status = unprovable(status, iterate.problem, self._latin)
+            problem = iterate.problem
+            status = with_jump(status, problem, estimate.certificate)
+            status = unprovable(status, problem, has_bases=self._has_bases)
         return error, status
 
+    def _is_last(self, iterate: Iterate) -> bool:
+        """Check whether an iterate is at the limit of iterations or seconds."""
+        seconds = iterate.seconds + self.seconds
+        return iterate.number >= self._stop.iterations or seconds >= self._stop.seconds
+
+    def _reached(
+        self, iterate: Iterate, error: float, *, is_due: bool, is_last: bool
+    ) -> Status | None:
+        """Status of a run that has converged or stalled, None if neither."""
+        is_proven = self.estimate.is_proven
+        if self._searches and is_proven and error <= self._stop.accuracy:
+            return PROVEN
+        if is_due:
+            status = self._converged(iterate, error)
+            if status is not None:
+                return status
+        if self._is_sufficient(iterate, is_last=is_last):
+            return BELOW
+        if self._stall.has_stalled(iterate):
+            is_low = self._stall.indicator <= self._stop.tolerance
+            return stalled(self._remedies, self._relaxation, is_low=is_low)
+        return None
+
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
-        """Status of a run that is accurate enough, at a low indicator, as far as both are asked."""
-        stop = self._stop
-        estimate = self.estimate
-        number = iterate.number
-        if self._asks_accuracy:
-            value = error / stop.accuracy
-            self._on_goal.update(number, value if estimate.is_proven else math.nan)
-            if not value <= 1.0:
-                return None
-            # The indicator says when to check again.
-            self._on_goal.next = number + 1
-        asks_tolerance = math.isfinite(stop.tolerance)
-        if asks_tolerance and not self._is_low(iterate, stop.tolerance, self._on_goal):
+        """Status of a run that meets accuracy and tolerance, None if it does not."""
+        asks_tolerance = math.isfinite(self._stop.tolerance)
+        if self._asks_accuracy and not self._is_accurate(iterate.number, error):
             return None
-        if not self._asks_accuracy:
-            return BELOW if asks_tolerance else None
+        if asks_tolerance and not self._is_low(
+            iterate, self._stop.tolerance, self._goal
+        ):
+            return None
+        if self._asks_accuracy:
+            return self._status_of_accurate(iterate)
+        if asks_tolerance:
+            return BELOW
+        return None
+
+    def _is_accurate(self, number: int, error: float) -> bool:
+        """Compare an error with the accuracy, and set the next check."""
+        share = error / self._stop.accuracy
+        # Only the distance to a known solution foretells when it will be low enough.
+        if self.estimate.is_proven:
+            self._goal.update(number, share)
+        else:
+            self._goal.update(number, math.nan)
+        if not share <= 1.0:
+            return False
+        # The indicator says when to check again.
+        self._goal.next = number + 1
+        return True
+
+    def _status_of_accurate(self, iterate: Iterate) -> Status | None:
+        """Status of a run that is accurate enough, None if that needs a proof first."""
+        estimate = self.estimate
         if estimate.is_proven:
             return PROVEN
         # An estimate counts for nothing on bases, or where a step is worth its cost.
-        counts = not (
-            estimate.needs_proof or estimate.can_be_proven(iterate, least=WAIT)
-        )
-        if not counts:
+        if estimate.needs_proof or estimate.can_be_proven(iterate, least=WAIT):
             return None
-        return UNPROVABLE if iterate.problem.no_reference else EXPECTED
+        if iterate.problem.no_reference:
+            return UNPROVABLE
+        return EXPECTED
+
+    def _is_sufficient(self, iterate: Iterate, *, is_last: bool) -> bool:
+        """Check whether the LATIN indicator is low enough to end the run by itself."""
+        sufficient = self._stop.sufficient
+        is_due = is_last or iterate.number >= self._sufficient.next
+        if sufficient > 0.0 and is_due:
+            return self._is_low(iterate, sufficient, self._sufficient)
+        return False
 
     def _is_low(self, iterate: Iterate, tolerance: float, check: NextCheck) -> bool:
-        """Whether the LATIN indicator is low enough, and the k-free one or the solution agrees.
+        """Check whether the LATIN indicator is low, and another measure agrees.
 
-        The LATIN indicator alone can be fooled: a search direction that is far from the
-        stiffness in play makes it as small as one likes (solver/README.md, 4). The
-        k-free one is a share of what contact carries, which is nothing where all
-        contacts open.
+        That is the k-free indicator, or the distance to a certified solution. The LATIN
+        indicator alone can be fooled: a search direction that is far from the stiffness
+        in play makes it as small as one likes (solver/README.md, 4). The k-free
+        indicator is relative to the contact forces, which vanish where all contacts
+        open.
         """
         check.update(iterate.number, iterate.indicator / tolerance)
         if iterate.indicator > tolerance:
             return False
         enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)
-        return iterate.behaviour <= enough or self.estimate.is_proven_within(
-            enough, iterate
-        )
+        if iterate.behaviour <= enough:
+            return True
+        return self.estimate.is_proven_within(enough, iterate)
+
+    def _exhausted(self, iterate: Iterate) -> Status:
+        """Status of a run at its limit, with the criterion that it has not met."""
+        is_proven = self.estimate.is_proven
+        lack = AT_LIMIT
+        if self._asks_accuracy and self._searches and is_proven:
+            lack = INACCURATE
+        elif iterate.indicator > self._stop.tolerance and not self._searches:
+            lack = ABOVE
+        elif self._asks_accuracy:
+            lack = UNPROVEN
+        may_go_on = iterate.number < self._stop.iterations
+        return exhausted(lack, self._remedies, may_go_on=may_go_on)
+
+
+def _is_failure(status: Status | None) -> bool:
+    """Check whether a status is known and not convergence."""
+    return status is not None and status.ending is not Ending.CONVERGED
 
 
 class NextCheck:
-    """The next iteration at which a number that falls is worth computing.
+    """The next iteration at which a falling number is worth computing.
 
-    Half way to where its last two values, over what is low enough, would have it fall
-    to 1; while it does not fall, after half of the longest wait: it is missed by
-    little.
+    The number, over its limit, has to fall to 1. The next check is half way to the
+    iteration at which its last two values let expect that. While the number does not
+    fall, the next check comes after half of the longest wait, so that little is missed.
     """
 
     def __init__(self) -> None:
@@ -308,21 +404,22 @@ class NextCheck:
         self._last = (0, math.nan)
 
     def update(self, iteration: int, value: float) -> None:
-        """Take in a value."""
-        (before, last) = self._last
-        left = 0.0
+        """Set the next check by a value at an iteration; NaN foretells nothing."""
+        before, last = self._last
         self._last = iteration, value
+        half_way = 0.0
         if 1.0 < value < last and iteration > before:
-            left = 0.5 * math.log(value) / math.log(last / value) * (iteration - before)
+            half_way = 0.5 * math.log(value) / math.log(last / value)
+            half_way *= iteration - before
+        shortest = iteration // (2 * SHARE)
         if value <= 1.0:
-            least = 0
-        else:
-            least = iteration // (2 * SHARE)
-        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)
+            shortest = 0
+        wait = int(min(half_way, iteration / SHARE))
+        self.next = iteration + 1 + max(wait, shortest)
 
 
 class StallCheck:
-    """Whether the LATIN indicator has stalled, and the lowest so far."""
+    """Watch on a LATIN indicator that stops falling; `indicator` is the lowest."""
 
     def __init__(self) -> None:
         self.indicator = math.inf
@@ -330,10 +427,10 @@ class StallCheck:
         self._k = np.zeros(0)
 
     def has_stalled(self, iterate: Iterate) -> bool:
-        """Whether it has stopped falling."""
+        """Check whether the indicator has stopped falling."""
         number = iterate.number
         if iterate.k is not self._k:
-            # It is measured by k: to look for the lowest begins anew.
+            # The indicator is measured by k, so values for another k do not compare.
             self.indicator = math.inf
             self._number = number
             self._k = iterate.k

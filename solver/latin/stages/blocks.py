@@ -1,4 +1,4 @@
-"""Blocks of instants: what is local in time, done block by block, by as many threads as asked."""
+"""Blocks of instants, on which several threads may work at once."""
 
 from __future__ import annotations
 
@@ -8,29 +8,37 @@ from contextlib import ExitStack
 from itertools import pairwise
 from threading import Lock
 
-import scipy.linalg  # noqa: F401  # brings its own BLAS, which is looked for below
+import scipy.linalg  # noqa: F401  # brings its own BLAS, which `OneBlasThread` limits
 from threadpoolctl import ThreadpoolController
 
 VALUES = 100_000
-"""Least numbers of a boundary field in a block: of less, handing it to a thread costs a
-share of the work (each of the seven hand-overs of an iteration takes some 0.05 ms)."""
+"""Smallest count of numbers of a boundary field in a block: with less the handing to a
+thread costs a share of the work (each of the seven hand-overs of an iteration takes
+some 0.05 ms)."""
 MOST = 8
-"""Blocks at most: enough for an even share among four threads. More make the matrix
-products of a block small: 51 blocks instead of 8 take 6 % longer on one thread
+"""Largest number of blocks: enough for an even share among four threads. More make the
+matrix products of a block small: 51 blocks instead of 8 take 6 % longer on one thread
 (measured)."""
-
 ALL = slice(None)
+"""All instants."""
 
 
 class Blocks:
-    """Instants of a boundary field cut into blocks, on which so many threads work at once.
+    """Instants of a boundary field in blocks, on which several threads work at once.
 
-    The blocks do not depend on the number of threads; nor do the results.
+    Neither the blocks nor the results depend on the number of threads.
+
+    Parameters
+    ----------
+    n_rows, n_instants
+        Shape of a boundary field.
+    threads
+        Largest number of threads.
     """
 
     def __init__(self, n_rows: int, n_instants: int, threads: int = 1) -> None:
         count = min(max(n_rows * n_instants // VALUES, 1), MOST, n_instants)
-        ends = (number * n_instants // count for number in range(count + 1))
+        ends = [number * n_instants // count for number in range(count + 1)]
         self.slices = [slice(first, last) for first, last in pairwise(ends)]
         workers = min(threads, count)
         self._pool: ThreadPoolExecutor | None = None
@@ -38,7 +46,7 @@ class Blocks:
             self._pool = ThreadPoolExecutor(workers)
 
     def each(self, work: Callable[[slice], None]) -> None:
-        """Do some work for every block of instants."""
+        """Call `work` for every block of instants."""
         if self._pool is None:
             for instants in self.slices:
                 work(instants)
@@ -49,7 +57,10 @@ class Blocks:
 
 
 class OneBlasThread:
-    """BLAS on one thread while anybody is inside: products of few rows take longer on several."""
+    """Context with one thread for BLAS: several are slower for products of few rows.
+
+    It may be entered several times; the last to leave lifts the limit.
+    """
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -59,11 +70,15 @@ class OneBlasThread:
 
     def __enter__(self) -> None:
         with self._lock:
-            if not self._inside and any(
-                b.num_threads > 1 for b in self._libraries.lib_controllers
-            ):
-                self._limits.enter_context(self._libraries.limit(limits=1))
+            if not self._inside:
+                self._limit()
             self._inside += 1
+
+    def _limit(self) -> None:
+        """Limit BLAS to one thread, unless it has one already."""
+        libraries = self._libraries.lib_controllers
+        if any(library.num_threads > 1 for library in libraries):
+            self._limits.enter_context(self._libraries.limit(limits=1))
 
     def __exit__(self, *_raised: object) -> None:
         with self._lock:

@@ -1,4 +1,4 @@
-"""The local stage: all interface laws at all points and instants (paper, problem 2.1)."""
+"""Local stage: all interface laws at all points and instants (paper, problem 2.1)."""
 
 from __future__ import annotations
 
@@ -11,48 +11,75 @@ from solver.latin.stages.sliding_body import slide_of
 
 
 class LocalStage:
-    """Interface laws along the search direction E+, ready for one problem and one k, (n_rows,).
+    """Interface laws along the search direction E+, ready for one problem and one k.
 
-    It reads z = W - F/k of the linear stage alone, and its result is read as W^ + F^/k
-    = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together, and what is
-    local in time block by block of instants.
+    The local stage reads z = W - F/k of the linear stage alone, and its result is W^ +
+    F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together. Laws
+    that are local in time are applied block by block of instants.
 
-    A call leaves W^ as `displacement`, a new field (n_rows, n_instants), and as
-    `incoming` the z with which it obeyed: as read, but for the shift of a body that
-    slides, along a `motion` of its rows, (n_rows,), or None.
+    Parameters
+    ----------
+    problem
+        The problem to be solved.
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
+    blocks
+        Blocks of instants.
+
+    Attributes
+    ----------
+    displacement
+        W^ of the last call, a new field of shape (n_rows, n_instants), scaled.
+    incoming
+        W^ - F^/k of the last call, same shape: z as read, plus the shift of a body that
+        slides as a whole.
+    motion
+        Motion of the rows in a slide of that body, shape (n_rows,); None without such a
+        body.
     """
 
     def __init__(self, problem: Problem, k: Array, blocks: Blocks) -> None:
         shape = problem.n_rows, problem.n_instants
         self._blocks = blocks
-        self.displacement = self.incoming = space_time(*shape)
+        self.displacement = space_time(*shape)
+        self.incoming = self.displacement
         self._outgoing = space_time(*shape)
         self._slide = slide_of(problem, k)
-        if self._slide is None:
-            self.motion = None
-        else:
+        self.motion = None
+        if self._slide is not None:
             self.motion = self._slide.motion
-        laws = problem.laws
-        n_instants = problem.n_instants
-        self._remembering = [law.rule(k, n_instants) for law in laws if law.remembers]
-        self._instant = [law.rule(k, n_instants) for law in laws if not law.remembers]
+        self._remembering = []
+        self._instantaneous = []
+        for law in problem.laws:
+            rule = law.rule(k, problem.n_instants)
+            if law.remembers:
+                self._remembering.append(rule)
+            else:
+                self._instantaneous.append(rule)
 
     def __call__(self, incoming: Array) -> Array:
-        """W^ + F^/k that obey all laws, from z = W - F/k; the next call overwrites them."""
+        """W^ + F^/k that obey all laws, from z = W - F/k; the next call overwrites it.
+
+        Both have shape (n_rows, n_instants), scaled.
+        """
         if self._slide is not None:
             incoming = self._slide.balanced(incoming)
         self.incoming = incoming
-        displacement = self.displacement = np.empty_like(self._outgoing)
+        displacement = np.empty_like(self._outgoing)
+        self.displacement = displacement
         for rule in self._remembering:
             rule(incoming, displacement, ALL)
         self._blocks.each(lambda instants: self._at(incoming[:, instants], instants))
         return self._outgoing
 
     def _at(self, incoming: Array, instants: slice) -> None:
-        """Obey the laws that are local in time, at some instants, and reflect."""
+        """Apply the laws that are local in time, and make W^ + F^/k, at some instants.
+
+        `incoming` is z at these instants, shape (n_rows, n_some), scaled.
+        """
         displacement = self.displacement[:, instants]
         outgoing = self._outgoing[:, instants]
-        for rule in self._instant:
+        for rule in self._instantaneous:
             rule(incoming, displacement, instants)
         np.multiply(displacement, 2.0, out=outgoing)
         np.subtract(outgoing, incoming, out=outgoing)

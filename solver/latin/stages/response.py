@@ -1,4 +1,4 @@
-"""The boundary response of a substructure to its search direction: dense, or by a factor."""
+"""Boundary response of a substructure along its search direction: dense or factored."""
 
 from __future__ import annotations
 
@@ -17,17 +17,25 @@ DENSE_UP_TO = 150
 instants it takes 0.17 against 0.13 ms at 200 rows, 4.2 against 0.7 ms at 1000
 (measured)."""
 DENSE_FROM_SHARE = 0.1
-"""Share of nonzero entries from which a stiffness is dense, and so would be its
-factor."""
+"""Share of nonzero entries from which a stiffness counts as dense, as its factor would
+be dense."""
 BLOCK = 12_000
-"""Numbers that a sparse solution takes at once: larger intermediate fields come from
-fresh memory, whose first touch costs up to ten times the solution (measured)."""
+"""Count of numbers in the intermediate fields of a sparse solution: larger fields come
+from fresh memory, whose first touch costs up to ten times the solution (measured)."""
 
 
 class Response:
-    """The boundary response of a substructure, by a solution for all columns.
+    """Boundary response H k of a substructure, by a sparse solution for every column.
 
-    H k is that of the boundary to k y, with k as springs to rest (solver/README.md, 2).
+    H k y is the boundary displacement under boundary forces k y, with k as springs to
+    rest (solver/README.md, 2).
+
+    Parameters
+    ----------
+    elasticity
+        Stiffness of the substructure.
+    k
+        Search direction of its rows, shape (n_boundary,), scaled.
     """
 
     def __init__(self, elasticity: Elasticity, k: Array) -> None:
@@ -39,11 +47,13 @@ class Response:
 
     @cached_property
     def _load(self) -> sparse.csr_array:
-        places = self._trace, np.arange(len(self._k))
-        return sparse.csr_array((self._k, places), shape=(self._n_dofs, len(self._k)))
+        """Map from y to forces on all dofs, shape (n_dofs, n_boundary)."""
+        positions = self._trace, np.arange(len(self._k))
+        shape = self._n_dofs, len(self._k)
+        return sparse.csr_array((self._k, positions), shape=shape)
 
     def reflect(self, outgoing: Array, out: Array) -> None:
-        """Write 2 H k y - y for y of shape (n_boundary, n)."""
+        """Write 2 H k y - y for y = `outgoing`, both of shape (n_boundary, n)."""
         n_columns = max(BLOCK // self._n_dofs, 4)
         for first in range(0, outgoing.shape[1], n_columns):
             columns = slice(first, first + n_columns)
@@ -54,19 +64,26 @@ class Response:
         np.subtract(out, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:
-        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        """Some rows of k - k H k, the map from y to F, shape (n_some, n_boundary).
+
+        `rows` are positions on the boundary, shape (n_some,).
+        """
         load = self._load[:, rows].toarray()
         full = -(self._load.T @ self._solve(load)).T
         full[np.arange(len(rows)), rows] += self._k[rows]
         return np.asarray(full)
 
     def of_body_force(self, force: Array) -> Array:
-        """Boundary displacement under body forces, with k as a spring to rest."""
+        """Boundary displacement under a body force, with k as springs to rest.
+
+        `force` has shape (n_dofs, n_instants), the result (n_boundary, n_instants),
+        scaled.
+        """
         return self._solve(force)[self._trace]
 
 
 class DenseResponse(Response):
-    """The boundary response of a small substructure as one dense matrix."""
+    """Boundary response of a small substructure as one dense matrix."""
 
     def __init__(self, elasticity: Elasticity, k: Array) -> None:
         super().__init__(elasticity, k)
@@ -77,29 +94,40 @@ class DenseResponse(Response):
         self._reflection = 2.0 * self._compliance * k - np.eye(len(k))
 
     def reflect(self, outgoing: Array, out: Array) -> None:
-        """Write 2 H k y - y for y of shape (n_boundary, n)."""
+        """Write 2 H k y - y for y = `outgoing`, both of shape (n_boundary, n)."""
         np.matmul(self._reflection, outgoing, out=out)
 
     def force_rows(self, rows: Indices) -> Array:
-        """Rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        """Some rows of k - k H k, the map from y to F, shape (n_some, n_boundary).
+
+        `rows` are positions on the boundary, shape (n_some,).
+        """
         full: Array = -self._k[rows, None] * self._compliance[rows] * self._k
         full[np.arange(len(rows)), rows] += self._k[rows]
         return full
 
 
 def response_of(elasticity: Elasticity, k: Array) -> Response:
-    """Condense or factor an elasticity with a k."""
-    stiffness = elasticity.stiffness
-    is_dense = isinstance(stiffness, np.ndarray) or bool(
-        stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
-    )
-    if is_dense or len(k) <= DENSE_UP_TO:
+    """Boundary response of a substructure with a k of shape (n_boundary,), scaled."""
+    if len(k) <= DENSE_UP_TO or _is_dense(elasticity):
         return DenseResponse(elasticity, k)
     return Response(elasticity, k)
 
 
+def _is_dense(elasticity: Elasticity) -> bool:
+    """Check whether a stiffness is dense, or has so many entries that its factor is."""
+    stiffness = elasticity.stiffness
+    if isinstance(stiffness, np.ndarray):
+        return True
+    return bool(stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2)
+
+
 def _solver(elasticity: Elasticity, k: Array) -> Callable[[Array], Array]:
-    """The map from forces on all degrees of freedom, (n_dofs, n), to displacements."""
+    """Map from forces on all degrees of freedom to displacements, with k as springs.
+
+    `k` has shape (n_boundary,); forces and displacements have shape (n_dofs, n), all
+    scaled.
+    """
     stiffness = elasticity.stiffness
     springs = np.bincount(elasticity.trace, weights=k, minlength=stiffness.shape[0])
     if isinstance(stiffness, np.ndarray):
