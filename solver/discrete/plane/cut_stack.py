@@ -32,15 +32,16 @@ SIDES = "left", "right", "bottom", "top"
 
 
 def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
-    """Ends of substructures along a pile, in elements, (n_ends,), ascending without 0.
+    """Ends of substructures along a pile, in elements, (n_ends,), ascending.
 
-    Substructures end at the cuts of the longest body, and where any body ends.
+    0 is left out. Substructures end at the cuts of the longest body, and where any body
+    ends.
     """
     return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
 
 
 class _Piece(NamedTuple):
-    """A substructure: its rectangle, the number of its body, and its name in a cut's."""
+    """A substructure: its rectangle, the number of its body, and its name in cuts."""
 
     rectangle: Brick
     body: int
@@ -75,7 +76,7 @@ def _ends_across(stack: Stack, brick: Brick) -> list[int]:
 
 
 class _Trace(NamedTuple):
-    """Boundary rows on a part of a side of a substructure.
+    """Boundary rows along a part of a side of a substructure.
 
     Nodes `first` to `last` of the side (without the last) have rows of the components:
     0 along x and 1 along y. Substructures with the same traces share an operator; so
@@ -102,7 +103,7 @@ class _Trace(NamedTuple):
 def _numbered(
     traces: Mapping[Hashable, _Trace], mesh: Rectangle, first: int
 ) -> dict[Hashable, Indices]:
-    """Numbers of the boundary rows of each trace, (n_nodes, n_components), from `first`."""
+    """Row numbers of each trace, (n_nodes, n_components), counted from `first`."""
     numbers = dict[Hashable, Indices]()
     for name, trace in traces.items():
         shape = trace.dofs(mesh).shape
@@ -199,20 +200,23 @@ class CutStack:
             condensed, operator = self._operator(mesh, modulus, kinds, has_force)
             rows = _numbered(traces, mesh, n_rows)
             n_rows += sum(each.size for each in rows.values())
-            brick = self.stack.rectangles[body]
-            inside = rectangle._replace(
-                x=rectangle.x - brick.x, y=rectangle.y - brick.y
-            )
-            along, up = inside.nodes()
             yield Part(
                 rectangle=mesh,
                 condensed=condensed,
                 elasticity=operator,
-                nodes=nodes[body][up, along],
+                nodes=self._own_nodes(number, nodes[body]),
                 body=body,
                 rows=rows,
                 force=force,
             )
+
+    def _own_nodes(self, number: int, nodes: Indices) -> Indices:
+        """Nodes of a substructure, (n_rows, n_columns), out of those of its body."""
+        rectangle, body, _ = self._pieces[number]
+        brick = self.stack.rectangles[body]
+        inside = rectangle._replace(x=rectangle.x - brick.x, y=rectangle.y - brick.y)
+        along, up = inside.nodes()
+        return nodes[up, along]
 
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
         elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
@@ -221,7 +225,7 @@ class CutStack:
     def _operator_of(
         self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace], has_force: bool
     ) -> tuple[SchurComplement, Elasticity]:
-        """Condensed stiffness and elasticity; `has_force` only tells operators apart."""
+        """Condensed stiffness and elasticity; `has_force` tells operators apart."""
         dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
         condensed = SchurComplement(mesh.outline, np.unique(dofs))
         density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
@@ -233,7 +237,7 @@ class CutStack:
         )
 
     def _outer(self, number: int) -> Iterator[str]:
-        """Sides of a substructure that are free, loaded or prescribed, as they touch nothing.
+        """Outer sides of a substructure: free, loaded or prescribed.
 
         On the left and right only those of bodies that reach farthest.
         """
@@ -248,7 +252,7 @@ class CutStack:
                 yield side
 
     def bodies(self, joint: Joint) -> tuple[int, int | None]:
-        """Bodies of a joint: the one above or to the right, and the other; None: support."""
+        """Body above or to the right of a joint, and the other one (None: support)."""
         above = self._pieces[joint.above].body
         if joint.below is None:
             return above, None
@@ -286,7 +290,7 @@ class CutStack:
         return f"brick {below + 1} and brick {above + 1}"
 
     def basis(self, joint: Joint, which: int) -> Array:
-        """Macro basis of one component on a joint, (n_points, n_macro), as polynomials.
+        """Macro basis of one component on a joint, (n_points, n_macro).
 
         `which` is the side of the joint whose substructure gives the degree: 0 is the
         one above.
@@ -303,7 +307,7 @@ class CutStack:
         return joint.below is None and support is not None and support.bound is not None
 
     def _pairs_of(self, joint: Joint) -> tuple[Indices, Array]:
-        """Nodes of a joint on the grid, and the scaled length of each, (n_pairs,) both."""
+        """Nodes of a joint on the grid, and their scaled lengths, (n_pairs,) both."""
         before, after = self._left_out(joint)
         count = joint.last - joint.first
         lengths = self._element[joint.is_upright] * tributary(count)
@@ -316,7 +320,7 @@ class CutStack:
         return nodes[paired], lengths[paired]
 
     def _left_out(self, joint: Joint) -> tuple[bool, bool]:
-        """Check whether the node at the first, and at the last end of a joint has no pair.
+        """Check whether the first, and the last, node of a joint has no pair.
 
         A lying joint has no pair at an end where the left or right side prescribes the
         normal displacement: any pressing force would be a solution there, and so would
@@ -341,7 +345,7 @@ class CutStack:
         )
 
     def _traces(self) -> Iterator[dict[Hashable, _Trace]]:
-        """Traces of every substructure, side by side, by joint or by the name of a side.
+        """Traces of every substructure, by joint or by the name of a side.
 
         A joint has both components, or with a support of known bound the one along it;
         an outer side those that are prescribed; the foot under a spring ("spring")
@@ -373,7 +377,7 @@ class CutStack:
         return traces
 
     def _traces_of_sides(self, number: int) -> dict[Hashable, _Trace]:
-        """Traces of a substructure on outer sides: prescribed ones, and under a spring."""
+        """Traces of a substructure on prescribed outer sides, and at a spring."""
         stack = self.stack
         rectangle, body, _ = self._pieces[number]
         is_foot = (rectangle.y, body) == (0, 0)
@@ -391,7 +395,7 @@ class CutStack:
         return traces
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
-        """Nodal forces of tractions and weight, (2 n_nodes, n_instants), scaled, or None."""
+        """Scaled nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
         stack = self.stack
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
         for side in self._outer(number):
@@ -409,7 +413,7 @@ class CutStack:
         return None
 
     def values(self, number: int, side: str, given: Given) -> Array:
-        """Values of a given displacement or traction at a substructure's nodes on a side.
+        """Given displacement or traction at a substructure's nodes on a side.
 
         Shape (n_nodes, n_instants), m or Pa.
         """

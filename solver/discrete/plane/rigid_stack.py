@@ -1,4 +1,4 @@
-"""Equilibrium of a single body on its support as if it were rigid: loss, rest, sliding."""
+"""Equilibrium of a rigid body on its support: loss, rest, and sliding."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ contact itself, as the automatic search direction estimates it."""
 STEPS = 50
 """Largest number of Newton steps; a few suffice."""
 SETTLED = 1e-9
-"""Load that the support need not hold when Newton's steps end, as a share of the load."""
+"""Share of the load that the support need not hold when Newton's steps end."""
 FREE = 1e-9
 """Stiffness, as a share of the largest, up to which a motion is free; and share of the
 load beyond which it pushes a free motion."""
 
 
 def wrench(stack: Stack) -> tuple[Array, Array, Array]:
-    """Resultants of tractions and body forces on a single body, shape (n_instants,) each.
+    """Resultants of tractions and body forces on a single body.
 
     Forces along x and y, N, and the counter-clockwise moment about the lower left
-    corner, N m.
+    corner, N m; shape (n_instants,) each.
     """
     length = stack.length
     height = stack.height
@@ -89,7 +89,7 @@ def is_upright(stack: Stack) -> bool:
 
 
 def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
-    """Time, s, and reason of the first loss of equilibrium of a body on a support, or None.
+    """Time, s, and reason of the first loss of equilibrium on a support, or None.
 
     A rigid body can rest only where the support holds all that no side holds: it
     presses and does not pull, friction carries no more than its law allows, and the
@@ -124,9 +124,9 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
 
 
 def _tipping(stack: Stack, friction: Array) -> Array:
-    """Moment that the pressure on the base cannot balance, (n_instants,), N m; or below 0.
+    """Moment that the pressure on the base cannot balance, (n_instants,), N m.
 
-    `friction` is the largest friction force, (n_instants,), N.
+    Below 0 the pressure balances all moments. `friction` is the largest friction force, (n_instants,), N.
     """
     x, y, moment = wrench(stack)
     if not stack.sides["top"].x.prescribed:
@@ -250,7 +250,7 @@ def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:
 
 
 def _step_length(opening: Array, step: Array, work: Array) -> Array:
-    """Factor on a step up to which the energy of bedding and loads falls, (n_instants,).
+    """Factor on a step that minimises the energy of bedding and loads, (n_instants,).
 
     `opening` and its change by the whole `step` are (n_points, n_instants), the `work`
     of the loads on it (n_instants,). The slope of the energy over the factor t is the

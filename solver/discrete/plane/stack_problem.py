@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 def problem_of(stack: Stack) -> Problem:
-    """Discrete problem of a stack: substructures, interfaces, and the condensed inside."""
+    """Discrete problem of a stack: its substructures, interfaces and inside."""
     cut = CutStack(stack)
     scales = Scales(stack.length, stack.young * stack.length, stack.duration)
     inside = Inside(cut.parts, cut.positions, scales, len(stack.instants))

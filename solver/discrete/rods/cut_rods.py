@@ -1,4 +1,4 @@
-"""Rods as a discrete problem: linear elements that are cut, friction lumped at the nodes."""
+"""Discrete problem of rods: linear elements that are cut, friction lumped at nodes."""
 
 from __future__ import annotations
 
@@ -68,12 +68,12 @@ class _Piece(NamedTuple):
 
     @property
     def nodes(self) -> slice:
-        """Nodes of the piece among those of piece after piece (a cut's are there twice)."""
+        """Nodes of the piece, among those of all pieces (a cut's are there twice)."""
         first = self.first + self.number
         return slice(first, first + self.size + 1)
 
     def springs(self, rods: Rods) -> dict[int, End]:
-        """Ends of the rod in this piece that springs hold, by their node in the piece."""
+        """Ends of the rod that springs hold, by their node in this piece."""
         ends = {0: rods.left, rods.elements: rods.right}
         last = self.first + self.size
         return {
@@ -177,7 +177,7 @@ class CutRods:
     def _substructures(
         self, rod: int, shared: dict[tuple[object, ...], Elasticity]
     ) -> Iterator[Substructure]:
-        """Substructures of a rod from the left to the right; `shared` has operators so far."""
+        """Substructures of a rod from left to right; `shared` are operators so far."""
         rods = self._rods[rod]
         stiffness = self._stiffness(rods)
         free_force = _free_force(rods, stiffness)
@@ -219,7 +219,7 @@ class CutRods:
         return rows, np.concatenate([along, [0, piece.size]])
 
     def _sides_of(self, rod: int) -> list[int]:
-        """Sides of contacts on a rod: on the support, or on the rods before and behind."""
+        """Sides of contacts on a rod: with its support, or with its neighbours."""
         if not self._lower:
             return [rod]
         sides = list[int]()
@@ -247,9 +247,9 @@ class CutRods:
         return force
 
     def _inner_force(self, rods: Rods, free_force: Array | None) -> Array | None:
-        """Nodal forces of a rod, piece after piece, (n_nodes + n_cuts, n_instants), scaled.
+        """Nodal forces of a rod, piece after piece, (n_nodes + n_cuts, n_instants).
 
-        Sum of the body force, and of `free_force`, (n_elements, n_instants), with which
+        Scaled; sum of the body force, and of `free_force`, (n_elements, n_instants), with which
         elements push against their nodes; None without both.
         """
         forces: list[Array] = []
