@@ -395,7 +395,10 @@ class CutStack:
         return traces
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
-        """Scaled nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
+        """Nodal forces of tractions and weight, scaled, or None.
+
+        Shape (2 n_nodes, n_instants).
+        """
         stack = self.stack
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
         for side in self._outer(number):

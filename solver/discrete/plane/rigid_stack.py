@@ -126,7 +126,8 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
 def _tipping(stack: Stack, friction: Array) -> Array:
     """Moment that the pressure on the base cannot balance, (n_instants,), N m.
 
-    Below 0 the pressure balances all moments. `friction` is the largest friction force, (n_instants,), N.
+    Below 0 the pressure balances all moments. `friction` is the largest friction force,
+    (n_instants,), N.
     """
     x, y, moment = wrench(stack)
     if not stack.sides["top"].x.prescribed:

@@ -249,8 +249,8 @@ class CutRods:
     def _inner_force(self, rods: Rods, free_force: Array | None) -> Array | None:
         """Nodal forces of a rod, piece after piece, (n_nodes + n_cuts, n_instants).
 
-        Scaled; sum of the body force, and of `free_force`, (n_elements, n_instants), with which
-        elements push against their nodes; None without both.
+        Scaled; sum of the body force, and of `free_force`, (n_elements, n_instants),
+        with which elements push against their nodes; None without both.
         """
         forces: list[Array] = []
         if rods.body_force is not None:

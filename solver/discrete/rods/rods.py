@@ -223,7 +223,7 @@ class Rods:
 
     @property
     def bounds(self) -> Array:
-        """Friction bound, N/m, shape (n_nodes, n_instants), or (n_nodes, 1) if constant."""
+        """Friction bound, N/m, (n_nodes, n_instants), or (n_nodes, 1) if constant."""
         if self.bound.ndim == 2:
             return self.bound
         return self.bound[:, None]
@@ -315,10 +315,11 @@ class Rods:
     def end_force(self, problem: Problem, side: Side) -> Probe | Reaction:
         """Mean axial force at the ends of a side, N, positive to the right."""
         end = self.ends[side]
-        if end.displacement is None and end.force is None:
-            return constant(np.zeros(len(self.instants)))
         if end.displacement is None:
-            return constant(end.force)
+            force = end.force
+            if force is None:
+                force = np.zeros(len(self.instants))
+            return constant(force)
         if end.is_prescribed:
             return reaction(problem, SIDES[side]).times(1.0 / self.wires)
         moved = self._moved(problem, side).times(-end.spring)
