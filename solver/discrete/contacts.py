@@ -1,4 +1,4 @@
-"""Interfaces with friction: groups of one law, and the fields of one, point by point."""
+"""Interfaces with friction: groups of one law, and the fields of one interface."""
 
 from __future__ import annotations
 
@@ -53,20 +53,20 @@ class ContactGroup:
         return np.repeat(np.arange(len(self.numbers)), self._sizes)
 
     def largest(self, values: Array) -> Array:
-        """Largest of values, (n_points, n_instants), of each interface, (n_interfaces,)."""
+        """Largest of values, (n_points, n_instants), per interface, (n_interfaces,)."""
         starts = np.cumsum([0, *self._sizes[:-1]])
         return np.asarray(np.maximum.reduceat(values.max(axis=1), starts))
 
     def sums(self, values: Array) -> Array:
-        """Sums of values of the pairs, (n_pairs,), over each interface, (n_interfaces,)."""
+        """Sums of values of pairs, (n_pairs,), per interface, (n_interfaces,)."""
         pairs = self.interfaces[self.law.points]
         return np.asarray(np.bincount(pairs, values, len(self.numbers)), dtype=float)
 
     def slip(self, displacement: Array, force: Array | None) -> Array:
-        """Slip of every point in the step to every instant, (n_points, n_instants), scaled.
+        """Slip of every point up to each instant, (n_points, n_instants), scaled.
 
-        The slip of a point is the sum of that of its pairs. `displacement` and `force`
-        are those of all rows, shape (n_rows, n_instants), scaled.
+        Increments; that of a point is the sum over its pairs. `displacement` and
+        `force` are those of all rows, shape (n_rows, n_instants), scaled.
         """
         law = self.law
         start = self.law.tangential.start
@@ -113,7 +113,7 @@ class ContactGroup:
         return status
 
     def _largest_displacement(self, displacement: Array) -> Array:
-        """Largest tangential displacement of each interface, (n_interfaces,), scaled."""
+        """Largest tangential displacement per interface, (n_interfaces,), scaled."""
         largest = np.zeros(len(self.numbers))
         interfaces = self.interfaces[self.law.points]
         for rows in self.law.tangent.sides:

@@ -153,7 +153,7 @@ Axes = tuple[tuple[str, str], tuple[str, str]]
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """A force over the displacement that it works on: the area is the dissipated energy.
+    """A force over the displacement that it works on; its area is dissipated energy.
 
     Or a force, or a displacement, over the quantity that drives it: then the loop shows
     how it lags behind.
@@ -183,7 +183,7 @@ class Loop:
         return self.displacement.of(fields), self.force(fields)
 
     def finds_force(self, problem: Problem) -> bool:
-        """Check whether the displacement is prescribed, so that the force is unknown."""
+        """Check whether the displacement is prescribed and the force unknown."""
         return bool(np.isin(self.displacement.dofs, problem.prescribed[0]).all())
 
 
