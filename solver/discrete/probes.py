@@ -53,7 +53,7 @@ class Probe:
         return without_residue(*self.sum_of(displacement))
 
     def sum_of(self, displacement: Array) -> tuple[Array, Array]:
-        """The sum with its rounding, and the sum of its terms' sizes, (n_instants,) both."""
+        """The sum, and the sum of the sizes of its terms, (n_instants,) both."""
         moved = displacement[self.dofs]
         sizes = np.abs(self.weights) @ np.abs(moved) + np.abs(self.constant)
         return np.asarray(self.weights @ moved + self.constant), np.asarray(sizes)
@@ -84,7 +84,7 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
 
 
 def end_rotation(problem: Problem) -> Probe:
-    """Mean counter-clockwise rotation of the right ends of bodies that reach farthest, rad.
+    """Mean counter-clockwise rotation of the right ends of the longest bodies, rad.
 
     A moment that the ends share as linear tractions works on this rotation: -12 / t^3
     times the integral of (y - y_middle) u_x over an end of height t.
@@ -123,7 +123,7 @@ class Reaction:
     contacts: Mapping[str, tuple[Array | None, Array]]
 
     def of(self, fields: LoopFields) -> Array:
-        """The sum for an iterate or a reference, (n_instants,), in the unit of `elements`."""
+        """The sum for an iterate or a reference, (n_instants,), N or N m."""
         values, sizes = self.elements.sum_of(fields.displacement)
         for name, weights in self.contacts.items():
             contact = fields.contact(name)
@@ -171,7 +171,7 @@ def reaction_moment(problem: Problem, name: str) -> Reaction:
 
 
 def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
-    """Sum of the reactions times `held`, weights of all degrees of freedom, (n_dofs,)."""
+    """Sum of the reactions times `held`, weights of the dofs, (n_dofs,)."""
     weights = np.zeros(problem.n_dofs)
     loads = np.zeros(problem.n_instants)
     for part in problem.substructures:
@@ -243,7 +243,7 @@ class AxialForce:
         self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
 
     def __call__(self, displacement: Array) -> Array:
-        """Forces, (n_elements, n), N, for displacements of the instants, (n_dofs, n), m."""
+        """Forces, (n_elements, n), N, for displacements (n_dofs, n), m."""
         elongation = displacement[self._second] - displacement[self._first]
         return np.asarray(self._stiffness[:, None] * elongation - self._free)
 
@@ -255,7 +255,7 @@ def _inside(problem: Problem) -> Inside:
 
 
 def _edges(inside: Inside, side: str) -> tuple[Indices, Indices]:
-    """Nodes at both ends, (2, n), and bodies, (n,), of element edges on an outer side."""
+    """Nodes at both ends, (2, n), and bodies, (n,), of edges on an outer side."""
     places = inside.nodes[:, AXES[side]]
     if side in ("left", "bottom"):
         outermost = places.min()

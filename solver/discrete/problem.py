@@ -1,4 +1,4 @@
-"""The discrete problem: matrices, traces, laws and macro bases, without options or state.
+"""The discrete problem: matrices, traces, laws and macro bases, without options.
 
 All values are scaled (see `Scales`). A boundary row is one displacement component of
 one interface point of one substructure; an interface owns rows, and so does a
@@ -310,7 +310,7 @@ class Problem:
 
     @cached_property
     def no_reference(self) -> str:
-        """Reason that no incremental solver can judge the problem, with a remedy, or "".
+        """Reason that the problem has no incremental reference, with a remedy, or "".
 
         The incremental solvers read the incremental forms of all laws, one degree of
         freedom where rows are glued, and the mean of the pairs of a point: they would
@@ -410,7 +410,7 @@ class Problem:
 
     @cached_property
     def surfaces(self) -> dict[str, Contact]:
-        """The interfaces along which bodies touch, by name: all with friction but springs."""
+        """The interfaces with friction that are surfaces, not springs, by name."""
         return {name: law for name, law in self.rubbing.items() if not law.is_spring}
 
     @cached_property
@@ -422,7 +422,7 @@ class Problem:
 
     @cached_property
     def goes_on(self) -> bool:
-        """Check whether sliders begin at given positions: the problem continues another."""
+        """Check whether sliders begin at given positions, not at rest."""
         return any(law.tangential.start is not None for law in self.rubbing.values())
 
     @cached_property
@@ -560,7 +560,7 @@ class Problem:
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
-        """Degrees of freedom of prescribed displacement, (n,), ascending, and its values.
+        """Degrees of freedom of prescribed displacement, (n,), ascending, and values.
 
         Values are scaled, (n, n_instants).
         """
@@ -617,7 +617,7 @@ def _check_cover(
 
 
 def nothing_acts(problem: Problem) -> bool:
-    """Check whether loads, displacements and overlaps are all zero, as is the answer then.
+    """Check whether loads, displacements and overlaps are zero, and so the answer.
 
     A user's law without an incremental form may act, too.
     """
