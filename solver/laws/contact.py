@@ -219,7 +219,7 @@ class Contact(Interface):
 
     @property
     def is_plain(self) -> bool:
-        """Check whether a rod of known bound slips on a support, without springs or cap."""
+        """Check whether a rod of known bound slips on a support, without springs."""
         if not self.is_on_support or not isinstance(self.around, Rod) or self.opens:
             return False
         return self.tangential.softness is None and self.tangential.cap is None
@@ -376,7 +376,7 @@ class Contact(Interface):
 
     @property
     def is_moved(self) -> bool:
-        """Check whether bodies overlap or sliders are displaced before any load acts."""
+        """Check whether bodies overlap or sliders are displaced before all loads."""
         if self.normal is not None and self.normal.gap.min(initial=0.0) < 0.0:
             return True
         start = self.tangential.start

@@ -86,8 +86,9 @@ class FrictionLaw:
         """Friction at the pairs of an interface.
 
         `component` has their rows, `weights` their tributary areas, (n_pairs,), m or
-        m^2. `scales` are the units of length, m, and of force, N. `known` is the friction
-        force that known pressure makes, scaled, (n_pairs, n_instants) or (n_pairs, 1);
+        m^2. `scales` are the units of length, m, and of force, N. `known` is the
+        friction force that known pressure makes, scaled, (n_pairs, n_instants) or
+        (n_pairs, 1);
         `friction` is mu of each pair, (n_pairs,), where pressure is not known.
         """
         length, force = scales
@@ -255,7 +256,7 @@ class Friction:
     def allowed(
         self, pressing: Array | None, slip: Array, opening: Array | None = None
     ) -> Array:
-        """Largest friction force after increments of slip; all as in `without_slip`."""
+        """Largest friction force after increments of slip, (n_pairs, n_instants)."""
         bound = np.broadcast_to(self.without_slip(pressing, opening), slip.shape)
         if self.strength is None:
             return bound

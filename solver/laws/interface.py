@@ -101,9 +101,9 @@ class MacroPart(NamedTuple):
 
 Rule = Callable[[Array, Array, slice], None]
 """Local stage of a law for one k (paper, problem 2.1). The first argument is z of all
-rows, W - F/k, (n_rows, n); the rule writes W^ of the interface's rows into the second, of
-the same shape. The third is the range of these n instants: all instants where the law
-remembers."""
+rows, W - F/k, (n_rows, n); the rule writes W^ of the interface's rows into the second,
+of the same shape. The third is the range of these n instants: all instants where the
+law remembers."""
 
 
 class Gaps(NamedTuple):

@@ -104,7 +104,7 @@ class Neumann(_Given):
 
 @dataclass(frozen=True)
 class Perfect(Interface):
-    """A glued cut: rows of both sides, (n_points,); macro basis, (n_points, n_macro)."""
+    """A glued cut: rows of both sides, (n_points,), basis, (n_points, n_macro)."""
 
     first: Indices
     second: Indices
@@ -168,5 +168,5 @@ class Perfect(Interface):
 
 
 def _at(field: Array, rows: Indices) -> Array:
-    """Rows, (n,), of a field, (n_rows, n_times), as they lie in memory: (n_times, n)."""
+    """Rows, (n,), of a field, (n_rows, n_times), as in memory: (n_times, n)."""
     return np.take(field.T, rows, axis=1)
