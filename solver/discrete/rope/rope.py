@@ -140,7 +140,8 @@ class RopeWire:
         """Force per length that has the effect of the support's stretch.
 
         That is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along
-        the wire included, in differences of the elements' forces: equilibrium holds exactly
+        the wire included, in differences of the elements' forces: equilibrium holds
+        exactly
         on the mesh. Shape (n_nodes, n_instants), N/m.
         """
         stuck = self._stuck_force(slice(None))
