@@ -1,11 +1,11 @@
-"""Friction of points whose slip prescribed displacements alone make.
+"""Friction of driven points, whose slip is made by prescribed displacements alone.
 
-At such a point only the sum of friction and reaction is determinate, and a method that
-searches for both shares it out by its own parameters. While the point slips, its
-friction is its bound against the slip. While it stands still, as at a clamp, it is per
-area what the nearest point carries that is free to slip, as far as its own bound
-allows: friction goes on evenly up to what holds a body, so that no half element of it
-is missing there.
+At a driven point only the sum of friction and reaction is determinate, and a method
+that searches for both shares it out by its own parameters. While the point slips, its
+friction is its bound against the slip. While it stands still, as at a clamp, its
+friction per area is that of the nearest point that is free to slip, as far as its own
+bound allows: so friction goes on evenly up to the clamp of a body, and that of the last
+half element is not missing.
 """
 
 from __future__ import annotations
@@ -23,28 +23,31 @@ from solver.laws.play import Play, follow
 
 @dataclass(frozen=True, eq=False)
 class DrivenFriction:
-    """The friction of the driven points of one interface.
+    """Friction of the driven points of one interface.
 
     Attributes
     ----------
     along
-        Law of the driven points, a pair each; its component is that of all pairs.
+        Friction law of the driven points, one pair each; its component has the rows of
+        these pairs.
     jump
         Tangential displacement over what is below, as it is prescribed, shape
         (n_points, n_instants), scaled.
     start
         Position of the sliders before the first instant, (n_points,), scaled.
     noise
-        Growth of the jump that is but rounding, scaled.
+        Largest growth of the jump that may be rounding, scaled.
     beside, share
-        Place in a stack of contact forces of the friction of the nearest point that is
-        free to slip, (n_points,), and area of a point over that one's; 0 without one.
+        Position in a stack of contact forces of the friction of the nearest point that
+        is free to slip, (n_points,), and area of a point over the area of that point; 0
+        without one.
     places, pressing
-        Places in a stack of contact forces, (n_points,), of the friction forces and of
-        the pressing ones; None for the latter where the pressure is known.
+        Positions in a stack of contact forces, (n_points,), of the friction forces and
+        of the pressing forces; None for the latter where the pressure is known.
     normal_rows, gap
-        Rows of the first pairs across, of one or both sides, and opening of the
-        undeformed bodies, (n_points,), scaled, where the pressure is not known.
+        Normal rows of the first pairs, of one or both sides, (n_points,) each, and
+        opening of the undeformed bodies, (n_points,), scaled, where the pressure is not
+        known.
     """
 
     along: Friction
@@ -61,53 +64,49 @@ class DrivenFriction:
     def force(self, forces: Array, displacement: Array) -> Array:
         """Friction force on the body above, shape (n_points, n_instants), scaled.
 
-        By all contact forces, (n_forces, n_instants), and W of all rows, (n_rows,
-        n_instants), both scaled.
+        `forces` are all contact forces, (n_forces, n_instants), `displacement` is W of
+        all rows, (n_rows, n_instants), both scaled.
         """
-        along = self.along
-        slip = self._slip
-        if self.pressing is None:
-            pressing = None
-        else:
+        pressing = None
+        if self.pressing is not None:
             pressing = forces[self.pressing]
         opening = self._opening(displacement)
-        if along.softness is not None:
+        if self.along.softness is not None:
             return self._on_springs(pressing, opening)
-        bound = along.allowed(pressing, slip, opening)
+        slip = self._slip
+        bound = self.along.allowed(pressing, slip, opening)
         even = np.clip(self.share[:, None] * forces[self.beside], -bound, bound)
         return np.where(slip == 0.0, even, -bound * np.sign(slip))
 
     @cached_property
     def _slip(self) -> Array:
-        """Growth of the jump from each instant to the next, as `jump`."""
+        """Growth of the jump up to each instant, (n_points, n_instants), scaled."""
         slip = np.diff(self.jump, axis=1, prepend=self.start[:, None])
         return np.where(np.abs(slip) > self.noise, slip, 0.0)
 
     def _opening(self, displacement: Array) -> Array | None:
-        """Distance of the sides, as `jump`, where it may break a bond; else None."""
+        """Opening, (n_points, n_instants), scaled; None where it breaks no bond."""
         if self.gap is None or not self.along.bound.any():
             return None
-        above, *below = (displacement[rows] for rows in self.normal_rows)
-        if below:
-            jump = above - below[0]
-        else:
-            jump = above
+        jump = _difference([displacement[rows] for rows in self.normal_rows])
         return np.asarray(jump + self.gap[:, None])
 
     def _on_springs(self, pressing: Array | None, opening: Array | None) -> Array:
-        """Friction force where a spring is in series, which leaves no choice."""
+        """Friction force where a spring is in series, whose compression determines it.
+
+        Parameters and force are (n_points, n_instants), scaled.
+        """
         along = self.along
         assert along.softness is not None
-        softness = along.softness[:, None]
-        reach = softness * np.broadcast_to(
-            along.without_slip(pressing, opening), self.jump.shape
-        )
+        compliance = along.softness[:, None]
+        bound = along.without_slip(pressing, opening)
+        slack = compliance * np.broadcast_to(bound, self.jump.shape)
         if along.strength is None:
             n_points, n_instants = self.jump.shape
-            slider = Play(n_points, n_instants, self.start)(self.jump, reach)
+            slider = Play(n_points, n_instants, self.start)(self.jump, slack)
         else:
-            slider = follow(self.jump, reach, along.strength)
-        return np.asarray((slider - self.jump) / softness)
+            slider = follow(self.jump, slack, along.strength)
+        return np.asarray((slider - self.jump) / compliance)
 
 
 def driven_friction(
@@ -117,46 +116,32 @@ def driven_friction(
     prescribed: tuple[Indices, Array],
     largest: float,
 ) -> DrivenFriction | None:
-    """The driven points of an interface; None where it has none.
+    """Friction of the driven points of an interface; None where it has none.
 
-    `places` are those of its components in a stack of contact forces, `row_dofs` the
-    degrees of freedom of all rows, (n_rows,), and `prescribed` those whose displacement
-    is, (n,), with their values, (n, n_instants), scaled. `largest` is the largest
-    displacement that any of these values is a difference of, scaled.
+    `places` are the slices of its components in a stack of contact forces, `row_dofs`
+    the degrees of freedom of all rows, (n_rows,), and `prescribed` those whose
+    displacement is, (n,), with their values, (n, n_instants), scaled. `largest` is the
+    largest displacement that any of these values is a difference of, scaled.
     """
     dofs, values = prescribed
+    # The first pair of a point stands for all of them.
     _, pairs = np.unique(law.points, return_index=True)
     sides = [row_dofs[rows[pairs]] for rows in law.tangent.sides]
-    is_driven: NDArray[np.bool_] = np.all([np.isin(own, dofs) for own in sides], axis=0)
+    is_driven: NDArray[np.bool_] = np.all(
+        [np.isin(side, dofs) for side in sides], axis=0
+    )
     points = np.flatnonzero(is_driven)
     if not points.size:
         return None
-    above, *below = (values[np.searchsorted(dofs, own[points])] for own in sides)
-    own = law.tangential
-    start = law.tangential.start
+    moved = [values[np.searchsorted(dofs, side[points])] for side in sides]
+    start = np.zeros(len(points))
+    if law.tangential.start is not None:
+        start = law.mean_by_point(law.tangential.start)[points]
     nearest, share = _nearest_free(law, points)
-    if own.cap is None:
-        cap = None
-    else:
-        cap = law.by_point(own.cap)[points]
-    if own.softness is None:
-        softness = None
-    else:
-        softness = law.in_parallel(own.softness)[points]
     driven = DrivenFriction(
-        along=replace(
-            own,
-            component=Component(*(rows[pairs[points]] for rows in law.tangent.sides)),
-            bound=law.by_point(own.bound)[points],
-            friction=law.mean_by_point(own.friction)[points],
-            cap=cap,
-            softness=softness,
-            start=None,
-        ),
-        jump=above - below[0] if below else above,
-        start=np.zeros(len(points))
-        if start is None
-        else law.mean_by_point(start)[points],
+        along=_law_of_points(law, points, pairs[points]),
+        jump=_difference(moved),
+        start=start,
         noise=ROUNDING * largest,
         beside=places[-1].start + nearest,
         share=share,
@@ -164,20 +149,52 @@ def driven_friction(
     )
     if law.normal is None:
         return driven
+    normal_sides = law.normal.component.sides
     return replace(
         driven,
         pressing=places[0].start + points,
-        normal_rows=tuple(rows[pairs[points]] for rows in law.normal.component.sides),
+        normal_rows=tuple([rows[pairs[points]] for rows in normal_sides]),
         gap=law.mean_by_point(law.normal.gap)[points],
     )
 
 
+def _difference(sides: list[Array]) -> Array:
+    """Field above minus that below, (n_points, n_instants), or that of one side."""
+    if len(sides) == 1:
+        return sides[0]
+    above, below = sides
+    return np.asarray(above - below)
+
+
+def _law_of_points(law: Contact, points: Indices, pairs: Indices) -> Friction:
+    """Friction law of some points, with one pair for each; (n_points,) both."""
+    friction = law.tangential
+    cap = None
+    if friction.cap is not None:
+        cap = law.by_point(friction.cap)[points]
+    softness = None
+    if friction.softness is not None:
+        softness = law.in_parallel(friction.softness)[points]
+    return replace(
+        friction,
+        component=Component(*[rows[pairs] for rows in law.tangent.sides]),
+        bound=law.by_point(friction.bound)[points],
+        friction=law.mean_by_point(friction.friction)[points],
+        cap=cap,
+        softness=softness,
+        start=None,
+    )
+
+
 def _nearest_free(law: Contact, points: Indices) -> tuple[Indices, Array]:
-    """Nearest point beside each of the driven ones, and the ratio of their areas."""
+    """Nearest free point beside each driven one, and the ratio of their areas.
+
+    Shape (n_points,) all; the ratio is 0 where no point is free.
+    """
     free = np.setdiff1d(np.arange(len(law.positions)), points)
     if not free.size:
         return points, np.zeros(len(points))
-    away = np.abs(np.subtract.outer(law.positions[points], law.positions[free]))
-    nearest = free[away.argmin(axis=1)]
+    distances = np.abs(np.subtract.outer(law.positions[points], law.positions[free]))
+    nearest = free[distances.argmin(axis=1)]
     areas = law.by_point(law.weights)
     return nearest, areas[points] / areas[nearest]

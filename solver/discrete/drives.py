@@ -1,8 +1,7 @@
 """Loads and motions that drive a structure, named by the settings that give them.
 
-A person gives a load, and its path over time may be a preset that nobody drew: where a
-run tells at which point of its path something happens, it tells the load, and the time
-beside it.
+A person gives a load, while its path over time may be a preset: so a message on an
+instant of a run gives the value of the load there, and the time beside it.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from solver.arrays import Array
 from solver.refusal import plain
 
 LEAST_STEP = 1e-9
-"""Share of its largest value by which rounding alone may change a path."""
+"""Largest step of a path that may be rounding, as a share of its largest value."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,21 +25,21 @@ class Drive:
     Attributes
     ----------
     name
-        Setting by which it becomes larger or smaller.
+        Setting that scales the drive.
     unit
         SI unit of the values.
     values
-        At the instants of a problem, shape (n_instants,); before the first there is
-        nothing.
+        Values at the instants of a problem, shape (n_instants,), in the unit; before
+        the first instant the value is 0.
     """
 
     name: str
     unit: str
     values: Array
 
-    def during(self, some: slice) -> Drive:
-        """The drive at some of its instants alone."""
-        return replace(self, values=self.values[some])
+    def during(self, instants: slice) -> Drive:
+        """The drive restricted to a range of its instants."""
+        return replace(self, values=self.values[instants])
 
     @property
     def largest(self) -> float:
@@ -48,29 +47,29 @@ class Drive:
         return float(np.abs(self.values).max(initial=0.0))
 
     def before(self, instant: int) -> float:
-        """Value from which the step to an instant begins."""
+        """Value at the beginning of the step to an instant."""
         if instant:
             return float(self.values[instant - 1])
         return 0.0
 
     def changes(self, instant: int) -> bool:
-        """Whether it changes in the step to an instant."""
+        """Check whether the value changes in the step to an instant."""
         step = float(self.values[instant]) - self.before(instant)
         return abs(step) > LEAST_STEP * self.largest
 
     def falls(self, instant: int) -> bool:
-        """Whether its size falls in the step to an instant."""
+        """Check whether the size of the value falls in the step to an instant."""
         return abs(float(self.values[instant])) < abs(self.before(instant))
 
     def at(self, instant: int, share: float = 1.0) -> str:
-        """Words on the value after a share of the step to an instant.
+        """Text on the value after a share of the step to an instant.
 
-        They have the load factor too: that on the largest value of the same sign.
+        With the load factor: the value over the largest one of the same sign.
         """
         before = self.before(instant)
         value = before + share * (float(self.values[instant]) - before)
-        way = np.sign(value)
-        largest = float((way * self.values).max(initial=0.0))
+        sign = np.sign(value)
+        largest = float((sign * self.values).max(initial=0.0))
         amount = f"{self.name} = {plain(float(f'{value:.4g}'))} {self.unit}".rstrip()
         if largest <= 0.0:
             return amount
@@ -79,29 +78,30 @@ class Drive:
 
 
 def loads_at(drives: Sequence[Drive], instant: int, share: float = 1.0) -> str:
-    """Words on what drives after a share of the step to an instant.
+    """Text on all drives that change, after a share of the step to an instant.
 
-    Empty where nothing changes.
+    Empty where no drive changes.
     """
     moving = [drive.at(instant, share) for drive in drives if drive.changes(instant)]
     return " and ".join(moving)
 
 
 def beyond(drives: Sequence[Drive], instant: int, share: float) -> str:
-    """Words on the loads past which something happens.
+    """Text on the loads beyond which something happens.
 
-    They are those after a share of the step to an instant. What falls is passed
-    downwards; of loads that act together from nothing on, no share may be carried.
-    Empty where nothing changes.
+    These are the loads after a share of the step to an instant: "beyond" those that
+    grow, "below" those that fall. Where loads begin together and the share is zero, all
+    of them are named with their values at the end of the step. Empty where no drive
+    changes.
     """
     moving = [drive for drive in drives if drive.changes(instant)]
     from_nothing = not any(drive.before(instant) for drive in moving)
     if moving and from_nothing and share <= LEAST_STEP:
         return f"with {loads_at(drives, instant)}"
     words = []
-    for falls, way in ((False, "beyond"), (True, "below")):
+    for falls, preposition in ((False, "beyond"), (True, "below")):
         passed = [drive for drive in moving if drive.falls(instant) is falls]
         amounts = [drive.at(instant, share) for drive in passed]
         if amounts:
-            words.append(f"{way} {' and '.join(amounts)}")
+            words.append(f"{preposition} {' and '.join(amounts)}")
     return " and ".join(words)

@@ -1,4 +1,4 @@
-"""Plane elasticity on rectangles of equal elements, and its condensation onto what is kept.
+"""Plane elasticity on rectangles of equal elements, and condensation of the stiffness.
 
 Corners of an element are numbered counter-clockwise from the lower left; degrees of
 freedom are x and y of every corner, or node, in turn.
@@ -19,20 +19,20 @@ from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete.substructure import tributary
 
 EDGE_MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
-"""From a traction at both ends of an edge of length 1, linear between them, to their
-forces."""
+"""Matrix from a traction at both ends of an edge of length 1, linear between them, to
+nodal forces."""
 LONG_SIDES = 0.6
-"""Factor on the macro degree of a side, times the root of its length over the depth
-behind it. Of layers 10 to 1000 times as long as thick 1 % of the contact force takes at
-most 45 iterations, 50 with 0.4, 42 with 1, and more than 150 without (measured)."""
+"""Factor on the macro degree of a side, beside the root of its length over the depth
+behind it. For layers 10 to 1000 times as long as thick 1 % of the contact force takes
+at most 45 iterations, 50 with 0.4, 42 with 1, and more than 150 without (measured)."""
 HIGHEST_DEGREE = 10
-"""To which a long side may raise its macro degree. With 6, layers of 200 times their
+"""Largest macro degree of a long side. With 6, layers of 200 times their
 thickness cut in two up take more than 150 iterations to 1 %; with 8 and 10, 37 and 25
 (measured)."""
 
 
 def elastic_matrix(young: float, poisson: float, state: str) -> Array:
-    """Matrix from strains (xx, yy, 2 xy) to stresses, shape (3, 3).
+    """Matrix from strains (xx, yy, 2 xy) to stresses, shape (3, 3), in the unit of E.
 
     `state` is "strain" or "stress" (Timoshenko and Goodier, Theory of Elasticity, 1970,
     ch. 2).
@@ -48,7 +48,7 @@ def elastic_matrix(young: float, poisson: float, state: str) -> Array:
 
 
 def von_mises(stress: Array, poisson: float, state: str) -> Array:
-    """Von Mises' equivalent of stresses (xx, yy, xy), shape (n, 3), as shape (n,).
+    """Von Mises' equivalent, (n,), of stresses (xx, yy, xy), (n, 3), in their unit.
 
     In plane strain the stress across the plane is Poisson's ratio times the sum of the
     other two.
@@ -63,7 +63,7 @@ def von_mises(stress: Array, poisson: float, state: str) -> Array:
 
 
 def strain_matrix(xi: float, eta: float, width: float, height: float) -> Array:
-    """Matrix from displacements of the corners to strains at a point, (3, 8).
+    """Matrix from displacements of the corners to strains at a point, shape (3, 8).
 
     `xi` and `eta` run from -1 to 1 over an element of the given width and height.
     """
@@ -87,21 +87,24 @@ def element_stiffness(width: float, height: float, elastic: Array) -> Array:
     """
     stiffness = np.zeros((12, 12))
     for eta, xi in product(leggauss(2)[0].tolist(), repeat=2):
-        at = xi, eta, width, height
-        strain = np.hstack([strain_matrix(*at), _bending(*at)])
+        compatible = strain_matrix(xi, eta, width, height)
+        strain = np.hstack([compatible, _bending(xi, eta, width, height)])
         stiffness += 0.25 * width * height * strain.T @ elastic @ strain
     coupling = stiffness[8:, :8]
-    stiffness = stiffness[:8, :8] - coupling.T @ np.linalg.solve(
-        stiffness[8:, 8:], coupling
-    )
-    return np.asarray(0.5 * (stiffness + stiffness.T))
+    response = np.linalg.solve(stiffness[8:, 8:], coupling)
+    condensed = stiffness[:8, :8] - coupling.T @ response
+    return np.asarray(0.5 * (condensed + condensed.T))
 
 
 def _bending(xi: float, eta: float, width: float, height: float) -> Array:
-    """Strains of 1 - xi^2 and 1 - eta^2 of both components, shape (3, 4)."""
+    """Strains of the modes 1 - xi^2 and 1 - eta^2 of both components, shape (3, 4)."""
+    along = -2.0 * xi * 2.0 / width
+    up = -2.0 * eta * 2.0 / height
     strain = np.zeros((3, 4))
-    strain[0, 0] = strain[2, 1] = -2.0 * xi * 2.0 / width
-    strain[2, 2] = strain[1, 3] = -2.0 * eta * 2.0 / height
+    strain[0, 0] = along
+    strain[2, 1] = along
+    strain[2, 2] = up
+    strain[1, 3] = up
     return strain
 
 
@@ -109,8 +112,8 @@ def _bending(xi: float, eta: float, width: float, height: float) -> Array:
 class Rectangle:
     """A rectangle of equal elements; nodes are numbered row by row from the lower left.
 
-    Width and height are those of an element, scaled; so is `elastic`, as of
-    `elastic_matrix`.
+    Width and height are those of an element, `elastic` is its `elastic_matrix`, (3, 3);
+    all are scaled.
     """
 
     columns: int
@@ -132,19 +135,24 @@ class Rectangle:
 
     @cached_property
     def elements(self) -> Indices:
-        """Corners of every element, counter-clockwise, row by row, shape (n_elements, 4)."""
-        n = self.nodes
-        corners = n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]
+        """Corners of every element, counter-clockwise, row by row, (n_elements, 4)."""
+        nodes = self.nodes
+        corners = [
+            nodes[:-1, :-1],
+            nodes[:-1, 1:],
+            nodes[1:, 1:],
+            nodes[1:, :-1],
+        ]
         return np.stack([corner.ravel() for corner in corners], axis=1)
 
     @cached_property
     def stiffness(self) -> sparse.csc_array:
-        """Stiffness of all nodes, two degrees of freedom each, shape (2 n_nodes, 2 n_nodes)."""
-        own = element_stiffness(self.width, self.height, self.elastic)
+        """Stiffness of the whole mesh, shape (2 n_nodes, 2 n_nodes), scaled."""
+        element = element_stiffness(self.width, self.height, self.elastic)
         dofs = dofs_of(self.elements)
-        rows = np.repeat(dofs, len(own), axis=1)
-        columns = np.tile(dofs, len(own))
-        values = np.tile(own.ravel(), len(dofs))
+        rows = np.repeat(dofs, len(element), axis=1)
+        columns = np.tile(dofs, len(element))
+        values = np.tile(element.ravel(), len(dofs))
         size = 2 * self.n_nodes
         return sparse.csc_array(
             (values, (rows.ravel(), columns.ravel())), shape=(size, size)
@@ -152,55 +160,54 @@ class Rectangle:
 
     @cached_property
     def outline(self) -> SchurComplement:
-        """Its stiffness, seen from the degrees of freedom on its outline."""
+        """Stiffness condensed onto the degrees of freedom on the outline."""
         is_outer = np.ones_like(self.nodes, dtype=bool)
         is_outer[1:-1, 1:-1] = False
         return SchurComplement(self.stiffness, dofs_of(self.nodes[is_outer]))
 
     def edge(self, side: str) -> Indices:
-        """Nodes of a side in ascending order of their coordinate."""
-        if side in ("bottom", "top"):
-            lines = self.nodes
-        else:
-            lines = self.nodes.T
-        return np.asarray(lines[0 if side in ("bottom", "left") else -1])
+        """Nodes of a side in ascending order of their coordinate, (nodes along,)."""
+        edges: dict[str, Indices] = {
+            "bottom": self.nodes[0],
+            "top": self.nodes[-1],
+            "left": self.nodes[:, 0],
+            "right": self.nodes[:, -1],
+        }
+        return edges[side]
 
     def edge_weights(self, side: str) -> Array:
-        """Length of a side that belongs to each of its nodes, scaled."""
-        upright = side in ("left", "right")
-        if upright:
-            count = self.rows
-            step = self.height
-        else:
-            count = self.columns
-            step = self.width
-        return step * tributary(count)
+        """Length of a side that belongs to each node, (nodes along,), scaled."""
+        if side in ("left", "right"):
+            return self.height * tributary(self.rows)
+        return self.width * tributary(self.columns)
 
     def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at the centres of the elements, (n_elements, 3), scaled.
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled.
 
-        From the displacement of all nodes, (n_nodes, 2); incompatible modes have no
-        strain there.
+        `displacement` is that of all nodes, (n_nodes, 2), scaled; incompatible modes
+        have no strain at the centres.
         """
         strain = strain_matrix(0.0, 0.0, self.width, self.height)
-        own = displacement[self.elements].reshape(len(self.elements), -1)
-        return np.asarray(own @ (self.elastic @ strain).T)
+        corners = displacement[self.elements].reshape(len(self.elements), -1)
+        return np.asarray(corners @ (self.elastic @ strain).T)
 
 
 def dofs_of(nodes: Indices) -> Indices:
-    """Both degrees of freedom of nodes, side by side in the last axis."""
+    """Degrees of freedom x and y of nodes, (..., n), in turn: shape (..., 2 n)."""
     return np.stack([2 * nodes, 2 * nodes + 1], axis=-1).reshape(*nodes.shape[:-1], -1)
 
 
 def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> Array:
-    """Polynomials over a side of a substructure, shape (n_points, n_macro).
+    """Macro basis of Legendre polynomials over a side, shape (n_points, n_macro).
 
-    What balances only point by point may bend the side, which resists with E d^3 q^4 /
-    24 per area at the wavenumber q, where d is the depth behind it. Bending waves that
-    are long beside d are so soft that no k suits both them and the waves shorter than
-    d: the macro forces are to balance them. Those softer than E d / l^2 over the length
-    l, as soft as its stretching, number some 0.7 times the root of l / d. `n_points` of
-    the side have rows, and `degree` is that of one that is not long.
+    `n_points` points of the side have rows; `degree` is that of a side that is not
+    long.
+
+    Forces that balance only point by point may bend the side, which resists with E d^3
+    q^4 / 24 per area at the wavenumber q, where d is the depth behind it. Bending waves
+    that are long beside d are so soft that no k suits both them and the waves shorter
+    than d: the macro forces are to balance them. About 0.7 times the root of l / d
+    waves are softer than E d / l^2, the stretching of the side of length l.
     """
     ratio = rectangle.columns * rectangle.width / (rectangle.rows * rectangle.height)
     if side in ("bottom", "top"):
@@ -213,15 +220,16 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
 
 
 class SchurComplement:
-    """A symmetric stiffness, sparse or condensed already, seen from some degrees of freedom.
+    """A symmetric stiffness condensed onto some of its degrees of freedom.
 
-    These are `kept`, ascending, and have a dense `stiffness`, shape (n_kept, n_kept).
+    The whole stiffness is sparse, (n, n), or has been condensed before. Those `kept`
+    ascend, (n_kept,), and have the dense `stiffness`, shape (n_kept, n_kept), scaled.
 
     Raises
     ------
     np.linalg.LinAlgError
-        Where holding what is kept would leave one that is condensed already free to
-        move.
+        For a stiffness condensed before that could move while the kept degrees of
+        freedom are held.
     """
 
     def __init__(
@@ -229,6 +237,7 @@ class SchurComplement:
     ) -> None:
         self.kept = kept
         self._before = None
+        # Positions of what is kept, and of the rest, in the whole stiffness.
         places = kept
         stiffness: sparse.csc_array | Array
         if isinstance(whole, SchurComplement):
@@ -240,7 +249,7 @@ class SchurComplement:
         self._size = stiffness.shape[0]
         self._places = places
         self._rest = np.setdiff1d(np.arange(self._size), places)
-        own = _dense(stiffness[places][:, places])
+        condensed = _dense(stiffness[places][:, places])
         others = stiffness[self._rest]
         if len(self._rest):
             coupling = _dense(others[:, places])
@@ -250,11 +259,11 @@ class SchurComplement:
             else:
                 self._solve = sparse_factor(sparse.csc_array(inner)).solve
             self._response = self._solve(coupling)
-            own -= coupling.T @ self._response
-        self.stiffness: Array = 0.5 * (own + own.T)
+            condensed -= coupling.T @ self._response
+        self.stiffness: Array = 0.5 * (condensed + condensed.T)
 
     def condense(self, force: Array) -> Array:
-        """Bring forces, shape (n, n_columns), onto what is kept, shape (n_kept, n_columns)."""
+        """Condense forces, shape (n, n_columns), to shape (n_kept, n_columns)."""
         if self._before is not None:
             force = self._before.condense(force)
         if not len(self._rest):
@@ -262,16 +271,20 @@ class SchurComplement:
         return np.asarray(force[self._places] - self._response.T @ force[self._rest])
 
     def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement of all, shape (n, n_columns), from that of what is kept, under forces."""
-        nearer = force
+        """Displacement of all degrees of freedom, shape (n, n_columns).
+
+        From those that are kept, (n_kept, n_columns), and the forces on all, (n,
+        n_columns), or None.
+        """
+        condensed = force
         if self._before is not None and force is not None:
-            nearer = self._before.condense(force)
+            condensed = self._before.condense(force)
         whole = np.empty((self._size, kept.shape[1]))
         whole[self._places] = kept
         if len(self._rest):
             rest = -(self._response @ kept)
-            if nearer is not None:
-                rest += self._solve(np.ascontiguousarray(nearer[self._rest]))
+            if condensed is not None:
+                rest += self._solve(np.ascontiguousarray(condensed[self._rest]))
             whole[self._rest] = rest
         if self._before is None:
             return whole
@@ -279,6 +292,7 @@ class SchurComplement:
 
 
 def _dense(block: sparse.csc_array | Array) -> Array:
-    return np.asarray(
-        block if isinstance(block, np.ndarray) else block.toarray(), order="C"
-    )
+    """A block of a stiffness as a dense array, of the same shape."""
+    if isinstance(block, np.ndarray):
+        return np.asarray(block, order="C")
+    return np.asarray(block.toarray(), order="C")

@@ -1,4 +1,4 @@
-"""Rectangular substructures of bodies in the plane, and what lies inside them."""
+"""Rectangular substructures of bodies in the plane, and the fields inside them."""
 
 from __future__ import annotations
 
@@ -13,18 +13,28 @@ from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity
 
 HELD = 1e-9
-"""Singular value, beside that of a translation, from which on what is prescribed
-hinders."""
+"""Smallest singular value of a rigid motion that prescribed displacements hinder, over
+that of a translation."""
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A rectangular substructure: its mesh, and its stiffness seen from its boundary rows.
+    """A rectangular substructure.
 
-    Equal parts share these, and the elasticity. Its `nodes` have numbers among those of
-    all bodies, shape (n_rows, n_columns) of the mesh; boundary `rows` go by joint or by
-    the name of a side, shape (n_nodes, n_components) each; nodal forces are scaled,
-    shape (2 n_nodes, n_instants).
+    Attributes
+    ----------
+    rectangle, condensed, elasticity
+        Mesh, stiffness condensed onto its boundary rows, and operator; equal parts
+        share them.
+    nodes
+        Numbers of its nodes among those of all bodies, shape (n_rows, n_columns).
+    body
+        Number of its body.
+    rows
+        Boundary rows by joint or by the name of a side, shape (n_nodes, n_components)
+        each.
+    force
+        Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
     """
 
     rectangle: Rectangle
@@ -37,22 +47,23 @@ class Part:
 
 
 class Inside:
-    """What lies inside condensed substructures, found when somebody looks.
+    """Nodes and elements inside condensed substructures, and fields there on demand.
 
     Attributes
     ----------
     nodes
         Coordinates of all nodes, shape (n_nodes, 2), m.
     elements, bodies
-        Corners of every element, counter-clockwise, (n_elements, 4), and body of each.
+        Corners of every element, counter-clockwise, (n_elements, 4), and number of the
+        body of every element, (n_elements,).
     grids
         Nodes of every substructure, row by row from below, shape (n_rows, n_columns)
         each.
     dofs
-        Degrees of freedom of the problem under those that each substructure keeps.
+        Degrees of freedom of the problem that each substructure keeps, (n_kept,) each.
     places, components
-        Scaled position of every degree of freedom of the problem, (n_dofs, 2), and its
-        direction: 0 along x and 1 along y, (n_dofs,).
+        Position of every degree of freedom of the problem, (n_dofs, 2), scaled, and its
+        component: 0 along x and 1 along y, (n_dofs,).
     """
 
     def __init__(
@@ -65,49 +76,52 @@ class Inside:
         self._length = length
         self._young = scales.force / length
         self._size = len(skeleton), n_instants
-        self.dofs = [np.searchsorted(skeleton, own) for own in kept]
+        self.dofs = [np.searchsorted(skeleton, dofs) for dofs in kept]
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
         self.places = positions[skeleton // 2]
         corners = [part.nodes.ravel()[part.rectangle.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
-        sizes = [len(own) for own in corners]
+        sizes = [len(elements) for elements in corners]
         self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
         self.components: Indices = skeleton % 2
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
-        """Displacement of all nodes, (n_nodes, 2, n), m, by that of the degrees of freedom, m."""
-        chosen = skeleton[:, instants] / self._length
-        whole = np.zeros((len(self.nodes), 2, chosen.shape[1]))
+        """Displacement of all nodes at n instants, (n_nodes, 2, n), m.
+
+        `skeleton` is that of the problem's degrees of freedom, (n_dofs, n_instants), m.
+        """
+        kept = skeleton[:, instants] / self._length
+        n_instants = kept.shape[1]
+        whole = np.zeros((len(self.nodes), 2, n_instants))
         for part, dofs in zip(self._parts, self.dofs, strict=True):
-            if part.force is None:
-                force = None
-            else:
+            force = None
+            if part.force is not None:
                 force = part.force[:, instants]
-            own = part.condensed.recover(chosen[dofs], force)
-            whole[part.nodes.ravel()] = own.reshape(-1, 2, own.shape[1])
+            of_part = part.condensed.recover(kept[dofs], force)
+            whole[part.nodes.ravel()] = of_part.reshape(-1, 2, n_instants)
         return whole * self._length
 
     def adjoint(self, weights: Array) -> tuple[Array, Array]:
         """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
 
-        Weights of the problem's degrees of freedom, (n_dofs,), from those of the nodes,
-        (n_nodes, 2); and what loads inside add, (n_instants,), m.
+        `weights` are those of the nodes, (n_nodes, 2). Returned are those of the
+        problem's degrees of freedom, (n_dofs,), and the part of the sum that loads
+        inside make, (n_instants,), m.
         """
         total = np.zeros(self._size[0])
         constant = np.zeros(self._size[1])
         # Substructures share the nodes on their cuts.
-        counts = np.bincount(
-            np.concatenate([part.nodes.ravel() for part in self._parts])
-        )
-        shares = weights / counts[:, None]
+        nodes = np.concatenate([part.nodes.ravel() for part in self._parts])
+        shares = weights / np.bincount(nodes)[:, None]
         for part, dofs in zip(self._parts, self.dofs, strict=True):
-            own = shares[part.nodes.ravel()].reshape(-1, 1)
-            if own.any():
-                np.add.at(total, dofs, part.condensed.condense(own)[:, 0])
-                if part.force is not None:
-                    still = np.zeros((len(dofs), self._size[1]))
-                    constant += own[:, 0] @ part.condensed.recover(still, part.force)
+            share = shares[part.nodes.ravel()].reshape(-1, 1)
+            if not share.any():
+                continue
+            np.add.at(total, dofs, part.condensed.condense(share)[:, 0])
+            if part.force is not None:
+                held = np.zeros((len(dofs), self._size[1]))
+                constant += share[:, 0] @ part.condensed.recover(held, part.force)
         return total, constant * self._length
 
     def stress(self, displacement: Array) -> Array:
@@ -124,26 +138,29 @@ class Inside:
     def rigid_motions(self, fixed: Indices) -> Array | None:
         """Independent rigid motions of bodies, (n_dofs, n_motions), or None.
 
-        They move none of the degrees of freedom whose displacement is prescribed,
-        `fixed`.
+        The motions are zero at the degrees of freedom of prescribed displacement,
+        `fixed`, (n,).
         """
         motions = []
         bodies = np.empty(len(self.components), dtype=np.intp)
         for part, dofs in zip(self._parts, self.dofs, strict=True):
             bodies[dofs] = part.body
         for body in np.unique(bodies):
-            own = np.flatnonzero(bodies == body)
-            along = self.components[own] == 0
-            x, y = (self.places[own] - self.places[own].mean(axis=0)).T
-            modes = np.stack([along, ~along, np.where(along, -y, x)], axis=1).astype(
-                float
-            )
-            _, sizes, ways = np.linalg.svd(
-                modes[np.isin(own, fixed)], full_matrices=True
-            )
+            dofs = np.flatnonzero(bodies == body)
+            modes = self._rigid_modes(dofs)
+            at_fixed = modes[np.isin(dofs, fixed)]
+            _, sizes, combinations = np.linalg.svd(at_fixed, full_matrices=True)
             hindered = np.count_nonzero(sizes > HELD)
-            whole = np.zeros((len(bodies), 3 - hindered))
-            whole[own] = modes @ ways[hindered:].T
-            motions.append(whole)
+            of_body = np.zeros((len(bodies), 3 - hindered))
+            of_body[dofs] = modes @ combinations[hindered:].T
+            motions.append(of_body)
         together = np.concatenate(motions, axis=1)
         return together if together.size else None
+
+    def _rigid_modes(self, dofs: Indices) -> Array:
+        """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
+        is_along_x = self.components[dofs] == 0
+        x, y = (self.places[dofs] - self.places[dofs].mean(axis=0)).T
+        rotation = np.where(is_along_x, -y, x)
+        modes = np.stack([is_along_x, ~is_along_x, rotation], axis=1)
+        return np.asarray(modes.astype(float))

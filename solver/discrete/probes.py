@@ -1,8 +1,8 @@
-"""Numbers over time that a whole structure shows: mean displacements, reactions, axial forces.
+"""Probes: mean displacements, reactions and axial forces of a structure over time.
 
-What is asked of the inside of condensed substructures is brought onto the degrees of
-freedom of the problem once, by the transpose of their recovery; then a probe costs as
-much as its few weights.
+A probe of displacements inside condensed substructures is brought onto the degrees of
+freedom of the problem once, by the transpose of their recovery; then its evaluation
+costs no more than its few weights.
 """
 
 from __future__ import annotations
@@ -21,15 +21,27 @@ from solver.discrete.problem import Problem
 if TYPE_CHECKING:
     from solver.discrete.structure import LoopFields
 
-AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}
+AXES = {
+    "left": 0,
+    "right": 0,
+    "bottom": 1,
+    "top": 1,
+}
+"""Axis normal to each side: 0 is x, 1 is y."""
 
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """A weighted sum of displacements, and what loads alone add to it.
+    """A weighted sum of displacements, plus a known constant.
 
-    Of some degrees of freedom of the problem, with a weight each, shape (n,); the
-    constant, in the probe's unit, has shape (n_instants,), or is 0.
+    Attributes
+    ----------
+    dofs, weights
+        Degrees of freedom of the problem, and their weights, shape (n,) both; weights
+        in the probe's unit over m.
+    constant
+        Part of the sum that does not depend on displacements, shape (n_instants,) or
+        0, in the probe's unit.
     """
 
     dofs: Indices
@@ -37,26 +49,26 @@ class Probe:
     constant: Array | float = 0.0
 
     def __call__(self, displacement: Array) -> Array:
-        """Evaluate it, shape (n_instants,), for displacements (n_dofs, n_instants), m."""
+        """The sum, (n_instants,), for displacements (n_dofs, n_instants), m."""
         return without_residue(*self.sum_of(displacement))
 
     def sum_of(self, displacement: Array) -> tuple[Array, Array]:
-        """The sum as rounding leaves it, and that of the sizes of its terms, (n_instants,) each."""
+        """The sum, and the sum of the sizes of its terms, (n_instants,) both."""
         moved = displacement[self.dofs]
-        terms = np.abs(self.weights) @ np.abs(moved) + np.abs(self.constant)
-        return np.asarray(self.weights @ moved + self.constant), np.asarray(terms)
+        sizes = np.abs(self.weights) @ np.abs(moved) + np.abs(self.constant)
+        return np.asarray(self.weights @ moved + self.constant), np.asarray(sizes)
 
     def times(self, factor: float) -> Probe:
-        """It, so many times as large."""
+        """The probe times a factor."""
         return Probe(self.dofs, factor * self.weights, factor * self.constant)
 
     def of(self, fields: LoopFields) -> Array:
-        """Evaluate it for an iterate, or a reference."""
+        """The sum for an iterate or a reference, shape (n_instants,)."""
         return self(fields.displacement)
 
 
 def constant(values: Array) -> Probe:
-    """Probe of what is known beforehand, shape (n_instants,)."""
+    """Probe of known values, shape (n_instants,), in any unit."""
     return Probe(np.zeros(0, dtype=np.intp), np.zeros(0), values)
 
 
@@ -72,11 +84,10 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
 
 
 def end_rotation(problem: Problem) -> Probe:
-    """Rotation of the ends of all bodies that reach the right, counter-clockwise, their mean.
+    """Mean counter-clockwise rotation of the right ends of the longest bodies, rad.
 
-    It is what a moment that they share works on, spread over each of them as a linear
-    traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height
-    t.
+    A moment that the ends share as linear tractions works on this rotation: -12 / t^3
+    times the integral of (y - y_middle) u_x over an end of height t.
     """
     inside = _inside(problem)
     ends, bodies = _edges(inside, "right")
@@ -88,48 +99,48 @@ def end_rotation(problem: Problem) -> Probe:
     np.minimum.at(low, bodies, y.min(axis=0))
     np.maximum.at(high, bodies, y.max(axis=0))
     lever = y - (0.5 * (low + high))[bodies]
-    return _integral(
-        inside, ends, 0, -12.0 / count / ((high - low) ** 3)[bodies] * lever
-    )
+    density = -12.0 / count / ((high - low) ** 3)[bodies] * lever
+    return _integral(inside, ends, 0, density)
 
 
 @dataclass(frozen=True, eq=False)
 class Reaction:
-    """A weighted sum of the forces that hold degrees of freedom whose displacement is given.
+    """A weighted sum of the forces that hold degrees of freedom of given displacement.
 
-    They are what the elements there need beyond all that acts there: loads, and the
-    contact forces of the same nodes (solver/README.md, 6).
+    The holding forces are the forces of the elements there, less loads and the contact
+    forces of the same nodes (solver/README.md, 6).
 
     Attributes
     ----------
     elements
         Forces of the elements less the loads, N.
     contacts
-        Weights of the normal and the tangential forces that act there, by interface,
-        (n_points,) each, None where there are no normal ones.
+        Weights of the normal and the tangential contact forces, by interface,
+        (n_points,) each; None where the interface has no normal forces.
     """
 
     elements: Probe
     contacts: Mapping[str, tuple[Array | None, Array]]
 
     def of(self, fields: LoopFields) -> Array:
-        """Sum for an iterate, or a reference, shape (n_instants,), in the unit of the elements."""
-        values, terms = self.elements.sum_of(fields.displacement)
+        """The sum for an iterate or a reference, (n_instants,), N or N m."""
+        values, sizes = self.elements.sum_of(fields.displacement)
         for name, weights in self.contacts.items():
             contact = fields.contact(name)
             carried = contact.normal_force, contact.tangential_force
             for weight, force in zip(weights, carried, strict=True):
                 if weight is not None and force is not None:
                     values = values - weight @ force
-                    terms = terms + np.abs(weight) @ np.abs(force)
-        return without_residue(values, terms)
+                    sizes = sizes + np.abs(weight) @ np.abs(force)
+        return without_residue(values, sizes)
 
     def times(self, factor: float) -> Reaction:
         """The sum times a factor."""
-        contacts = {
-            name: (None if across is None else factor * across, factor * along)
-            for name, (across, along) in self.contacts.items()
-        }
+        contacts = dict[str, tuple[Array | None, Array]]()
+        for name, (normal, tangential) in self.contacts.items():
+            if normal is not None:
+                normal = factor * normal
+            contacts[name] = (normal, factor * tangential)
         return Reaction(self.elements.times(factor), contacts)
 
 
@@ -151,7 +162,7 @@ def reaction_moment(problem: Problem, name: str) -> Reaction:
 
     Counter-clockwise, for a metre of thickness.
     """
-    (x, y) = problem.positions.T
+    x, y = problem.positions.T
     components = _inside(problem).components
     held = np.zeros(problem.n_dofs)
     dofs = problem.held_dofs[name]
@@ -160,38 +171,41 @@ def reaction_moment(problem: Problem, name: str) -> Reaction:
 
 
 def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
-    """The sum of reactions with weights of their degrees of freedom, (n_dofs,)."""
+    """Sum of the reactions times `held`, weights of the dofs, (n_dofs,)."""
     weights = np.zeros(problem.n_dofs)
     loads = np.zeros(problem.n_instants)
     for part in problem.substructures:
-        own = held[part.dofs]
-        if own.any():
-            np.add.at(weights, part.dofs, part.elasticity.stiffness @ own)
+        of_part = held[part.dofs]
+        if of_part.any():
+            np.add.at(weights, part.dofs, part.elasticity.stiffness @ of_part)
             if part.body_force is not None:
-                loads += own @ part.body_force
+                loads += of_part @ part.body_force
     for given in problem.given_forces:
         loads += held[problem.row_dofs[given.rows]] @ given.values
     scales = problem.scales
     dofs = np.flatnonzero(weights)
     elastic = weights[dofs] * scales.force / scales.displacement
-    return Reaction(
-        Probe(dofs, elastic, -loads * scales.force), _contacts_at(problem, held)
-    )
+    elements = Probe(dofs, elastic, -loads * scales.force)
+    return Reaction(elements, _contacts_at(problem, held))
 
 
 def _contacts_at(
     problem: Problem, held: Array
 ) -> dict[str, tuple[Array | None, Array]]:
-    """Weights of the contact forces in a weighted sum of all forces on degrees of freedom."""
+    """Weights of contact forces, by interface, from those of degrees of freedom.
+
+    `held` has shape (n_dofs,), weights of normal forces, or None, and of tangential
+    forces have (n_points,).
+    """
     contacts: dict[str, tuple[Array | None, Array]] = {}
     for name, law in problem.rubbing.items():
         _, pairs = np.unique(law.points, return_index=True)
         weights = []
         for component in law.components:
-            above, *below = (
-                held[problem.row_dofs[rows[pairs]]] for rows in component.sides
-            )
-            weights.append(above - below[0] if below else above)
+            weight = held[problem.row_dofs[component.above[pairs]]]
+            if component.below is not None:
+                weight = weight - held[problem.row_dofs[component.below[pairs]]]
+            weights.append(weight)
         if any(weight.any() for weight in weights):
             contacts[name] = (weights[0] if law.opens else None, weights[-1])
     return contacts
@@ -200,8 +214,12 @@ def _contacts_at(
 class AxialForce:
     """Axial force in the elements of rods, from their displacement at some instants.
 
-    Elements have their middles at `positions`, m, and lie in `wires`, from 0,
-    (n_elements,) each.
+    Attributes
+    ----------
+    positions
+        Middles of the elements, (n_elements,), m.
+    wires
+        Number of the rod of each element, from 0, (n_elements,).
     """
 
     def __init__(
@@ -212,9 +230,9 @@ class AxialForce:
         self._first = np.concatenate([part.dofs[:-1] for part in parts])
         self._second = np.concatenate([part.dofs[1:] for part in parts])
         scale = problem.scales.force / problem.scales.displacement
-        self._stiffness = scale * np.concatenate(
-            [-sparse.csr_array(part.elasticity.stiffness).diagonal(1) for part in parts]
-        )
+        matrices = [sparse.csr_array(part.elasticity.stiffness) for part in parts]
+        springs = [-matrix.diagonal(1) for matrix in matrices]
+        self._stiffness = scale * np.concatenate(springs)
         free = [part.free_force for part in parts if part.free_force is not None]
         self._free: Array | float = 0.0
         if free:
@@ -225,18 +243,19 @@ class AxialForce:
         self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
 
     def __call__(self, displacement: Array) -> Array:
-        """Forces, (n_elements, n), N, for displacements (n_dofs, n) of these n instants, m."""
-        strained = displacement[self._second] - displacement[self._first]
-        return np.asarray(self._stiffness[:, None] * strained - self._free)
+        """Forces, (n_elements, n), N, for displacements (n_dofs, n), m."""
+        elongation = displacement[self._second] - displacement[self._first]
+        return np.asarray(self._stiffness[:, None] * elongation - self._free)
 
 
 def _inside(problem: Problem) -> Inside:
+    """Inside of a problem of bodies in the plane, which always has one."""
     assert problem.inside is not None
     return problem.inside
 
 
 def _edges(inside: Inside, side: str) -> tuple[Indices, Indices]:
-    """Both ends, (2, n), of all element edges along an outer side, and their bodies, (n,)."""
+    """Nodes at both ends, (2, n), and bodies, (n,), of edges on an outer side."""
     places = inside.nodes[:, AXES[side]]
     if side in ("left", "bottom"):
         outermost = places.min()
@@ -248,12 +267,14 @@ def _edges(inside: Inside, side: str) -> tuple[Indices, Indices]:
 
 
 def _integral(inside: Inside, ends: Indices, component: int, density: Array) -> Probe:
-    """Integral of displacement over edges times a density that is linear between their ends."""
+    """Integral over edges of a displacement component times a density linear on each.
+
+    `ends` are the nodes at both ends of n edges, `density` the values there, (2, n).
+    """
     length = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1)
+    shares = length / 6.0 * (density + density.sum(axis=0))
     weights = np.zeros_like(inside.nodes)
-    np.add.at(
-        weights[:, component], ends, length / 6.0 * (density + density.sum(axis=0))
-    )
+    np.add.at(weights[:, component], ends, shares)
     kept, constant = inside.adjoint(weights)
     dofs = np.flatnonzero(kept)
     return Probe(dofs, kept[dofs], constant)

@@ -1,8 +1,8 @@
-"""The discrete problem: matrices, traces, laws and macro bases; no options and no state.
+"""The discrete problem: matrices, traces, laws and macro bases, without options.
 
-Everything here is scaled (see `Scales`). A boundary row is one displacement component
-of one interface point as one substructure sees it; an interface owns rows, and so does
-a substructure. Fields on the boundary have shape (n_rows, n_instants), and those of one
+All values are scaled (see `Scales`). A boundary row is one displacement component of
+one interface point of one substructure; an interface owns rows, and so does a
+substructure. Fields on the boundary have shape (n_rows, n_instants), and those of one
 instant are contiguous in memory (Fortran order), because the friction law walks through
 time.
 """
@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -46,7 +45,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scales:
-    """One scaled unit of each, in m, N and s, so that no method sees the size of a pascal."""
+    """Units of scaled displacement, m, force, N, and time, s.
+
+    With them the results of a method do not depend on the units of the input.
+    """
 
     displacement: float
     force: float
@@ -68,23 +70,22 @@ class Problem:
         Coordinates of the degrees of freedom of the whole structure, in m: shape
         (n_dofs,) along a rod, (n_dofs, 2) in the plane.
     instants
-        Shape (n_instants,), in s.
+        Times, shape (n_instants,), in s.
     inside
-        What the degrees of freedom do not show, where substructures are condensed; else
-        None.
+        Nodes and elements inside condensed substructures; None where none is condensed.
     rest
         Displacement that the method may start from, scaled, shape (n_dofs, n_instants):
-        that of a body which falls onto its support as if it were rigid. None is no
-        displacement.
+        that of a body which falls onto its support as if it were rigid. None is zero.
     carried
         Displacement of the support that rods lie on, scaled, shape (n_dofs,
-        n_instants), where it moves: all displacements of the problem are seen from it.
+        n_instants), where it moves: all displacements of the problem are relative to
+        it.
     has_short_joints
         Whether upright joints of bodies have no pair at their ends, so that these
         bodies carry less than rigid ones.
     drives
-        Loads and motions by the settings that give them, for words alone; none of a
-        problem that is no scene's.
+        Loads and motions by the settings that give them, for messages only; empty for a
+        problem without a scene.
 
     Raises
     ------
@@ -116,22 +117,17 @@ class Problem:
         )
         field = Numbers(((self.n_dofs, self.n_instants),))
         check(self, rest=field, carried=field)
-        parts = self.substructures
-        laws = self.interfaces.values()
-        _check_cover(
-            "substructures", "degree of freedom", self.n_dofs, [p.dofs for p in parts]
-        )
-        _check_cover(
-            "substructures", "row", self.n_rows, [p.rows for p in parts], once=True
-        )
-        _check_cover(
-            "interfaces", "row", self.n_rows, [law.rows for law in laws], once=True
-        )
+        dofs = [part.dofs for part in self.substructures]
+        rows = [part.rows for part in self.substructures]
+        rows_of_laws = [law.rows for law in self.interfaces.values()]
+        _check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
+        _check_cover("substructures", "row", self.n_rows, rows, once=True)
+        _check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
         self._check_instants()
         self._check_prescribed()
 
     def _check_instants(self) -> None:
-        """Refuse what has values for other instants."""
+        """Refuse laws and body forces with values for another number of instants."""
         counts = {
             f"interfaces[{name!r}]": law.n_instants
             for name, law in self.interfaces.items()
@@ -152,14 +148,13 @@ class Problem:
         given = self.given_displacements
         if len(given) < 2:
             return
-        dofs = np.concatenate([self.row_dofs[one.rows] for one in given])
-        values = np.concatenate([one.values for one in given])
-        _, first, place = np.unique(dofs, return_index=True, return_inverse=True)
-        apart = np.abs(values - values[first][place])
-        if float(apart.max(initial=0.0)) > ALIKE * float(
-            np.abs(values).max(initial=0.0)
-        ):
-            number = int(apart.max(axis=1).argmax())
+        dofs = np.concatenate([self.row_dofs[each.rows] for each in given])
+        values = np.concatenate([each.values for each in given])
+        _, first, inverse = np.unique(dofs, return_index=True, return_inverse=True)
+        differences = np.abs(values - values[first][inverse])
+        largest = float(np.abs(values).max(initial=0.0))
+        if float(differences.max(initial=0.0)) > ALIKE * largest:
+            number = int(differences.max(axis=1).argmax())
             raise RefusedError(
                 "Problem.interfaces",
                 Words(f"two displacements of degree of freedom {dofs[number]}"),
@@ -168,7 +163,10 @@ class Problem:
             )
 
     def at_rest(self, displacement: Array) -> Array:
-        """Displacements as who stands beside sees them, (n_dofs, n_instants), m."""
+        """Absolute displacements: relative ones plus the motion of the support.
+
+        Shape (n_dofs, n_instants) both, m.
+        """
         if self.carried is None:
             return displacement
         return displacement + self.carried * self.scales.displacement
@@ -190,7 +188,7 @@ class Problem:
 
     @cached_property
     def direction(self) -> Array:
-        """The paper's search direction k of every row, shape (n_rows,)."""
+        """The paper's search direction k of every row, shape (n_rows,), scaled."""
         k = np.empty(self.n_rows)
         for part in self.substructures:
             k[part.rows] = part.elasticity.direction
@@ -211,53 +209,59 @@ class Problem:
             return np.ones(1)
         halves = 0.5 * (np.diff(self.instants) / self.scales.time)
         weights = np.append(halves, 0.0) + np.insert(halves, 0, 0.0)
-        # A basis divides by them: a step may be as short as the smallest number.
+        # A basis divides by the weights, and a step may be as short as the smallest
+        # number.
         return np.asarray(np.maximum(weights, np.finfo(float).eps))
 
     @cached_property
     def laws(self) -> list[Interface]:
-        """All interfaces, those of one kind that may be treated as one joined: no macro bases."""
+        """Laws of all interfaces for the local stage, alike ones joined to one.
+
+        Joined laws have no macro bases.
+        """
         kinds: dict[type[Interface], list[Interface]] = {}
         for name, law in self.interfaces.items():
             if name not in self.rubbing:
                 kinds.setdefault(type(law), []).append(law)
-        others = [law for kind, laws in kinds.items() for law in kind.together(laws)]
-        return [*(group.law for group in self.contact_groups), *others]
+        joined: list[Interface] = [group.law for group in self.contact_groups]
+        for kind, laws in kinds.items():
+            joined.extend(kind.together(laws))
+        return joined
 
     @cached_property
     def contact_groups(self) -> list[ContactGroup]:
-        """Interfaces with friction, those of one law as one."""
-        every = list(self.rubbing.values())
+        """Groups of interfaces with friction that have the same kind of law."""
+        laws = list(self.rubbing.values())
         alike = dict[Hashable, list[int]]()
         for number, (name, law) in enumerate(self.rubbing.items()):
-            # A law of its own may have more than its fields to tell it from others.
+            # A user's law may differ from others in more than its fields: it is a group
+            # of its own.
             key = law.kind if name in self.incremental_forms else name
             alike.setdefault(key, []).append(number)
-        return [ContactGroup(every, numbers) for numbers in alike.values()]
+        return [ContactGroup(laws, numbers) for numbers in alike.values()]
 
     @cached_property
     def contact_points(self) -> dict[str, slice]:
-        """Where the points of each interface stand among those of all, by name."""
-        ends = np.cumsum(
-            [0, *(len(law.positions) for law in self.rubbing.values())]
-        ).tolist()
-        return {
-            name: slice(*span)
-            for name, span in zip(self.rubbing, pairwise(ends), strict=True)
-        }
+        """Range of the points of each interface among those of all, by name."""
+        ranges = dict[str, slice]()
+        first = 0
+        for name, law in self.rubbing.items():
+            last = first + len(law.positions)
+            ranges[name] = slice(first, last)
+            first = last
+        return ranges
 
     @cached_property
     def incremental_forms(self) -> dict[str, IncrementalForm]:
-        """Forms in which interfaces enter the incremental problem, by name, where they have one."""
+        """Incremental forms of the interfaces that have one, by name."""
         forms = {name: law.incremental_form() for name, law in self.interfaces.items()}
         return {name: form for name, form in forms.items() if form is not None}
 
     @cached_property
     def own_laws(self) -> dict[str, Interface]:
-        """Interfaces that do not say how they enter the incremental problem, by name."""
-        interfaces = self.interfaces.items()
+        """Interfaces of a user's law, without an incremental form, by name."""
         forms = self.incremental_forms
-        return {name: law for name, law in interfaces if name not in forms}
+        return {name: law for name, law in self.interfaces.items() if name not in forms}
 
     @cached_property
     def given_forces(self) -> list[Given]:
@@ -273,7 +277,7 @@ class Problem:
 
     @cached_property
     def is_held(self) -> NDArray[np.bool_]:
-        """At which rows a displacement is prescribed, shape (n_rows,)."""
+        """Mask of rows with a prescribed displacement, shape (n_rows,)."""
         return np.isin(self.row_dofs, self.prescribed[0])
 
     @cached_property
@@ -284,11 +288,12 @@ class Problem:
 
     @cached_property
     def sought_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:
-        """Rows whose forces nothing but a solution tells, and their kinds, none of which is empty.
+        """Rows whose forces only a solution gives, and masks of their kinds among them.
 
-        They are all components of the bodies above at interfaces with friction, those
-        along the normal as one kind and the others as another; and all rows of laws of
-        one's own. Where there are neither, all rows are sought.
+        These are the rows of the bodies above at interfaces with friction, normal ones
+        as a first and tangential ones as a second kind; and all rows of users' laws as
+        a third. Where there are none of these, all rows are of the third kind. Empty
+        kinds are left out; masks have the shape (n_sought,).
         """
         kind_of = np.full(self.n_rows, -1)
         for law in self.own_laws.values():
@@ -305,70 +310,76 @@ class Problem:
 
     @cached_property
     def no_reference(self) -> str:
-        """Reason that no incremental solver can judge the problem, with a remedy; empty without.
+        """Reason that the problem has no incremental reference, with a remedy, or "".
 
-        They read the forms of all laws, one degree of freedom where rows are glued, and
-        the mean of the pairs of a point: whatever else there is they would leave out.
+        The incremental solvers read the incremental forms of all laws, one degree of
+        freedom where rows are glued, and the mean of the pairs of a point: they would
+        leave out anything else.
         """
         for name, law in self.own_laws.items():
             return (
-                f'The law {type(law).__name__} of the interface "{name}" does not say how it '
-                f"enters the incremental problem, so that there is no reference: {_OF_ONES_OWN}."
+                f'The law {type(law).__name__} of the interface "{name}" does not say '
+                "how it enters the incremental problem, so that there is no reference: "
+                f"{_OF_ONES_OWN}."
             )
         for name, form in self.incremental_forms.items():
             if form.contact is not None and form.contact is not self.interfaces[name]:
-                return f'The interface "{name}" enters as a contact that it is not: {_OF_ONES_OWN}.'
+                return (
+                    f'The interface "{name}" enters as a contact that it is not: '
+                    f"{_OF_ONES_OWN}."
+                )
         if not self.rubbing:
             return (
-                "No interface is one of contact, so that there is nothing to solve instant by "
-                f"instant: add a contact, or {_BY_ESTIMATE}."
+                "No interface is one of contact, so that there is nothing to solve "
+                f"instant by instant: add a contact, or {_BY_ESTIMATE}."
             )
         if not self._is_glued_as_numbered:
             return (
-                "Rows of one degree of freedom are not glued, or glued rows have two, so that no "
-                f"matrix of the whole structure says what holds: number them alike, or "
-                f"{_BY_ESTIMATE}."
+                "Rows of one degree of freedom are not glued, or glued rows have two, "
+                "so that no matrix of the whole structure says what holds: number them "
+                f"alike, or {_BY_ESTIMATE}."
             )
         for name, contact in self.rubbing.items():
             if not self._has_points(contact):
                 return (
-                    f'Pairs of one point of the interface "{name}" differ in their degrees of '
-                    f"freedom, gap or friction: give each a point of its own, or {_BY_ESTIMATE}."
+                    f'Pairs of one point of the interface "{name}" differ in their '
+                    "degrees of freedom, gap or friction: give each a point of its "
+                    f"own, or {_BY_ESTIMATE}."
                 )
         if len(self._strengths) > 1:
             return (
-                "Slip changes friction otherwise on one interface than on another: give all of "
-                f"them the same strength, or {_BY_ESTIMATE}."
+                "Slip changes friction otherwise on one interface than on another: "
+                f"give all of them the same strength, or {_BY_ESTIMATE}."
             )
         return ""
 
     @property
     def _is_glued_as_numbered(self) -> bool:
-        """Whether degrees of freedom are those of the rows, glued as their laws say."""
+        """Check whether just those rows share a degree of freedom that laws glue."""
         owner = np.empty(self.n_rows, dtype=np.intp)
         for number, part in enumerate(self.substructures):
             owner[part.rows] = number
-        # What a substructure has at a degree of freedom, whatever its rows there, is
-        # one point.
-        points = np.unique(owner * self.n_dofs + self.row_dofs, return_inverse=True)
+        # All rows of one substructure at one degree of freedom are one node.
+        keys = owner * self.n_dofs + self.row_dofs
+        nodes, node_of_row = np.unique(keys, return_inverse=True)
         sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *self.cuts], axis=1)
-        first, second = points[1][sides]
-        size = len(points[0])
-        links = sparse.coo_array(
-            (np.ones(len(first)), (first, second)), shape=(size, size)
-        )
+        first, second = node_of_row[sides]
+        ones = np.ones(len(first))
+        links = sparse.coo_array((ones, (first, second)), shape=(len(nodes),) * 2)
         n_glued, glued = connected_components(links, directed=False)
-        dofs = points[0] % self.n_dofs
+        # Each group of glued nodes has one degree of freedom, and no other group has
+        # it.
+        dofs = nodes % self.n_dofs
         n_pairs = len(np.unique(glued * self.n_dofs + dofs))
         return bool(n_pairs == n_glued == len(np.unique(dofs)))
 
     def _has_points(self, law: Contact) -> bool:
-        """Whether all pairs of each point of a contact stand for one and the same."""
+        """Check whether pairs of one point agree in degrees of freedom, gap and mu."""
         if len(law.points) == len(law.positions):
             return True
-        sides = [rows for one in law.components for rows in one.sides]
-        fields: list[NDArray[Any]] = [self.row_dofs[rows] for rows in sides]
-        fields.append(law.tangential.friction)
+        fields: list[NDArray[Any]] = [law.tangential.friction]
+        for component in law.components:
+            fields.extend([self.row_dofs[rows] for rows in component.sides])
         if law.normal is not None:
             fields.append(law.normal.gap)
         _, first = np.unique(law.points, return_index=True)
@@ -377,14 +388,14 @@ class Problem:
 
     @property
     def _strengths(self) -> set[Strength]:
-        """Factors that slip makes of friction, of all interfaces that have any."""
+        """Slip-dependent factors of all interfaces on which there is any friction."""
         laws = [law.tangential for law in self.rubbing.values()]
         rubs = [law for law in laws if law.bound.any() or law.friction.any()]
         return {law.strength or PLAIN for law in rubs}
 
     @cached_property
     def friction(self) -> Contact:
-        """The interface with friction, where it is the only one."""
+        """The interface with friction of a problem that has one only."""
         (contact,) = self.rubbing.values()
         return contact
 
@@ -399,30 +410,29 @@ class Problem:
 
     @cached_property
     def surfaces(self) -> dict[str, Contact]:
-        """The interfaces with friction along which bodies touch, by name: springs are none."""
+        """The interfaces with friction that are surfaces, not springs, by name."""
         return {name: law for name, law in self.rubbing.items() if not law.is_spring}
 
     @cached_property
     def on_surfaces(self) -> NDArray[np.bool_]:
-        """Which points of all interfaces with friction are on surfaces, shape (n_points,)."""
+        """Mask of contact points that are on surfaces, shape (n_points,)."""
         laws = self.rubbing.values()
-        return np.repeat(
-            [not law.is_spring for law in laws], [len(law.positions) for law in laws]
-        )
+        is_surface = [not law.is_spring for law in laws]
+        return np.repeat(is_surface, [len(law.positions) for law in laws])
 
     @cached_property
     def goes_on(self) -> bool:
-        """Whether it begins where sliders stand elsewhere than at rest, as another one ends."""
+        """Check whether sliders begin at given positions, not at rest."""
         return any(law.tangential.start is not None for law in self.rubbing.values())
 
     @cached_property
     def opens(self) -> bool:
-        """Whether any interface may open."""
+        """Check whether any interface may open."""
         return any(law.opens for law in self.rubbing.values())
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
-        """Macro basis of all interfaces whose macro forces are in equilibrium, and their load.
+        """Macro basis of all interfaces, and the macro forces from outside, scaled.
 
         P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README,
         2).
@@ -430,12 +440,12 @@ class Problem:
         parts = [part for law in self.interfaces.values() for part in law.macro_parts()]
         bases = sparse.block_diag([sparse.coo_array(part.basis) for part in parts])
         rows = np.concatenate([part.rows for part in parts])[bases.coords[0]]
-        loads = [
-            np.zeros((part.basis.shape[1], self.n_instants))
-            if part.load is None
-            else part.load
-            for part in parts
-        ]
+        loads = list[Array]()
+        for part in parts:
+            load = part.load
+            if load is None:
+                load = np.zeros((part.basis.shape[1], self.n_instants))
+            loads.append(load)
         shape = self.n_rows, bases.shape[1]
         basis = sparse.csr_array((bases.data, (rows, bases.coords[1])), shape)
         return basis, np.concatenate(loads)
@@ -443,18 +453,19 @@ class Problem:
     @cached_property
     def mean_of_rows(self) -> sparse.csr_array:
         """Mean over the rows of each degree of freedom, shape (n_dofs, n_rows)."""
-        total = sparse.csr_array(
-            (np.ones(self.n_rows), (self.row_dofs, np.arange(self.n_rows))),
-            shape=(self.n_dofs, self.n_rows),
-        )
+        places = self.row_dofs, np.arange(self.n_rows)
+        shape = self.n_dofs, self.n_rows
+        total = sparse.csr_array((np.ones(self.n_rows), places), shape=shape)
         counts = np.asarray(total.sum(axis=1)).ravel()
-        return sparse.csr_array(
-            sparse.diags_array(1.0 / np.maximum(counts, 1.0)) @ total
-        )
+        inverse = sparse.diags_array(1.0 / np.maximum(counts, 1.0))
+        return sparse.csr_array(inverse @ total)
 
     @cached_property
     def body_force_on_rows(self) -> Array | None:
-        """Forces on the rows that do the work of all body forces, (n_rows, n_instants); or None."""
+        """Forces on the rows that do the work of all body forces, scaled, or None.
+
+        Shape (n_rows, n_instants).
+        """
         if all(part.body_force is None for part in self.substructures):
             return None
         whole = np.zeros((self.n_dofs, self.n_instants))
@@ -483,41 +494,40 @@ class Problem:
 
     @cached_property
     def contact_places(self) -> dict[str, tuple[slice, ...]]:
-        """Where the components of each interface stand in a stack of contact forces, by name."""
-        places = {}
+        """Ranges of each interface's components in stacked contact forces, by name."""
+        ranges = dict[str, tuple[slice, ...]]()
         first = 0
         for name, law in self.rubbing.items():
             size = len(law.positions)
-            last = first + len(law.positions) * len(law.components)
-            places[name] = tuple(
-                slice(start, start + size) for start in range(first, last, size)
-            )
+            last = first + size * len(law.components)
+            starts = range(first, last, size)
+            ranges[name] = tuple([slice(start, start + size) for start in starts])
             first = last
-        return places
+        return ranges
 
     @cached_property
     def _driven(self) -> list[DrivenFriction]:
-        """Points whose slip prescribed displacements alone make, interface by interface."""
-        given = [
-            self.prescribed[1],
-            np.zeros(1) if self.carried is None else self.carried,
-        ]
-        largest = max(float(np.abs(values).max(initial=0.0)) for values in given)
-        each = (
-            driven_friction(
-                law, self.contact_places[name], self.row_dofs, self.prescribed, largest
+        """Friction of driven points, interface by interface (see `driven_friction`)."""
+        largest = float(np.abs(self.prescribed[1]).max(initial=0.0))
+        if self.carried is not None:
+            largest = max(largest, float(np.abs(self.carried).max(initial=0.0)))
+        found = list[DrivenFriction]()
+        for name, law in self.rubbing.items():
+            places = self.contact_places[name]
+            driven = driven_friction(
+                law, places, self.row_dofs, self.prescribed, largest
             )
-            for name, law in self.rubbing.items()
-        )
-        return [driven for driven in each if driven is not None]
+            if driven is not None:
+                found.append(driven)
+        return found
 
     def with_driven_friction(self, forces: Array, displacement: Array) -> Array:
-        """Contact forces whose friction is as the law says where it cannot be found.
+        """Contact forces in which the friction of driven points is that of the law.
 
-        That is where prescribed displacements alone make the slip, see
-        `solver.discrete.driven_friction`. All are scaled: forces stacked as
-        `sum_of_contact` says, shape (n_forces, n_instants), and W of all rows, (n_rows,
-        n_instants).
+        At driven points prescribed displacements alone make the slip, so that no method
+        finds friction there (see `solver.discrete.driven_friction`). All are scaled:
+        forces stacked as by `sum_of_contact`, shape (n_forces, n_instants), and W of
+        all rows, (n_rows, n_instants).
         """
         if not self._driven:
             return forces
@@ -528,21 +538,21 @@ class Problem:
 
     @cached_property
     def is_chain(self) -> bool:
-        """Whether every degree of freedom is tied to the one before and the one behind alone."""
+        """Check whether the stiffness is tridiagonal in the degrees of freedom."""
         operators = {
             id(part.elasticity): part.elasticity for part in self.substructures
         }
         for operator in operators.values():
-            entries = sparse.coo_array(operator.stiffness)
-            if np.abs(entries.coords[0] - entries.coords[1]).max(initial=0) > 1:
+            rows, columns = sparse.coo_array(operator.stiffness).coords
+            if np.abs(rows - columns).max(initial=0) > 1:
                 return False
         return all(np.all(np.diff(part.dofs) == 1) for part in self.substructures)
 
     @cached_property
     def motions(self) -> Array | None:
-        """Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent.
+        """Independent rigid motions of bodies that no side holds, (n_dofs, n_motions).
 
-        None where there are none, or where no digits are lost beside them, along rods.
+        None without such motions, and along rods, where they cost no digits.
         """
         if self.inside is None:
             return None
@@ -550,26 +560,32 @@ class Problem:
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
-        """Degrees of freedom with prescribed displacement, (n,), and values, (n, n_instants)."""
-        given = self.given_displacements
-        rows = np.concatenate(
-            [np.zeros(0, dtype=np.intp), *(part.rows for part in given)]
-        )
-        values = [np.zeros((0, self.n_instants)), *(part.values for part in given)]
-        dofs, first = np.unique(self.row_dofs[rows], return_index=True)
+        """Degrees of freedom of prescribed displacement, (n,), ascending, and values.
+
+        Values are scaled, (n, n_instants).
+        """
+        rows = [np.zeros(0, dtype=np.intp)]
+        values = [np.zeros((0, self.n_instants))]
+        for given in self.given_displacements:
+            rows.append(given.rows)
+            values.append(given.values)
+        every = self.row_dofs[np.concatenate(rows)]
+        dofs, first = np.unique(every, return_index=True)
         return dofs, np.concatenate(values)[first]
 
     @cached_property
     def held_dofs(self) -> dict[str, Indices]:
-        """Degrees of freedom that each interface of prescribed displacements holds, by its name.
+        """Degrees of freedom that interfaces of prescribed displacements hold, by name.
 
-        One that several prescribe, as in a corner, is held by the first of them.
+        A degree of freedom that several prescribe, as in a corner, is held by the first
+        of them. Shape (n,) each.
         """
         held: dict[str, Indices] = {}
         before = np.zeros(0, dtype=np.intp)
         for name, form in self.incremental_forms.items():
             if form.displacement is not None:
-                held[name] = np.setdiff1d(self.row_dofs[form.displacement.rows], before)
+                dofs = self.row_dofs[form.displacement.rows]
+                held[name] = np.setdiff1d(dofs, before)
                 before = np.concatenate([before, held[name]])
         return held
 
@@ -577,7 +593,10 @@ class Problem:
 def _check_cover(
     owners: str, what: str, count: int, parts: list[Indices], *, once: bool = False
 ) -> None:
-    """Refuse parts that do not have all of so many numbers, or one of them more than once."""
+    """Refuse parts that do not have all numbers from 0 to `count` - 1.
+
+    With `once`, refuse numbers that occur more than once, too.
+    """
     numbers = np.concatenate([np.zeros(0, dtype=np.intp), *parts])
     largest = int(numbers.max(initial=-1))
     times = np.bincount(numbers, minlength=count)
@@ -588,28 +607,27 @@ def _check_cover(
     if largest < count and not wrong.any():
         return
     if largest >= count:
-        place = largest
+        number = largest
     else:
-        place = int(np.argmax(wrong))
-    allowed = f"each {what} from 0 to {count - 1} {'once' if once else 'at least once'}"
-    shown = Words(f"{what} {place}, {times[place]} times")
+        number = int(np.argmax(wrong))
+    how_often = "once" if once else "at least once"
+    allowed = f"each {what} from 0 to {count - 1} {how_often}"
+    shown = Words(f"{what} {number}, {times[number]} times")
     raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")
 
 
 def nothing_acts(problem: Problem) -> bool:
-    """Whether all that is given is zero: loads, displacements, overlaps; so is the answer.
+    """Check whether loads, displacements and overlaps are zero, and so the answer.
 
-    Of a law that does not say how it enters the incremental problem nobody knows.
+    A user's law without an incremental form may act, too.
     """
     if problem.own_laws or any(law.is_moved for law in problem.rubbing.values()):
         return False
-    fields = [
-        given.values for given in problem.given_forces + problem.given_displacements
-    ]
-    fields += [
-        part.body_force for part in problem.substructures if part.body_force is not None
-    ]
-    return not any(field.any() for field in fields)
+    given = problem.given_forces + problem.given_displacements
+    forces = [part.body_force for part in problem.substructures]
+    acts_on_rows = any(each.values.any() for each in given)
+    acts_inside = any(force.any() for force in forces if force is not None)
+    return not acts_on_rows and not acts_inside
 
 
 _BY_ESTIMATE = "judge the run by its estimate alone"

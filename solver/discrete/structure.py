@@ -1,4 +1,4 @@
-"""Structures: what they are to be solved and drawn, and the hysteresis loop that they show."""
+"""The `Structure` protocol; a description for drawings; the hysteresis loop."""
 
 from __future__ import annotations
 
@@ -20,39 +20,41 @@ OUTWARD = {
     "bottom": (0.0, -1.0),
     "top": (0.0, 1.0),
 }
-"""Sides of all bodies together, and the normal of each."""
+"""Sides of all bodies together, and the outward normal of each."""
 Way = tuple[float, float]
 
 
 def on_side(side: str, shares: ArrayLike) -> Array:
-    """Places on a side from its lower or left end on, (n, 2), as shares of length and height.
+    """Points on a side, (n, 2), as shares of the length and the height of all bodies.
 
-    `shares` of the side, shape (n,); on no side ("body") they are along the middle.
+    `shares` are their distances from the lower or left end of the side over its length,
+    shape (n,). On the side "body" the points lie along the middle.
     """
     along = np.asarray(shares, dtype=float)
     x = {"left": 0.0, "right": 1.0}.get(side, along)
     y = {"bottom": 0.0, "top": 1.0, "body": 0.5}.get(side, along)
-    return np.stack(
-        [np.broadcast_to(x, along.shape), np.broadcast_to(y, along.shape)], axis=1
-    )
+    columns = [np.broadcast_to(x, along.shape), np.broadcast_to(y, along.shape)]
+    return np.stack(columns, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Act:
-    """A force, or a displacement, that is given.
+    """A load, or a prescribed displacement, as drawings show it.
 
     Attributes
     ----------
     where
-        "right x": along a side; or "body": throughout.
+        Side and component, as "right x", or "body" for a load on the whole body.
+    symbol, unit
+        Symbol of the values, and their SI unit.
     places
-        Where on the undeformed bodies, shape (n, 2), as shares of their length and
+        Points on the undeformed bodies, shape (n, 2), as shares of their length and
         height.
     towards
         Direction of positive values, a unit vector, or one of each instant, (2,
         n_instants).
     values
-        Over time, shape (n_instants,) or, of each place, (n, n_instants).
+        Values over time, shape (n_instants,), or those of each place, (n, n_instants).
     """
 
     where: str
@@ -64,13 +66,13 @@ class Act:
 
     @property
     def away(self) -> Way:
-        """Direction in which there is room for an arrow, a unit vector."""
+        """Direction out of the body, a unit vector: there is room for an arrow."""
         return OUTWARD.get(self.where.partition(" ")[0], OUTWARD["right"])
 
 
 @dataclass(frozen=True, eq=False)
 class Hold:
-    """What holds bodies at a side.
+    """A clamp, support or spring that holds bodies at a side.
 
     Attributes
     ----------
@@ -78,11 +80,11 @@ class Hold:
         A support is rigid and rough; below an image the bodies go on, turned by half a
         turn; a spring pulls along x, at the foot of its side.
     side
-        Of all bodies together.
+        Side of all bodies together.
     stretch
         Ends of the part that is held, as shares of the side.
     moved
-        Displacement of a clamp along x, shape (n_instants,), m, where it has one.
+        Displacement of a clamp along x, shape (n_instants,), m, where it moves.
     gap
         Opening of a support that goes on beyond the bodies, at nodes along it, shape
         (n_nodes,), m.
@@ -97,21 +99,26 @@ class Hold:
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """A structure in words: all that a picture of it shows before anything is solved.
+    """Description of a structure for drawings, before anything is solved.
 
     Attributes
     ----------
     bodies
         Number of equal bodies above each other.
     length, height
-        Of all of them, m; rods have no height.
+        Size of all bodies together, m; rods have no height.
+    instants
+        Times, shape (n_instants,), s.
     acts
-        All that acts; what is zero throughout is left out.
+        Loads and prescribed displacements; those that are always zero are left out.
+    holds
+        Clamps, supports and springs.
     tilt
-        Angle over time by which the x axis rises, shape (n_instants,), rad, where it
-        does.
+        Angle over time by which the x axis rises, shape (n_instants,), rad; None where
+        it does not rise.
     broken
-        Number of the broken body, from 0, and where it is broken, m; where one is.
+        Number of the broken body, from 0, and position of the break, m; None where no
+        body is broken.
     """
 
     bodies: int
@@ -124,13 +131,13 @@ class Description:
     broken: tuple[int, float] | None = None
 
     def __post_init__(self) -> None:
-        """Leave out what is zero throughout."""
+        """Leave out loads and displacements that are always zero."""
         acts = tuple(act for act in self.acts if np.any(act.values))
         object.__setattr__(self, "acts", acts)
 
 
 class LoopFields(Protocol):
-    """What a loop is taken from: an iterate, or a reference; SI, shape (n, n_instants)."""
+    """Fields of an iterate or a reference, SI, shape (n, n_instants)."""
 
     @property
     def displacement(self) -> Array:
@@ -146,10 +153,19 @@ Axes = tuple[tuple[str, str], tuple[str, str]]
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """A force over the displacement that it works on; what is inside the loop is dissipated.
+    """A force over the displacement that it works on; its area is dissipated energy.
 
-    Or over whatever drives it: then the loop shows how it lags behind. Both have a
-    title and a unit; the force is found in N, shape (n_instants,).
+    Or a force, or a displacement, over the quantity that drives it: then the loop shows
+    how it lags behind.
+
+    Attributes
+    ----------
+    across, up
+        Title and unit of the displacement, and of the force.
+    displacement
+        Displacement, or driving quantity, over time, from the fields.
+    force
+        Force over time, shape (n_instants,), N, from the fields.
     """
 
     across: tuple[str, str]
@@ -163,26 +179,26 @@ class Loop:
         return self.across, self.up
 
     def along(self, fields: LoopFields) -> tuple[Array, Array]:
-        """Displacement and force of an iterate, or of a reference, each (n_instants,)."""
+        """Displacement and force of an iterate or a reference, (n_instants,) both."""
         return self.displacement.of(fields), self.force(fields)
 
     def finds_force(self, problem: Problem) -> bool:
-        """Whether its displacement is given in a problem, so that its force is found."""
+        """Check whether the displacement is prescribed and the force unknown."""
         return bool(np.isin(self.displacement.dofs, problem.prescribed[0]).all())
 
 
 class Structure(Protocol):
-    """Bodies, how they are held and what acts on them, as plain data: `Rods`, `Rope`, `Stack`."""
+    """Bodies, supports and loads as plain data: `Rods`, `Rope`, `Stack`."""
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
 
     @property
     def axes(self) -> Axes:
-        """Titles and units of the loop, which are known without a problem."""
+        """Titles and units of the loop, known without a problem."""
 
     def loop(self, problem: Problem) -> Loop:
-        """The hysteresis loop that it shows; forces in the plane for a metre of thickness."""
+        """Hysteresis loop; forces in the plane are those for a metre of thickness."""
 
     def described(self) -> Description:
-        """The structure in words, for whoever draws it."""
+        """Description of the structure for drawings."""

@@ -1,4 +1,4 @@
-"""One part of the structure, and the elastic operator that it shares with its like."""
+"""Substructures, and the elastic operators that equal substructures share."""
 
 from __future__ import annotations
 
@@ -64,46 +64,48 @@ class Elasticity:
 
     @property
     def _is_symmetric(self) -> bool:
-        """Whether the work of one displacement on the forces of another is that the other way.
+        """Check whether the stiffness is symmetric, in two products.
 
-        Two displacements that no structure has for its own tell it for all, in two
-        products.
+        The work of a first displacement on the forces of a second one is compared with
+        that of the second on the forces of the first. Both are arbitrary, so that a
+        stiffness that is not symmetric hardly passes.
         """
         numbers = np.arange(self.stiffness.shape[0])
-        one = np.cos(numbers)
-        other = np.sin(numbers)
-        there = self.stiffness @ other
-        apart = float(one @ there - other @ (self.stiffness @ one))
-        return abs(apart) <= ALIKE * float(np.abs(one) @ np.abs(there))
+        first = np.cos(numbers)
+        second = np.sin(numbers)
+        force = self.stiffness @ second
+        difference = float(first @ force - second @ (self.stiffness @ first))
+        return abs(difference) <= ALIKE * float(np.abs(first) @ np.abs(force))
 
     @cached_property
     def boundary(self) -> tuple[Indices, Indices, sparse.csr_array | Array]:
-        """Degrees of freedom at the boundary, place of every boundary row in them, their stiffness.
+        """Degrees of freedom at the boundary, and their rows of the stiffness.
 
-        Shapes (n,), (n_boundary,) and (n, n_dofs); the degrees of freedom ascend.
+        The degrees of freedom, (n,), ascend. Then the index in them of every boundary
+        row, (n_boundary,), and the stiffness, (n, n_dofs), scaled.
         """
-        own, place = np.unique(self.trace, return_inverse=True)
-        return own, place, self.stiffness[own]
+        dofs, index = np.unique(self.trace, return_inverse=True)
+        return dofs, index, self.stiffness[dofs]
 
 
 @dataclass(frozen=True)
 class Substructure:
-    """One part of the structure.
+    """A substructure: its operator, degrees of freedom, boundary rows and body forces.
 
     Attributes
     ----------
     elasticity
-        Shared by identity with all substructures of the same shape.
+        Elastic operator, the same object for all equal substructures.
     dofs
         Its degrees of freedom in the whole structure, shape (n_dofs,).
     rows
         Its boundary rows, shape (n_boundary,).
     body_force
-        Nodal forces inside, shape (n_dofs, n_instants), or None.
+        Nodal forces inside, shape (n_dofs, n_instants), scaled, or None.
     free_force
-        Axial force of each element of a rod, scaled, that would strain it as much as it
-        is strained without any, shape (n_elements, n_instants); None where that is
-        nothing. Its nodal forces are among `body_force`.
+        Axial force that would strain each element of a rod as heat or settlement does,
+        shape (n_elements, n_instants), scaled; None without such strains. Its nodal
+        forces are among `body_force`.
 
     Raises
     ------
@@ -133,13 +135,13 @@ class Substructure:
 
 
 def tributary(elements: int) -> Array:
-    """Length that belongs to each node of a row of elements, over that of one of them."""
+    """Length of each node of a row of elements, over that of an element, (n_nodes,)."""
     shares = np.ones(elements + 1)
     shares[[0, -1]] = 0.5
     return shares
 
 
 def substructure_sizes(elements: int, substructures: int) -> list[int]:
-    """Deal elements to substructures; sizes differ by at most one, the larger ones come first."""
+    """Elements of each substructure: numbers differ by at most 1, larger ones first."""
     size, extra = divmod(elements, substructures)
     return [size + 1] * extra + [size] * (substructures - extra)

@@ -1,4 +1,4 @@
-"""Interface laws: objects that own all that is said about them, all points at once."""
+"""Interface laws: prescribed values, glued cuts, contact and friction, vectorised."""
 
 from solver.laws.contact import OPEN, Contact
 from solver.laws.friction import Friction, FrictionLaw

@@ -1,8 +1,8 @@
-"""Contact: two sides that stick and slip, and where contact may be lost, open.
+"""Contact: two sides that stick and slip, and open where contact may be lost.
 
-It is a normal law and a friction law put together. Where the pressure is known there is
-no normal law. Below is a rigid support or another body. Forces act from what is below
-on the body above, and the jump is that of the body above over what is below.
+A contact is a normal law and a friction law put together. Where the pressure is known
+there is no normal law. A rigid support or another body lies below. Forces act on the
+body above, and the jump is the displacement of the body above relative to that below.
 """
 
 from __future__ import annotations
@@ -42,7 +42,9 @@ OPEN = 2
 
 @dataclass(frozen=True, eq=False)
 class Behaviour:
-    """What one interface's fields say of its law, shape (n_pairs, n_instants) each, scaled.
+    """Fields of one interface from which the violation of its law follows.
+
+    All have the shape (n_pairs, n_instants), scaled.
 
     Attributes
     ----------
@@ -64,16 +66,16 @@ class Behaviour:
 
     @cached_property
     def dissipated(self) -> Array:
-        """What full sliding along the way would dissipate."""
+        """Dissipation of this slip under the largest friction force."""
         return self.bound * np.abs(self.slip)
 
     def violation(self, mean_slip: float, mean_force: Array | float) -> Array:
-        """Violation of every pair and instant, an energy, scaled.
+        """Violation of every pair and instant, (n_pairs, n_instants), a scaled energy.
 
-        With q|v| + F v, where F is cut to |F| <= q: it is nowhere negative and zero
-        exactly where Coulomb's law holds; the excess of |F| over q times the mean slip;
-        and of contact N g where both are positive, tension times the mean slip, and
-        overlap times the mean force.
+        The sum of q|v| + F v, where F is cut to |F| <= q, which is nowhere negative and
+        zero exactly where Coulomb's law holds; of the excess of |F| over q times the
+        mean slip; and for the normal law of N g where both are positive, of tension
+        times the mean slip, and of overlap times the mean force.
         """
         held = np.clip(self.friction, -self.bound, self.bound)
         violation = self.dissipated + held * self.slip
@@ -98,29 +100,28 @@ class Contact(Interface):
     points
         Point of the interface that each pair belongs to, shape (n_pairs,).
     positions
-        Place of the points along the interface, shape (n_points,), m.
+        Positions of the points along the interface, shape (n_points,), m.
     weights
         Tributary length or area of each pair, shape (n_pairs,), m or m^2.
     tangential
-        The law along the interface.
+        Friction law along the interface.
     normal
-        The law across it; None where the pressure is known.
+        Normal law across the interface; None where the pressure is known.
     around
-        What the search direction has to know of the bodies.
+        Stiffness of the bodies beside the interface, for the search direction.
     macro
-        Macro basis of each component between two bodies, shape (n_pairs, n_macro): what
-        one takes from the other is in equilibrium in the coarse problem. None on a
+        Macro basis of each component between two bodies, shape (n_pairs, n_macro), in
+        which the forces on both are in equilibrium in the coarse problem. None on a
         rigid support.
     slip_ratio
-        Slip between both sides over the displacement along the interface that the rows
-        have: 2 where the image of the body lies below, which no row sees and which
-        moves the other way.
+        Slip between both sides over the tangential displacement of the rows: 2 where
+        the image of the body lies below, which has no rows and moves the other way.
     copies
-        Number of interfaces that this one stands for in sums over the structure that is
-        shown, as one wire of a layer does for all: forces and energies of its points
-        count as many times.
+        Number of interfaces for which this one stands in sums over the structure that
+        is shown, as one wire of a layer stands for all: forces and energies of its
+        points count as many times.
     is_spring
-        Whether it is a spring that pulls at a point: no surface on which bodies touch.
+        Whether the contact is a spring at a point, and no surface.
     """
 
     points: Indices
@@ -145,10 +146,10 @@ class Contact(Interface):
             positions=Numbers(((None,),)),
         )
         size = len(self.tangential.component.above)
-        most = len(self.positions) - 1
+        last = len(self.positions) - 1
         check(
             self,
-            points=Numbers(((size,),), low=0, high=most, whole=True),
+            points=Numbers(((size,),), low=0, high=last, whole=True),
             weights=Numbers(((size,),), low=0.0, above=True),
         )
         if self.normal is None and self.tangential.friction.any():
@@ -166,20 +167,22 @@ class Contact(Interface):
             )
 
     def incremental_form(self) -> IncrementalForm | None:
-        """The law itself, where its parts are those that solvers read, and none derived of them."""
-        along = self.tangential
-        across = self.normal
-        is_known = type(along) is Friction and type(along.strength) in (
-            Strength,
-            NoneType,
-        )
-        if not is_known or type(across) not in (Unilateral, NoneType):
-            return None
-        return IncrementalForm(contact=self)
+        """The law itself; None where a part of it is of a user's subclass.
+
+        Incremental solvers read the fields of the classes here, and would not see what
+        a subclass changes.
+        """
+        friction = self.tangential
+        is_friction = type(friction) is Friction
+        is_strength = type(friction.strength) in (Strength, NoneType)
+        is_normal = type(self.normal) in (Unilateral, NoneType)
+        if is_friction and is_strength and is_normal:
+            return IncrementalForm(contact=self)
+        return None
 
     @property
     def n_instants(self) -> int | None:
-        """Number of instants that the bound is for; None where it stays the same."""
+        """Number of instants of the bound; None where the bound is constant."""
         count = self.tangential.bound.shape[1]
         return None if count == 1 else count
 
@@ -193,10 +196,11 @@ class Contact(Interface):
 
     @property
     def rows(self) -> Indices:  # type: ignore[override]  # others are given them
-        """Rows of all components, of both sides."""
-        return np.concatenate(
-            [rows for component in self.components for rows in component.sides]
-        )
+        """Rows of all components, of both sides, (n_rows_of_interface,)."""
+        rows = list[Indices]()
+        for component in self.components:
+            rows.extend(component.sides)
+        return np.concatenate(rows)
 
     @property
     def tangent(self) -> Component:
@@ -205,60 +209,71 @@ class Contact(Interface):
 
     @property
     def is_on_support(self) -> bool:
-        """Whether what lies below is rigid."""
+        """Check whether a rigid support lies below."""
         return self.tangent.below is None
 
     @property
     def opens(self) -> bool:
-        """Whether contact may be lost."""
+        """Check whether contact may be lost."""
         return self.normal is not None
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is a rod's, of known bound, on a support, and nothing but slip moves there."""
+        """Check whether a rod of known bound slips on a support, without springs."""
         if not self.is_on_support or not isinstance(self.around, Rod) or self.opens:
             return False
         return self.tangential.softness is None and self.tangential.cap is None
 
     def begun(self, start: Array) -> Self:
-        """Law whose sliders begin elsewhere, as `Friction.begun`."""
+        """The law with initial positions of its sliders, as `Friction.begun`."""
         return replace(self, tangential=self.tangential.begun(start))
 
     def during(self, instants: slice) -> Self:
-        """Law of some instants alone."""
+        """The law restricted to a range of instants."""
         return replace(self, tangential=self.tangential.during(instants))
 
     @property
     def kind(self) -> Hashable:
-        """What interfaces have alike that may be treated as one."""
-        along = self.tangential
-        across = self.normal and self.normal.softness
-        has = [
-            field is not None
-            for field in (along.cap, along.softness, along.start, across)
-        ]
-        return along.strength, self.is_on_support, self.opens, *has
+        """Key that is equal for interfaces that can be concatenated."""
+        friction = self.tangential
+        normal = self.normal
+        return (
+            friction.strength,
+            self.is_on_support,
+            self.opens,
+            friction.cap is not None,
+            friction.softness is not None,
+            friction.start is not None,
+            normal is not None and normal.softness is not None,
+        )
 
     @classmethod
     def concatenated(cls, laws: Sequence[Self]) -> Self:
-        """Interfaces of one kind put one after the other, without macro bases."""
-        firsts = np.cumsum([0, *(len(law.positions) for law in laws[:-1])])
+        """Concatenate interfaces of one kind, without macro bases."""
+        sizes = [len(law.positions) for law in laws]
+        firsts = np.cumsum([0, *sizes[:-1]])
         points = [first + law.points for first, law in zip(firsts, laws, strict=True)]
-        names = "tangential", "normal", "positions", "weights"
-        both = {name: joined([getattr(law, name) for law in laws]) for name in names}
-        return replace(laws[0], **both, points=np.concatenate(points), macro=None)
+        return replace(
+            laws[0],
+            tangential=joined([law.tangential for law in laws]),
+            normal=joined([law.normal for law in laws]),
+            positions=joined([law.positions for law in laws]),
+            weights=joined([law.weights for law in laws]),
+            points=np.concatenate(points),
+            macro=None,
+        )
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Law for one k."""
+        """Local stage for k of all rows, (n_rows,), scaled."""
         return ContactRule(self.normal, self.tangential, k, n_instants)
 
     def by_point(self, values: Array) -> Array:
-        """Sum of the values of each point's pairs: (n_pairs, ...) to (n_points, ...)."""
+        """Sum over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
         return np.asarray(self._pairs_of_points @ values)
 
     @cached_property
     def _pairs_of_points(self) -> sparse.csr_array:
-        """1 where a pair is of a point, shape (n_points, n_pairs)."""
+        """Matrix with 1 where a pair belongs to a point, shape (n_points, n_pairs)."""
         size = len(self.points)
         places = self.points, np.arange(size)
         return sparse.csr_array(
@@ -266,21 +281,26 @@ class Contact(Interface):
         )
 
     def mean_by_point(self, values: Array) -> Array:
-        """Mean of the values of each point's pairs, shape (n_points, ...)."""
+        """Mean over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
         counts = np.bincount(self.points, minlength=len(self.positions))
-        return np.asarray(
-            self.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1))
-        )
+        trailing = [1] * (values.ndim - 1)
+        return np.asarray(self.by_point(values) / counts.reshape(-1, *trailing))
 
     def in_parallel(self, softness: Array | None) -> Array:
-        """Compliance of every point whose pairs have one each, (n_points,); zero without."""
+        """Compliance of every point from that of its pairs in parallel, (n_points,).
+
+        Zero without compliances of the pairs, (n_pairs,).
+        """
         if softness is None:
             return np.zeros(len(self.positions))
         return np.asarray(1.0 / self.by_point(1.0 / softness))
 
     @cached_property
     def shares(self) -> Array:
-        """Share of each pair in the force of its point: as its law says, or of its area."""
+        """Share of each pair in the force of its point, (n_pairs,).
+
+        By the pairs' stiffnesses or bounds, or else by their areas.
+        """
         softness = self.tangential.softness
         if softness is None:
             along = self.tangential.highest.max(axis=1)
@@ -293,7 +313,7 @@ class Contact(Interface):
         return 1.0 / np.bincount(self.points)[self.points]
 
     def macro_parts(self) -> Iterator[MacroPart]:
-        """Macro forces of both sides, which cancel, component by component."""
+        """Macro forces of both sides, in equilibrium, component by component."""
         if self.macro is None:
             return
         basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
@@ -301,26 +321,25 @@ class Contact(Interface):
             yield MacroPart(np.concatenate(component.sides), basis)
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
-        """Compare the forces of both sides; where they move is what the law is about.
+        """Violation of the balance of both sides' forces, as `Interface.gaps`.
 
-        Where a part of it is none that is known here, its local stage alone says what
-        it is about.
+        Displacements obey no linear law at a contact. Where a part is of a user's
+        subclass, the local stage finds all violations.
         """
         if self.incremental_form() is None:
             return super().gaps(displacement, force, noise, k)
         if self.is_on_support:
             return Gaps()
-        sums = (
-            sum(force[rows] for rows in component.sides)
-            for component in self.components
-        )
-        return Gaps(
-            force=sum(squared(beyond(np.asarray(missing), noise)) for missing in sums)
-        )
+        unbalanced = 0.0
+        for component in self.components:
+            missing = sum(force[rows] for rows in component.sides)
+            unbalanced += squared(beyond(np.asarray(missing), noise))
+        return Gaps(force=unbalanced)
 
     def behaviour(self, displacement: Array, force: Array, noise: float) -> Behaviour:
         """Prepare the check of W and F against the law; parameters as of `gaps`."""
-        opening = pressing = None
+        opening = None
+        pressing = None
         if self.normal is not None:
             pressing = beyond(force[self.normal.component.above], noise)
             opening = beyond(self.normal.opening(displacement, force), 2.0 * noise)
@@ -328,10 +347,8 @@ class Contact(Interface):
         before: Array | float = 0.0
         if start is not None:
             before = start[:, None]
-        moved = np.diff(
-            self.tangential.slider(displacement, force), axis=1, prepend=before
-        )
-        slip = beyond(moved, 2.0 * noise)
+        slider = self.tangential.slider(displacement, force)
+        slip = beyond(np.diff(slider, axis=1, prepend=before), 2.0 * noise)
         return Behaviour(
             slip=slip,
             friction=force[self.tangent.above],
@@ -341,19 +358,26 @@ class Contact(Interface):
         )
 
     def capacity(self, held: NDArray[np.bool_]) -> float:
-        """Largest friction force that it can ever carry without pressing, beside the held rows."""
+        """Largest friction force without pressing of pairs not held, scaled.
+
+        `held` is a mask of all rows, (n_rows,).
+        """
         return float(self.tangential.bound.max(axis=1)[~held[self.tangent.above]].sum())
 
     def carried(self, force: Array) -> float:
-        """Largest force on a pair where it may open, of the force of all rows."""
-        rows = [component.above for component in self.components if self.opens]
-        return max((float(np.abs(force[above]).max()) for above in rows), default=0.0)
+        """Largest force on a pair of a contact that may open, else 0.
+
+        `force` is that of all rows, (n_rows, n_instants), scaled.
+        """
+        if not self.opens:
+            return 0.0
+        rows = [component.above for component in self.components]
+        return max(float(np.abs(force[above]).max()) for above in rows)
 
     @property
     def is_moved(self) -> bool:
-        """Whether the bodies overlap, or sliders stand elsewhere, before anything is given."""
-        overlaps = self.normal is not None and bool(
-            self.normal.gap.min(initial=0.0) < 0.0
-        )
+        """Check whether bodies overlap or sliders are displaced before all loads."""
+        if self.normal is not None and self.normal.gap.min(initial=0.0) < 0.0:
+            return True
         start = self.tangential.start
-        return overlaps or (start is not None and bool(start.any()))
+        return start is not None and bool(start.any())

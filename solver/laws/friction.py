@@ -28,12 +28,12 @@ from solver.laws.play import Strength
 from solver.refusal import RefusedError
 
 OPENED = 1e-9
-"""Opening, as a share of the largest normal jump, from which on a bond is broken."""
+"""Largest opening of an intact bond, as a share of the largest opening."""
 
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """What a structure chooses of friction, beside mu and pressure; by default Coulomb's law.
+    """Parameters of the friction law beside mu and pressure; by default Coulomb's law.
 
     "Area" is the tributary length along a rod, in m, and the area of a metre of
     thickness in the plane, in m^2.
@@ -41,20 +41,20 @@ class FrictionLaw:
     Attributes
     ----------
     stiffness
-        k_t per area, N/m over m or m^2; infinite where nothing gives way.
+        k_t per area, N/m over m or m^2; infinite without a spring.
     normal_stiffness
-        The same across the interface, where contact may open.
+        k_n per area across the interface, where contact may open; infinite likewise.
     cohesion
         Friction force per area without pressure, N/m or Pa.
     cap
         Largest friction force per area, before slip; N/m or Pa.
     strength
-        Factor on the bound over accumulated slip; None where slip changes nothing.
+        Factor on the bound over accumulated slip; None where slip does not change it.
 
     Raises
     ------
     RefusedError
-        For stiffnesses or a cap that are not above zero, or a cohesion below.
+        For stiffnesses or a cap that are not above zero, or a cohesion below zero.
     """
 
     stiffness: float = np.inf
@@ -83,10 +83,12 @@ class FrictionLaw:
         known: Array | None = None,
         friction: Array | None = None,
     ) -> Friction:
-        """Law at the pairs of an interface, by their rows and tributary areas, (n_pairs,).
+        """Friction at the pairs of an interface.
 
-        `scales` are the units of length, m, and of force, N. `known` is the friction
-        force that known pressure makes, scaled, (n_pairs, n_instants) or (n_pairs, 1);
+        `component` has their rows, `weights` their tributary areas, (n_pairs,), m or
+        m^2. `scales` are the units of length, m, and of force, N. `known` is the
+        friction force that known pressure makes, scaled, (n_pairs, n_instants) or
+        (n_pairs, 1);
         `friction` is mu of each pair, (n_pairs,), where pressure is not known.
         """
         length, force = scales
@@ -116,10 +118,10 @@ class FrictionLaw:
         )
 
     def of_one_side(self) -> FrictionLaw:
-        """Law of a body on its image, which moves as much the other way.
+        """Law over the displacement of a body on its image, which moves the other way.
 
-        The body moves along by half of the slip, so that over its own displacement the
-        spring is twice as stiff, and the strength has changed after half as much.
+        The body moves by half of the slip, so that over its own displacement the spring
+        is twice as stiff, and the strength changes after half the slip.
         """
         strength = self.strength
         if strength is not None:
@@ -128,12 +130,15 @@ class FrictionLaw:
         return replace(self, stiffness=2.0 * self.stiffness, strength=strength)
 
     def without_slip(self, rubbed: Array, size: float = 1.0) -> Array:
-        """Largest friction force before slip, of what mu N makes, per area or of all of an area."""
+        """Largest friction force before slip, of the shape of `rubbed`, mu N.
+
+        Both are forces, N, on an area `size`, m or m^2, or per area with size 1.
+        """
         return np.asarray(np.minimum(rubbed + self.cohesion * size, self.cap * size))
 
     @property
     def strongest(self) -> float:
-        """Largest factor that slip may make of that."""
+        """Largest factor on the bound at any slip."""
         if self.strength is None:
             return 1.0
         return max(self.strength.factors)
@@ -142,7 +147,11 @@ class FrictionLaw:
 def softness_of(
     stiffness: float, weights: Array, scales: tuple[float, float]
 ) -> Array | None:
-    """Compliance of pairs by their areas, (n_pairs,), scaled; None where nothing gives way."""
+    """Compliance of pairs, (n_pairs,), scaled; None for an infinite stiffness.
+
+    `stiffness` is per area, `weights` are the areas of the pairs, (n_pairs,), m or m^2,
+    `scales` the units of length, m, and of force, N.
+    """
     length, force = scales
     if np.isinf(stiffness):
         return None
@@ -151,15 +160,15 @@ def softness_of(
 
 @dataclass(frozen=True, kw_only=True)
 class Friction:
-    """The friction law at the pairs of an interface.
+    """Friction law at the pairs of an interface.
 
     Attributes
     ----------
     component
         Rows of the pairs.
     bound
-        r, the friction force of each pair that needs no pressing one, non-negative,
-        scaled: shape (n_pairs, n_instants), or (n_pairs, 1) where it stays the same.
+        r, the friction force of each pair without pressing, non-negative, scaled: shape
+        (n_pairs, n_instants), or (n_pairs, 1) where it is constant.
     friction
         Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the
         pressure is known.
@@ -168,9 +177,9 @@ class Friction:
     softness
         1 / k_t of each pair, (n_pairs,), scaled; None if there is none.
     strength
-        Factor over accumulated slip, scaled; None where slip changes nothing.
+        Factor over accumulated slip, scaled; None where slip does not change the bound.
     start
-        Where every slider stands before the first instant, (n_pairs,), scaled; None is
+        Position of every slider before the first instant, (n_pairs,), scaled; None is
         zero.
     """
 
@@ -207,17 +216,20 @@ class Friction:
         return np.asarray(jump + self.softness[:, None] * force[self.component.above])
 
     def begun(self, start: Array) -> Friction:
-        """Law whose sliders stand elsewhere before the first instant, (n_pairs,), scaled.
+        """The law with initial positions of its sliders, (n_pairs,), scaled.
 
         Raises
         ------
         RefusedError
-            If it remembers more than that.
+            If the law remembers more than these positions.
         """
         if self.strength is not None or (self.bound.any() and self.friction.any()):
+            kind = "general"
+            if self.strength is not None:
+                kind = "slip-dependent"
             raise RefusedError(
                 "friction_law",
-                "slip-dependent" if self.strength is not None else "general",
+                kind,
                 "a law that remembers nothing but where its sliders stand",
                 "solve the whole interval at once, or take Coulomb's friction",
             )
@@ -226,10 +238,11 @@ class Friction:
     def without_slip(
         self, pressing: Array | None, opening: Array | None = None
     ) -> Array:
-        """Largest friction force before slip, (n_pairs, n_instants), or as the bound is.
+        """Largest friction force before slip, (n_pairs, n_instants), scaled.
 
-        By the force that presses, None where the pressure is known, and the distance of
-        the sides where it may break a bond; both (n_pairs, n_instants).
+        With a known pressure it has the shape of the bound. `pressing` is the pressing
+        force, None where the pressure is known, `opening` the distance of the sides
+        where it may break a bond; both (n_pairs, n_instants), scaled.
         """
         bound = self.bound
         if pressing is not None:
@@ -243,7 +256,7 @@ class Friction:
     def allowed(
         self, pressing: Array | None, slip: Array, opening: Array | None = None
     ) -> Array:
-        """Largest friction force, shape (n_pairs, n_instants), after increments of slip."""
+        """Largest friction force after increments of slip, (n_pairs, n_instants)."""
         bound = np.broadcast_to(self.without_slip(pressing, opening), slip.shape)
         if self.strength is None:
             return bound
@@ -251,14 +264,14 @@ class Friction:
 
     @property
     def highest(self) -> Array:
-        """Largest value that slip may give the known part of the bound, of its shape."""
+        """Largest known part of the bound at any slip, of the shape of the bound."""
         if self.strength is None:
             return self.bound
         return self.bound * max(self.strength.factors)
 
     @property
     def steepest_fall(self) -> Array:
-        """Largest force by which a known bound falls per slip, shape (n_pairs,)."""
+        """Largest fall of a known bound per slip, shape (n_pairs,), scaled."""
         if self.strength is None:
             fall = 0.0
         else:
@@ -267,18 +280,21 @@ class Friction:
 
     @property
     def softens(self) -> bool:
-        """Whether the bound falls with slip anywhere."""
+        """Check whether the bound falls with slip anywhere."""
         return self.strength is not None and bool(self.strength.slopes.min() < 0.0)
 
     def during(self, instants: slice) -> Friction:
-        """Law of some instants alone."""
+        """The law restricted to a range of instants."""
         if self.bound.shape[1] == 1:
             return self
         return replace(self, bound=self.bound[:, instants])
 
 
 def is_intact(opening: Array, pressing: Array) -> Array:
-    """1 up to the first instant at which a pair has opened, then 0; (n_pairs, n_instants) all."""
+    """1 while a bond is intact, and 0 from the first opening on.
+
+    Opening, pressing force, scaled, and result are (n_pairs, n_instants).
+    """
     noise = OPENED * float(np.abs(opening).max(initial=0.0))
     is_closed = (opening <= noise) | (pressing > 0.0)
     return np.asarray(np.logical_and.accumulate(is_closed, axis=1), dtype=float)

@@ -1,4 +1,4 @@
-"""What interfaces of every law have: components, search directions, rules, gaps."""
+"""The `Interface` of substructures: components, search directions, rules, gaps."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ if TYPE_CHECKING:
 
 
 class Component(NamedTuple):
-    """Rows of one component of the jump, (n_pairs,): of the body above, and of that below.
+    """Rows of one component of the jump, (n_pairs,) on each side.
 
-    Each is opposite its partner; there are none below on a rigid support.
+    Each row of the body above is opposite one of the body below; a rigid support below
+    has no rows (None).
     """
 
     above: Indices
     below: Indices | None = None
 
     def jump(self, field: Array) -> Array:
-        """A row field above minus that below, shape (n_pairs, ...)."""
+        """A field, (n_rows, ...), above minus below, shape (n_pairs, ...)."""
         above: Array = field[self.above]
         if self.below is None:
             return above
@@ -35,14 +36,17 @@ class Component(NamedTuple):
 
     @property
     def sides(self) -> tuple[Indices, ...]:
-        """Rows of both sides, or of the one there is."""
+        """Rows of both sides, or of the side above on a support, (n_pairs,) each."""
         if self.below is None:
             return (self.above,)
         return (self.above, self.below)
 
 
 class Springs:
-    """Search directions of a component, springs of both sides: 1/k in all `soft`, (n_pairs, 1)."""
+    """Search directions of a component: springs on both sides, in series.
+
+    Their compliance together is `soft`, (n_pairs, 1), from k of all rows, (n_rows,).
+    """
 
     def __init__(self, component: Component, k: Array) -> None:
         self._above = as_slice(component.above)
@@ -56,7 +60,7 @@ class Springs:
             self._share_below = soft_below / self.soft
 
     def jump(self, incoming: Array) -> Array:
-        """Z of the jump, shape (n_pairs, n_instants)."""
+        """Jump of z, shape (n_pairs, n_instants), scaled, from z of all rows."""
         above: Array = incoming[self._above]
         if self._below is None:
             return above
@@ -65,7 +69,11 @@ class Springs:
     def close(
         self, incoming: Array, jump: Array, held: Array, displacement: Array
     ) -> None:
-        """Write W^ of both sides, with which the jump is `held` instead of `jump`."""
+        """Write W^ of both sides, with which the jump is `held` instead of `jump`.
+
+        Fields of all rows are (n_rows, n_instants), jumps (n_pairs, n_instants),
+        scaled.
+        """
         if self._share_below is None:
             displacement[self._above] = held
             return
@@ -76,10 +84,14 @@ class Springs:
 
 
 class MacroPart(NamedTuple):
-    """Rows (n,) of both sides whose macro forces are in equilibrium (paper, eq. 1).
+    """Macro forces in equilibrium on rows of both sides (paper, eq. 1).
 
-    With their basis, (n, n_macro), and the macro force from outside, (n_macro,
-    n_instants); None is zero.
+    Attributes
+    ----------
+    rows, basis
+        Rows, (n,), and their macro basis, (n, n_macro).
+    load
+        Macro force from outside, (n_macro, n_instants), scaled; None is zero.
     """
 
     rows: Indices
@@ -88,21 +100,21 @@ class MacroPart(NamedTuple):
 
 
 Rule = Callable[[Array, Array, slice], None]
-"""A law that is ready for one k, in the local stage (paper, problem 2.1): from z = W -
-F/k of all rows, (n_rows, n), it writes W^ of the interface's rows alone into the
-second, of the same shape. The last says which n instants these are; all of them where
-the law remembers."""
+"""Local stage of a law for one k (paper, problem 2.1). The first argument is z of all
+rows, W - F/k, (n_rows, n); the rule writes W^ of the interface's rows into the second,
+of the same shape. The third is the range of these n instants: all instants where the
+law remembers."""
 
 
 class Gaps(NamedTuple):
-    """What is missing to continuity and to balance: sums of squares, scaled."""
+    """Violations of continuity and of balance: sums of squares, scaled."""
 
     displacement: float = 0.0
     force: float = 0.0
 
 
 class Given(NamedTuple):
-    """Values that are given at rows, (n_rows,): shape (n_rows, n_instants), scaled."""
+    """Values prescribed at rows, (n_rows,): shape (n_rows, n_instants), scaled."""
 
     rows: Indices
     values: Array
@@ -117,14 +129,14 @@ class Glued(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class IncrementalForm:
-    """Form in which a law enters the incremental problem: all that its solvers read of it.
+    """Form in which a law enters the incremental problem, as its solvers read it.
 
-    With nothing given the interface is free.
+    Without any of these the interface is free.
 
     Attributes
     ----------
     force, displacement
-        What is prescribed at rows.
+        Values prescribed at rows.
     glued
         Rows that share their degrees of freedom.
     contact
@@ -140,15 +152,15 @@ class IncrementalForm:
 class Interface(ABC):
     """An interface of substructures with each other or with the outside.
 
-    A law of one's own needs `rows` and a `rule`. LATIN solves it; a reference and a
-    certificate it has where its class says its `incremental_form`. A class inherits
-    nothing of `OF_ONE_LAW` from another law unless it says that form, as its local
-    stage may be a different one.
+    A user's law needs `rows` and a `rule`: then LATIN solves it. The problem has a
+    reference and a certificate only where the class defines `incremental_form`. A class
+    inherits the methods `OF_ONE_LAW` from another law only if it defines that form, as
+    its local stage may be a different one.
 
     Attributes
     ----------
     rows
-        All its rows.
+        All rows of the interface, (n,).
     remembers
         Whether its law ties the instants to each other.
     """
@@ -157,7 +169,7 @@ class Interface(ABC):
     remembers = False
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Begin anew where a class does not say that what is known of its base holds for it."""
+        """Reset methods `OF_ONE_LAW` of a class without its own incremental form."""
         super().__init_subclass__(**options)
         if "incremental_form" in vars(cls):
             return
@@ -166,39 +178,38 @@ class Interface(ABC):
                 setattr(cls, name, vars(Interface)[name])
 
     def incremental_form(self) -> IncrementalForm | None:
-        """The form in which the law enters the incremental problem; None where it has none."""
+        """Form in which the law enters the incremental problem, or None."""
         return None
 
     @property
     def n_instants(self) -> int | None:
-        """Number of instants that its values are for; None where they are for any."""
+        """Number of instants of the law's values; None where they fit any number."""
         return None
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join interfaces of one law that may be treated as one: points know none."""
+        """Join interfaces of one law, without macro bases, if they can be joined."""
         return list(laws)
 
     @abstractmethod
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Prepare the law for one k and so many instants."""
+        """Prepare the local stage for k of all rows, (n_rows,), scaled."""
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
-        """How much W and F of all rows, (n_rows, n_instants), miss continuity and balance by.
+        """Violations of continuity and balance by W and F, (n_rows, n_instants).
 
-        What is less than `noise` is rounding. By the local stage itself, unless a law
-        knows better: from W - F/k it finds W and F again if they obey the law, whatever
-        k of the rows, (n_rows,), it is.
+        Values up to `noise` are rounding. By default the local stage finds violations:
+        from W - F/k it gives W and F again if they obey the law, for any k, (n_rows,).
         """
         return gaps_of_rule(self, displacement, force, noise, k)
 
     def during(self, instants: slice) -> Self:
-        """Law of some instants alone; where bodies stand before them is another matter.
+        """The law restricted to a range of instants (initial sliders are not set).
 
         Raises
         ------
         RefusedError
-            If the law does not say what it is then.
+            If the law does not define it.
         """
         raise RefusedError(
             f"{type(self).__name__}.during",
@@ -213,44 +224,49 @@ class Interface(ABC):
 
 
 OF_ONE_LAW = "incremental_form", "together", "gaps", "during", "macro_parts"
-"""Methods that belong to one local stage, and to no other that a subclass may have."""
+"""Methods that depend on the local stage, and may be wrong for that of a subclass."""
 
 
 def gaps_of_rule(
     law: Interface, displacement: Array, force: Array, noise: float, k: Array
 ) -> Gaps:
-    """Gaps of W and F to the law by its local stage along k; parameters as `Interface.gaps`."""
+    """Violations of a law by W and F, from its local stage; as `Interface.gaps`."""
     incoming = displacement - force / k[:, None]
     local = displacement.copy(order="F")
     law.rule(k, displacement.shape[1])(incoming, local, slice(None))
     stiffness = k[law.rows, None]
-    # Rounding of W and of F both move the place from which the local stage starts.
-    apart = beyond(
-        local[law.rows] - displacement[law.rows], noise * (1.0 + 1.0 / stiffness)
-    )
+    # Rounding of W and of F both move the z from which the local stage starts.
+    rounding = noise * (1.0 + 1.0 / stiffness)
+    apart = beyond(local[law.rows] - displacement[law.rows], rounding)
     return Gaps(displacement=squared(apart), force=squared(stiffness * apart))
 
 
 def joined(parts: Sequence[Any]) -> Any:
-    """Laws of one kind as one: arrays of pairs one after the other, all else as in the first."""
+    """Concatenate laws of one kind, or their fields.
+
+    Arrays, (n_pairs, ...), follow each other; other values are those of the first.
+    """
     first = parts[0]
     kind = cast(Any, type(parts[0]))
     if isinstance(first, np.ndarray):
         return in_rows(parts)
     if isinstance(first, Component):
-        return Component(*map(joined, zip(*parts, strict=True)))
+        sides = [joined(side) for side in zip(*parts, strict=True)]
+        return Component(*sides)
     if not is_dataclass(first):
         return first
-    names = [field.name for field in fields(first)]
-    return kind(**{n: joined([getattr(part, n) for part in parts]) for n in names})
+    values = dict[str, Any]()
+    for field in fields(first):
+        values[field.name] = joined([getattr(part, field.name) for part in parts])
+    return kind(**values)
 
 
 def beyond(field: Array, noise: float | Array) -> Array:
-    """A field in which what may be rounding is zero."""
+    """A field with zero in place of values up to `noise`, of the same shape."""
     return np.where(np.abs(field) > noise, field, 0.0)
 
 
 def squared(field: Array) -> float:
-    """Sum of the squares of a field."""
+    """Sum of the squares of a field of any shape."""
     numbers = field.ravel(order="K")  # without a copy, however it lies in memory
     return float(np.dot(numbers, numbers))

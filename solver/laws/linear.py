@@ -1,4 +1,4 @@
-"""Linear laws: prescribed displacements and forces, and glued cuts (solver/README.md, 2)."""
+"""Linear laws: prescribed displacements, forces, glued cuts (solver/README.md, 2)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from solver.laws.interface import (
 
 @dataclass(frozen=True)
 class _Given(Interface):
-    """What is given at boundary rows, (n_rows,): values of (n_rows, n_instants), scaled."""
+    """Values, (n_rows, n_instants), scaled, prescribed at boundary rows, (n_rows,)."""
 
     rows: Indices
     values: Array
@@ -36,12 +36,12 @@ class _Given(Interface):
         check(self, values=Numbers(((len(self.rows), None),)))
 
     def during(self, instants: slice) -> Self:
-        """Law of some instants alone."""
+        """The law restricted to a range of instants."""
         return replace(self, values=self.values[:, instants])
 
     @property
     def n_instants(self) -> int:
-        """Number of instants that the values are for."""
+        """Number of instants of the values."""
         return int(self.values.shape[1])
 
 
@@ -50,11 +50,11 @@ class Dirichlet(_Given):
     """Prescribed displacement."""
 
     def incremental_form(self) -> IncrementalForm:
-        """Displacements that are given."""
+        """Prescribed displacements."""
         return IncrementalForm(displacement=Given(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """W^ is the displacement that is prescribed."""
+        """Local stage in which W^ is the prescribed displacement."""
         rows = as_slice(self.rows)
         given = self.values
 
@@ -64,15 +64,14 @@ class Dirichlet(_Given):
         return prescribe
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
-        """Compare the displacement with that prescribed."""
-        return Gaps(
-            displacement=squared(beyond(displacement[self.rows] - self.values, noise))
-        )
+        """Compare the displacement with the prescribed one, as `Interface.gaps`."""
+        missing = displacement[self.rows] - self.values
+        return Gaps(displacement=squared(beyond(missing, noise)))
 
 
 @dataclass(frozen=True)
 class Neumann(_Given):
-    """Prescribed nodal forces on the body, with a macro basis of shape (n_rows, n_macro)."""
+    """Prescribed nodal forces on the body, and a macro basis, (n_rows, n_macro)."""
 
     macro: Array
 
@@ -81,11 +80,11 @@ class Neumann(_Given):
         check(self, macro=Numbers(((len(self.rows), None),)))
 
     def incremental_form(self) -> IncrementalForm:
-        """Forces that are given."""
+        """Prescribed forces."""
         return IncrementalForm(force=Given(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Move by F_d / k."""
+        """Local stage in which W^ is z plus F_d / k."""
         rows = as_slice(self.rows)
         moved = self.values / k[self.rows, None]
 
@@ -95,7 +94,7 @@ class Neumann(_Given):
         return push
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
-        """Compare the force with that prescribed."""
+        """Compare the force with the prescribed one, as `Interface.gaps`."""
         return Gaps(force=squared(beyond(force[self.rows] - self.values, noise)))
 
     def macro_parts(self) -> Iterator[MacroPart]:
@@ -105,7 +104,7 @@ class Neumann(_Given):
 
 @dataclass(frozen=True)
 class Perfect(Interface):
-    """A glued cut: rows of its two sides, (n_points,), and a macro basis, (n_points, n_macro)."""
+    """A glued cut: rows of both sides, (n_points,), basis, (n_points, n_macro)."""
 
     first: Indices
     second: Indices
@@ -119,44 +118,48 @@ class Perfect(Interface):
 
     @property
     def rows(self) -> Indices:  # type: ignore[override]  # others are given them
-        """Rows of both sides."""
+        """Rows of both sides, (2 n_points,)."""
         return np.concatenate([self.first, self.second])
 
     def incremental_form(self) -> IncrementalForm:
-        """Both sides as one."""
+        """Rows of both sides glued together."""
         return IncrementalForm(glued=Glued(self.first, self.second))
 
     def during(self, _instants: slice) -> Self:
-        """Law of some instants alone, which is that of all."""
+        """The law itself, which is the same at all instants."""
         return self
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join all cuts; the macro bases stay behind."""
+        """Join all cuts to one, without macro bases."""
         return [joined([replace(law, macro=law.macro[:, :0]) for law in laws])]
 
     def rule(self, k: Array, n_instants: int) -> Rule:
-        """Both sides move by the mean of their z, weighted by k (solver/README.md, 2)."""
+        """Local stage in which both sides move by the mean of their z, weighted by k.
+
+        See solver/README.md, 2; `k` is that of all rows, (n_rows,).
+        """
         first = as_slice(self.first)
         second = as_slice(self.second)
-        other = k[self.second]
-        k = k[self.first]
-        share = (k / (k + other))[:, None]
+        k_first = k[self.first]
+        k_second = k[self.second]
+        share = (k_first / (k_first + k_second))[:, None]
 
         def glue(incoming: Array, displacement: Array, _instants: slice) -> None:
-            below = incoming[second]
-            common = below + share * (incoming[first] - below)
+            other = incoming[second]
+            common = other + share * (incoming[first] - other)
             displacement[first] = common
             displacement[second] = common
 
         return glue
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
-        """Compare both sides."""
+        """Compare both sides, as `Interface.gaps`."""
         apart = _at(displacement, self.first) - _at(displacement, self.second)
         unbalanced = _at(force, self.first) + _at(force, self.second)
         return Gaps(
-            squared(beyond(apart, 2.0 * noise)), squared(beyond(unbalanced, noise))
+            displacement=squared(beyond(apart, 2.0 * noise)),
+            force=squared(beyond(unbalanced, noise)),
         )
 
     def macro_parts(self) -> Iterator[MacroPart]:
@@ -165,5 +168,5 @@ class Perfect(Interface):
 
 
 def _at(field: Array, rows: Indices) -> Array:
-    """Rows of a field that is contiguous in space, as it lies in memory: (n_times, n)."""
+    """Rows, (n,), of a field, (n_rows, n_times), as in memory: (n_times, n)."""
     return np.take(field.T, rows, axis=1)

@@ -31,9 +31,7 @@ def play(target: Array, reach: Array) -> Array:
     -------
     Position with friction, shape (n_points, n_times), m (solver/README.md, 2).
     """
-    if reach.ndim == target.ndim:
-        reach = reach
-    else:
+    if reach.ndim < target.ndim:
         reach = reach[:, None]
     result: Array = Play(*target.shape)(target, reach).copy()
     return result
@@ -42,9 +40,11 @@ def play(target: Array, reach: Array) -> Array:
 class Play:
     """The play operator for one size: compose inside all blocks, carry across, apply.
 
-    It begins at `start`, shape (n_points,), or at zero. `composed[j, 0]` and
-    `composed[j, 1]` are the clip of the first j + 1 instants of every block: what the
-    block makes of a point that enters it far below, or far above.
+    The positions begin at `start`, shape (n_points,), or at zero.
+
+    A clip is a lower and an upper limit. `_composed[j, 0]` and `_composed[j, 1]` are
+    the limits of the clip that the first j + 1 instants of every block make together:
+    the positions of a point that enters the block far below, or far above.
     """
 
     def __init__(self, n_points: int, n_times: int, start: Array | None = None) -> None:
@@ -52,9 +52,8 @@ class Play:
         blocks = -(-n_times // size)
         self._limits = np.zeros((2, blocks, size, n_points))
         low, high = self._limits
-        self._low, self._high = (
-            limit.reshape(-1, n_points)[:n_times] for limit in self._limits
-        )
+        self._low = low.reshape(-1, n_points)[:n_times]
+        self._high = high.reshape(-1, n_points)[:n_times]
         self._composed = np.zeros((size, 2, blocks, n_points))
         self._steps = [
             (self._composed[j - 1], low[:, j], high[:, j], self._composed[j])
@@ -71,7 +70,10 @@ class Play:
         self._result = self._position.reshape(-1, n_points)[:n_times]
 
     def __call__(self, target: Array, reach: Array) -> Array:
-        """Follow a target, with reach (n_points, n_times or 1); the next call overwrites it."""
+        """Follow a target, (n_points, n_times); the next call overwrites the positions.
+
+        `reach` has the shape of the target, or (n_points, 1).
+        """
         np.subtract(target, reach, out=self._low.T)
         np.add(target, reach, out=self._high.T)
         self._composed[0] = self._limits[:, :, 0]
@@ -94,14 +96,15 @@ class Strength:
     Attributes
     ----------
     slips
-        Ascending from 0, m, or scaled; beyond the last the factor stays.
+        Accumulated slips, ascending from 0, m, or scaled; beyond the last the factor
+        stays.
     factors
-        Non-negative, the first is 1; as many.
+        Factors at these slips, non-negative, the first is 1.
 
     Raises
     ------
     RefusedError
-        For other points.
+        For slips and factors that are not as above.
     """
 
     slips: tuple[float, ...]
@@ -113,12 +116,8 @@ class Strength:
         is_table = len(slips) == len(factors) >= 2 and np.all(
             np.isfinite([slips, factors])
         )
-        if not (
-            is_table
-            and slips[0] == 0.0
-            and factors[0] == 1.0
-            and np.all(np.diff(slips) > 0)
-        ):
+        begins_at_one = is_table and slips[0] == 0.0 and factors[0] == 1.0
+        if not begins_at_one or not np.all(np.diff(slips) > 0):
             raise RefusedError(
                 "strength",
                 list(zip(self.slips, self.factors, strict=False)),
@@ -131,7 +130,7 @@ class Strength:
             )
 
     def __call__(self, slip: Array) -> Array:
-        """Factor after accumulated slip, of any shape."""
+        """Factor after accumulated slip, of its shape, which is any."""
         factor: Array = np.interp(slip, self.slips, self.factors)
         return factor
 
@@ -147,12 +146,12 @@ class Strength:
         return np.asarray(np.append(0.0, np.cumsum(rises)))
 
     def rise(self, slip: Array) -> Array:
-        """Sum of the rises of the factor up to a slip, of any shape; the rest are falls."""
+        """Sum of the rises of the factor up to a slip, of any shape, without falls."""
         risen: Array = np.interp(slip, self.slips, self.rising)
         return risen
 
     def segment(self, slip: Array) -> Indices:
-        """Number of the point behind each slip, of any shape."""
+        """Number of the last point up to each slip, of any shape."""
         return np.asarray(np.searchsorted(self.slips, slip, side="right") - 1)
 
     def slope(self, slip: Array) -> Array:
@@ -160,7 +159,7 @@ class Strength:
         return np.asarray(self.slopes[self.segment(slip)])
 
     def lowest_slope(self, first: Array, last: Array) -> Array:
-        """Smallest growth per slip on the way from one slip to a larger one, shape (n,)."""
+        """Smallest slope between a first and a last slip, shape (n,) all."""
         passed = np.arange(len(self.slips))[:, None]
         on_way = (self.segment(first) <= passed) & (passed <= self.segment(last))
         lowest: Array = np.where(on_way, self.slopes[:, None], np.inf).min(axis=0)
@@ -168,48 +167,49 @@ class Strength:
 
 
 PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
-"""Of friction that slip does not change."""
+"""Factor of friction that slip does not change."""
 
 
 def follow(target: Array, reach: Array, strength: Strength) -> Array:
-    """Positions of sliders that follow a target with a reach that changes with their slip.
+    """Positions of sliders whose reach changes with the slip that they accumulate.
 
-    `target` is where they would be without friction, (n_points, n_instants); `reach`
-    how far each may stay behind before it has slipped, so or (n_points, 1); `strength`
-    a factor on it.
+    `target` are the positions without friction, (n_points, n_instants), m or scaled;
+    `reach` is the distance at which each starts to slip before it has slipped, of the
+    same shape or (n_points, 1); `strength` is a factor on the reach. Positions have the
+    shape and unit of the target.
     """
     positions = np.empty_like(target)
-    position, gone = np.zeros((2, len(target)))
+    position = np.zeros(len(target))
+    slipped = np.zeros(len(target))
     reaches = np.broadcast_to(reach, target.shape).T
-    for after, wanted, most in zip(positions.T, target.T, reaches, strict=True):
-        away = wanted - position
-        slip = _slip(np.abs(away), most, gone, strength)
-        position = position + np.sign(away) * slip
-        gone = gone + slip
+    for after, wanted, limit in zip(positions.T, target.T, reaches, strict=True):
+        distance = wanted - position
+        slip = _slip(np.abs(distance), limit, slipped, strength)
+        position = position + np.sign(distance) * slip
+        slipped = slipped + slip
         after[:] = position
     return positions
 
 
-def _slip(distance: Array, reach: Array, gone: Array, strength: Strength) -> Array:
-    """Smallest slip a >= 0 of one instant with a + reach g(gone + a) = distance, shape (n,).
+def _slip(distance: Array, reach: Array, slipped: Array, strength: Strength) -> Array:
+    """Smallest slip a >= 0 with a + reach g(slipped + a) = distance, shape (n,) all.
 
     The left side is linear in a between the points of g. Where it falls with a, as
     friction softens faster than the search direction unloads, and the distance is
     within reach, the point sticks.
     """
     slip = np.zeros_like(distance)
-    missing = distance - reach * strength(gone)
+    missing = distance - reach * strength(slipped)
+    # Points whose slip is not found yet, segment after segment of g.
     left = missing > 0.0
     for end in strength.slips[1:]:
-        ahead = np.maximum(end - gone, slip)
-        after = distance - ahead - reach * strength(gone + ahead)
+        ahead = np.maximum(end - slipped, slip)
+        after = distance - ahead - reach * strength(slipped + ahead)
         ends = left & (after <= 0.0)
-        share = np.divide(
-            missing, missing - after, out=np.zeros_like(after), where=ends
-        )
-        slip = np.where(
-            ends, slip + share * (ahead - slip), np.where(left, ahead, slip)
-        )
+        zeros = np.zeros_like(after)
+        share = np.divide(missing, missing - after, out=zeros, where=ends)
+        within = slip + share * (ahead - slip)
+        slip = np.where(ends, within, np.where(left, ahead, slip))
         left &= ~ends
         missing = after
     return np.where(left, distance - reach * strength.factors[-1], slip)

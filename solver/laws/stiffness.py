@@ -1,4 +1,4 @@
-"""What is around an interface with friction, and the search direction k that suits it.
+"""Stiffness beside an interface with friction, and the search direction k for it.
 
 Small k converges fast globally and slowly locally, large k the reverse
 (solver/README.md, 5).
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from solver.laws.contact import Contact
 
 FRICTION_FACTOR = 2.0
-"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s
-and ES/h. Of sines and decaying cycles 1 % of friction force takes at most 23 iterations
-with 2, 28 with 1, 43 with 4 (measured)."""
+"""k of a friction point over the geometric mean of the two stiffnesses ES/s and ES/h.
+Of sines and decaying cycles 1 % of friction force takes at most 23 iterations with 2,
+28 with 1, 43 with 4 (measured)."""
 CONTACT_STIFFNESS = 7.0
 """k per area of a contact in the plane, times its length over E. 1 % of the contact
 force takes 8 to 14 iterations, with twice as much up to 20 (measured)."""
@@ -29,15 +29,15 @@ slopes 1 % of the contact force takes 8 to 18 iterations, and 29 to more than 12
 the k of a contact, which keeps the body from sliding (measured)."""
 RESOLVED = 96.0
 FINER = 1.0 / 3.0
-"""Elements along a support from which its k grows with their number, and to which
-power: what is local is stiffer than the body as a whole. Of 768 x 384 elements on a
-parabola 1e-4 takes 52 iterations, 104 with a constant k (measured)."""
+"""Number of elements along a support above which its k grows with their number, and
+exponent of that growth: a body is locally stiffer than as a whole. Of 768 x 384
+elements on a parabola 1e-4 takes 52 iterations, 104 with a constant k (measured)."""
 SLIDING_BETWEEN_BODIES = 1.0 / 7.0
 """The tangential k between two bodies over the normal one: layers slide along their
 length. At most 45 iterations on those of `SLENDER`, 76 with half as much, 67 with
 twice."""
 SLENDER = 40.0
-"""How many times as long as thick two bodies in contact may be before k must be
+"""Ratio of length to thickness of two bodies in contact above which k must be
 smaller. Of layers 10 to 1000 times as long as thick 1 % of the contact force takes at
 most 45 iterations, more than 150 without (measured)."""
 
@@ -46,23 +46,23 @@ most 45 iterations, more than 150 without (measured)."""
 class Rod:
     """A rod along the interface.
 
-    What is global is the length s that is expected to slide, what is local the distance
-    h of its points. So k of a point is `FRICTION_FACTOR` times the geometric mean of
-    ES/s and ES/h, for which neither end is slower than the other, and a row's share of
-    it is by tributary length, so that cuts change nothing. Of the n contacts of a
-    strand only those of the broken wire slide far: s is a mean over all of them, and k
-    grows by sqrt(n). For 1 % of the friction force of 20 wires that takes 65 iterations
-    instead of 109 (measured). Where the section varies, ES is that around the point.
+    The global length of the problem is the length s that is expected to slide, the
+    local one the distance h of its points. So k of a point is `FRICTION_FACTOR` times
+    the geometric mean of ES/s and ES/h, for which neither of both converges more slowly
+    than the other; a row has its share by tributary length, so that cuts change
+    nothing. Of the n contacts of a strand only those of the broken wire slide far: s is
+    a mean over all of them, and k grows by sqrt(n). For 1 % of the friction force of 20
+    wires that takes 65 iterations instead of 109 (measured). Where the section varies,
+    ES is that around the point.
 
     Attributes
     ----------
     modulus
-        Stiffness of what rubs around each pair, shape (n_pairs,), scaled; None where it
-        is 1.
+        Stiffness of the rod around each pair, shape (n_pairs,), scaled; None is 1.
     elsewhere
-        Factor on the paper's k of all rows that do not rub.
+        Factor on the paper's k of all rows that are not at contacts.
     on_cuts
-        The same of those on cuts, beside it.
+        Further factor on the k of rows on cuts.
     """
 
     modulus: Array | None = None
@@ -75,7 +75,8 @@ class Rod:
     def choose(self, law: Contact, k: Array, parts: float) -> None:
         """Write the k of an interface into that of all rows, (n_rows,), scaled.
 
-        `parts` is the number of interfaces over the share of one that slides.
+        `parts` is the number of interfaces over the share of one that slides, `k` that
+        of all rows, which is changed in place.
         """
         length = law.weights.sum()
         spacing = length / max(len(law.positions) - 1, 1)
@@ -88,9 +89,10 @@ class Rod:
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """Bodies in the plane, above and below: k is that of a body as a whole, or of a point of it.
+    """Bodies in the plane, above and below an interface.
 
-    A smaller k on cuts along slender substructures is no better, where the macro basis
+    The stiffness beside it is that of a body as a whole, or of a point of the body. A
+    smaller k on cuts along slender substructures is no better, where the macro basis
     grows with their length (measured).
 
     Attributes
@@ -98,7 +100,7 @@ class Bodies:
     moduli
         Young's moduli above and below, scaled; infinite for a rigid support.
     depth
-        Across the interface, m; infinite where nothing limits it.
+        Depth of the bodies across the interface, m; infinite where nothing limits it.
     """
 
     moduli: tuple[float, float] = (1.0, float("inf"))
@@ -108,7 +110,7 @@ class Bodies:
     on_cuts: ClassVar[float] = 1.0
 
     def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of an interface, as `Rod.choose`.
+        """Write the k of an interface into that of all rows, as `Rod.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its
         depth d.
@@ -130,18 +132,19 @@ class Bodies:
                 k[rows] = modulus * stiffness * share
 
     def stick(self, law: Contact, k: Array) -> None:
-        """Write the k of two bodies that nowhere slip on each other.
+        """Write the k of two bodies that nowhere slip on each other, as `choose`.
 
-        They bend and stretch as one, but for what is as short as they are deep: which
-        resists with E / d per area of the softer, across and along. Of layers 200 to
-        1000 times as long as thick 1 % of the contact force takes 9 to 13 iterations,
-        43 to 55 with the k of `choose` (measured).
+        They bend and stretch as one body, except for deformations as short as their
+        depth d, which the softer body resists with E / d per area, across and along. Of
+        layers 200 to 1000 times as long as thick 1 % of the contact force takes 9 to 13
+        iterations, 43 to 55 with the k of `choose` (measured).
         """
         if law.is_on_support:
             return
         squeezed = min(self.moduli) * law.weights / self.depth
-        for rows in (rows for component in law.components for rows in component.sides):
-            k[rows] = np.maximum(k[rows], squeezed)
+        for component in law.components:
+            for rows in component.sides:
+                k[rows] = np.maximum(k[rows], squeezed)
 
     def _slender(self, law: Contact) -> float:
         """Factor on k between two bodies that are thin beside their length.

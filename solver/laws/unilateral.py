@@ -1,8 +1,8 @@
-"""Unilateral contact: the sides press where they would overlap, and open where they would pull.
+"""Unilateral contact: sides press on each other or open, and never overlap or pull.
 
-A compliance 1 / k_n may be in series: of the opening g and the pressing force N, g + N
-/ k_n >= 0, N >= 0, and one of them is zero; so along the search direction both springs
-share what is missing.
+A compliance 1 / k_n may be in series: with the opening g and the pressing force N, g +
+N / k_n >= 0, N >= 0, and one of the two is zero. In the local stage the spring k_n and
+the search direction's spring share an overlap.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from solver.laws.play import Play, follow
 
 @dataclass(frozen=True, kw_only=True)
 class Unilateral:
-    """The normal law at the pairs of an interface.
+    """Normal law at the pairs of an interface.
 
     Attributes
     ----------
@@ -47,9 +47,9 @@ class Unilateral:
         )
 
     def opening(self, displacement: Array, force: Array) -> Array:
-        """Distance of the sides and compression of the spring, (n_pairs, n_instants), scaled.
+        """Opening plus the spring's compression, (n_pairs, n_instants), scaled.
 
-        From W and F of all rows, (n_rows, n_instants).
+        From W and F of all rows, (n_rows, n_instants), scaled.
         """
         opening = self.component.jump(displacement) + self.gap[:, None]
         if self.softness is not None:
@@ -58,7 +58,7 @@ class Unilateral:
 
 
 class ContactRule:
-    """A contact in the local stage, for one k: pressing comes first, as it says what rubs."""
+    """Local stage of a contact for one k, (n_rows,): pressing first, then friction."""
 
     def __init__(
         self, normal: Unilateral | None, along: Friction, k: Array, n_instants: int
@@ -72,32 +72,33 @@ class ContactRule:
             self._pressed = _share(self._across.soft, normal.softness)
             self._bonds = bool(along.bound.any())
         soft = self._springs.soft
-        # The slider lags by the force over both springs, the jump by their own share of
-        # that.
+        # The slider stays behind z by the friction force over both springs in series;
+        # the jump by the share of the search direction's spring in that.
         if along.softness is None:
             self._lag = soft
         else:
             self._lag = soft + along.softness[:, None]
         self._share = _share(soft, along.softness)
         if along.cap is not None:
-            self._reach = None
+            self._known_slack = None
         else:
-            self._reach = np.asarray(along.bound * self._lag)
+            self._known_slack = np.asarray(along.bound * self._lag)
         self._grows = along.friction[:, None] * self._lag
         self._play = Play(len(along.bound), n_instants, along.start)
 
     def __call__(self, incoming: Array, displacement: Array, _instants: slice) -> None:
         """Write W^ of the rows, as `Rule`."""
-        pressing = opening = None
+        pressing = None
+        opening = None
         if self._normal is not None:
             pressing, opening = self._press(incoming, displacement)
         jump = self._springs.jump(incoming)
-        reach = self._reached(pressing, opening)
+        slack = self._slack(pressing, opening)
         strength = self._along.strength
         if strength:
-            slider = follow(jump, reach, strength)
+            slider = follow(jump, slack, strength)
         else:
-            slider = self._play(jump, reach)
+            slider = self._play(jump, slack)
         if self._share is None:
             held = slider
         else:
@@ -107,7 +108,10 @@ class ContactRule:
     def _press(
         self, incoming: Array, displacement: Array
     ) -> tuple[Array, Array | None]:
-        """Press where the sides would overlap: by which force, and how far bonds are open."""
+        """Write W^ across; return the pressing force, and the opening if bonds break.
+
+        Shape (n_pairs, n_instants) both, scaled.
+        """
         jump = self._across.jump(incoming)
         held = np.maximum(jump, self._closed)
         if self._bonds:
@@ -119,17 +123,24 @@ class ContactRule:
         self._across.close(incoming, jump, held, displacement)
         return (held - jump) / self._across.soft, opening
 
-    def _reached(self, pressing: Array | None, opening: Array | None) -> Array:
-        """How far the slider may stay behind z, (n_pairs, n_instants) or (n_pairs, 1)."""
-        if self._reach is not None and opening is None:
+    def _slack(self, pressing: Array | None, opening: Array | None) -> Array:
+        """Largest distance of the slider from z, scaled.
+
+        Shape (n_pairs, n_instants), as that of both parameters, or (n_pairs, 1).
+        """
+        if self._known_slack is not None and opening is None:
             if pressing is None:
-                return self._reach
-            return self._reach + self._grows * pressing
+                return self._known_slack
+            return self._known_slack + self._grows * pressing
         return np.asarray(self._along.without_slip(pressing, opening) * self._lag)
 
 
 def _share(soft: Array, softness: Array | None) -> Array | None:
-    """Share of the search direction's spring in what both give way by; None where it is alone."""
+    """Share of the search direction's compliance in that of both springs, (n_pairs, 1).
+
+    `soft` is its 1 / k, (n_pairs, 1), `softness` the law's compliance, (n_pairs,), or
+    None, as is the share then.
+    """
     if softness is None:
         return None
     return np.asarray(soft / (soft + softness[:, None]))

@@ -21,17 +21,18 @@ class Brick(NamedTuple):
     rows: int
 
     def nodes(self) -> tuple[slice, slice]:
-        """Its nodes along and up, among those of the grid."""
-        x = self.x
-        y = self.y
-        return slice(x, x + self.columns + 1), slice(y, y + self.rows + 1)
+        """Nodes along and up, among those of the grid."""
+        along = slice(self.x, self.x + self.columns + 1)
+        up = slice(self.y, self.y + self.rows + 1)
+        return along, up
 
 
 class Joint(NamedTuple):
-    """Where two rectangles touch, or one its support, between two ends on the grid, in elements.
+    """Line along which two rectangles, or a rectangle and its support, touch.
 
-    Of numbers of the one above, or to the right, and of the other; None is the support.
-    One between neighbours of a course is upright.
+    `above` is the number of the rectangle above or to the right, `below` that of the
+    other one; None is the support. `first` and `last` are its ends on the grid, in
+    elements. A joint between neighbours of a course is upright.
     """
 
     above: int
@@ -42,35 +43,37 @@ class Joint(NamedTuple):
 
     @property
     def sides(self) -> list[tuple[int, str]]:
-        """Rectangles of the joint and their sides there, the one above or to the right first."""
+        """Rectangles and their sides at the joint; the one above or right is first."""
         if self.is_upright:
-            above = "left"
-            below = "right"
+            side_above = "left"
+            side_below = "right"
         else:
-            above = "bottom"
-            below = "top"
-        return [
-            (self.above, above),
-            *([] if self.below is None else [(self.below, below)]),
-        ]
+            side_above = "bottom"
+            side_below = "top"
+        sides = [(self.above, side_above)]
+        if self.below is not None:
+            sides.append((self.below, side_below))
+        return sides
 
 
 def bonded(
     bond: Bond, columns: int, courses: int, size: tuple[int, int]
 ) -> list[Brick]:
-    """Bricks of a wall, course by course from below: of so many in a course, and courses.
+    """Bricks of a wall: `columns` in each of the `courses`, from below.
 
-    In a running bond every second course begins and ends with a half, in a stack bond
-    all joints are one above the other. `size` is elements of a brick along, even in a
-    running bond, and up.
+    In a running bond every second course begins and ends with half a brick, in a stack
+    bond all joints are one above the other. `size` is elements of a brick along, even
+    in a running bond, and up.
     """
     along, up = size
     bricks = []
     for course in range(courses):
-        halves = bond == "running" and course % 2 == 1
-        half = [along // 2] * halves
+        widths = [along] * columns
+        if bond == "running" and course % 2 == 1:
+            half = along // 2
+            widths = [half, *widths[1:], half]
         x = 0
-        for width in [*half, *[along] * (columns - halves), *half]:
+        for width in widths:
             bricks.append(Brick(x, course * up, width, up))
             x += width
     return bricks
@@ -82,37 +85,45 @@ def with_opening(
     bricks_along: tuple[int, int],
     courses: int,
 ) -> list[Brick]:
-    """Bricks round an opening that stands on the ground, so many courses high, with a lintel.
+    """Bricks of a wall round an opening on the ground, with a lintel over it.
 
-    Of the bricks of the whole wall and the elements of one, even along it;
-    `bricks_along` are the first of the lowest course that is left out, and the first
-    behind these. The lintel is the next course, and lies on half a brick at each end.
+    `bricks` are those of the whole wall, `size` the elements of one along, which are
+    even, and up. The opening is as many `courses` high, from the first of
+    `bricks_along` in the lowest course to before the second. The lintel is the next
+    course, and lies on half a brick at each end.
     """
     along, up = size
-    left, right = (number * along for number in bricks_along)
+    left = bricks_along[0] * along
+    right = bricks_along[1] * along
     half = along // 2
     lintel = Brick(left - half, courses * up, right - left + 2 * half, up)
-    found = [lintel]
+    around = [lintel]
     for brick in bricks:
         course = brick.y // up
-        end = brick.x + brick.columns
-        first = left
-        last = right
-        if course == courses:
-            first = lintel.x
-            last = lintel.x + lintel.columns
-        elif course > courses:
-            first = last = end
-        for start, stop in ((brick.x, min(end, first)), (max(brick.x, last), end)):
-            if stop > start:
-                found.append(brick._replace(x=start, columns=stop - start))
-    return sorted(found, key=lambda brick: (brick.y, brick.x))
+        if course < courses:
+            around += _beside(brick, left, right)
+        elif course == courses:
+            around += _beside(brick, lintel.x, lintel.x + lintel.columns)
+        else:
+            around.append(brick)
+    return sorted(around, key=lambda brick: (brick.y, brick.x))
+
+
+def _beside(brick: Brick, left: int, right: int) -> list[Brick]:
+    """Parts of a brick to the left, and to the right, of a range along, in elements."""
+    end = brick.x + brick.columns
+    parts = []
+    for first, last in ((brick.x, min(end, left)), (max(brick.x, right), end)):
+        if last > first:
+            parts.append(brick._replace(x=first, columns=last - first))
+    return parts
 
 
 def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indices:
-    """Group of each brick, of `count` groups: the largest is halved where it is longest.
+    """Group of each brick, (n_bricks,), of `count` groups of neighbours.
 
-    There are as many as bricks at most; `size` is elements of one along and up.
+    The largest group is halved across its longer direction until there are enough, or
+    as many as bricks. `size` is elements of a brick along and up.
     """
     x, y, columns, rows = np.array(bricks).T
     centres = np.stack([(x + 0.5 * columns) / size[0], (y + 0.5 * rows) / size[1]])
@@ -126,7 +137,7 @@ def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indic
 
 
 def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
-    """All joints of rectangles that do not overlap: with the support, beds, and upright ones."""
+    """All joints of rectangles that do not overlap, also those on the support."""
     lying = np.array(bricks).T
     upright = lying[[1, 0, 3, 2]]
     joints = []

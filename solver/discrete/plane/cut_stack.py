@@ -1,4 +1,4 @@
-"""Bodies in the plane, cut into rectangles: meshes, joints, boundary rows, and what loads them.
+"""Bodies in the plane, cut into rectangles: meshes, joints, boundary rows and loads.
 
 Lengths are scaled by the length of a body, stresses by E. Tractions act on the
 substructures themselves, and need no interface.
@@ -6,7 +6,7 @@ substructures themselves, and need no interface.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -32,12 +32,16 @@ SIDES = "left", "right", "bottom", "top"
 
 
 def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
-    """Where substructures end along a pile, in elements: at the cuts, and where a body ends."""
+    """Ends of substructures along a pile, in elements, (n_ends,), ascending.
+
+    0 is left out. Substructures end at the cuts of the longest body, and where any body
+    ends.
+    """
     return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
 
 
 class _Piece(NamedTuple):
-    """A substructure: its rectangle, its body, and its name in that of a cut."""
+    """A substructure: its rectangle, the number of its body, and its name in cuts."""
 
     rectangle: Brick
     body: int
@@ -46,32 +50,37 @@ class _Piece(NamedTuple):
 
 def _pieces(stack: Stack) -> Iterator[_Piece]:
     """All substructures, body by body and row by row."""
-    spans = [brick.columns for brick in stack.rectangles]
     for body, brick in enumerate(stack.rectangles):
-        cuts = stack.substructures
-        most = brick.columns
-        if stack.is_pile:
-            others = spans
-        else:
-            others = [most]
-        ends = ends_along(max(others), cuts[0], others)
-        across = [0, *ends[ends <= most].tolist()]
-        up = np.cumsum([0, *substructure_sizes(brick.rows, cuts[1])]).tolist()
-        if body:
-            of_body = f" of {body + 1}"
-        else:
-            of_body = ""
-        for row, (low, high) in enumerate(pairwise(up), start=1):
-            for column, (left, right) in enumerate(pairwise(across), start=1):
-                own = Brick(brick.x + left, brick.y + low, right - left, high - low)
-                yield _Piece(own, body, f"{column}.{row}{of_body}")
+        ends_across = _ends_across(stack, brick)
+        sizes_up = substructure_sizes(brick.rows, stack.substructures[1])
+        ends_up = np.cumsum([0, *sizes_up]).tolist()
+        of_body = f" of {body + 1}" if body else ""
+        for row, (low, high) in enumerate(pairwise(ends_up), start=1):
+            for column, (left, right) in enumerate(pairwise(ends_across), start=1):
+                rectangle = Brick(
+                    x=brick.x + left,
+                    y=brick.y + low,
+                    columns=right - left,
+                    rows=high - low,
+                )
+                yield _Piece(rectangle, body, f"{column}.{row}{of_body}")
+
+
+def _ends_across(stack: Stack, brick: Brick) -> list[int]:
+    """Ends of the substructures of a body along x, in elements from its left side."""
+    spans = [brick.columns]
+    if stack.is_pile:
+        spans = [each.columns for each in stack.rectangles]
+    ends = ends_along(max(spans), stack.substructures[0], spans)
+    return [0, *ends[ends <= brick.columns].tolist()]
 
 
 class _Trace(NamedTuple):
-    """Boundary rows along a side of a substructure, from its first node to before the last.
+    """Boundary rows along a part of a side of a substructure.
 
-    Of components 0 along x and 1 along y. Parts share no operator that differ in
-    whether macro forces are to balance there.
+    Nodes `first` to `last` of the side (without the last) have rows of the components:
+    0 along x and 1 along y. Substructures with the same traces share an operator; so
+    `has_macro` says whether macro forces balance there, as the operators then differ.
     """
 
     side: str
@@ -81,80 +90,133 @@ class _Trace(NamedTuple):
     has_macro: bool = False
 
     def dofs(self, rectangle: Rectangle) -> Indices:
-        """Degrees of freedom of a rectangle under the rows, shape (n_nodes, n_components)."""
+        """Degrees of freedom of a rectangle at the rows, (n_nodes, n_components)."""
         nodes = rectangle.edge(self.side)[self.first : self.last]
         return np.add.outer(2 * nodes, self.components)
 
+    def weights(self, rectangle: Rectangle) -> Array:
+        """Length that belongs to each row, (n_nodes * n_components,), scaled."""
+        lengths = rectangle.edge_weights(self.side)[self.first : self.last]
+        return lengths.repeat(len(self.components))
+
+
+def _numbered(
+    traces: Mapping[Hashable, _Trace], mesh: Rectangle, first: int
+) -> dict[Hashable, Indices]:
+    """Row numbers of each trace, (n_nodes, n_components), counted from `first`."""
+    numbers = dict[Hashable, Indices]()
+    for name, trace in traces.items():
+        shape = trace.dofs(mesh).shape
+        count = shape[0] * shape[1]
+        numbers[name] = first + np.arange(count).reshape(shape)
+        first += count
+    return numbers
+
+
+def _node_numbers(grids: Sequence[Array]) -> list[Indices]:
+    """Numbers of the nodes of each body among those of all, (n_rows, n_columns)."""
+    numbers = list[Indices]()
+    first = 0
+    for grid in grids:
+        rows, columns, _ = grid.shape
+        count = rows * columns
+        numbers.append(np.arange(first, first + count).reshape(rows, columns))
+        first += count
+    return numbers
+
 
 class CutStack:
-    """Bodies, cut into rectangles.
+    """A stack cut into rectangular substructures.
 
     Search direction: E / l_sub per area, with l_sub the geometric mean of a part's
     sides, for cuts, contacts and supports alike (the paper's ES / l_sub). Equal parts
     share their operator.
 
-    All nodes have scaled `positions`, body by body, shape (n_nodes, 2). The `parts`
-    come body by body and row by row; boundary rows are numbered part by part and side
-    by side. The `pairs` of a joint are their numbers on the grid of all nodes, and the
-    scaled length of each.
+    Attributes
+    ----------
+    positions
+        Coordinates of all nodes, body by body, shape (n_nodes, 2), scaled.
+    parts
+        Substructures, body by body and row by row; boundary rows are numbered part by
+        part and side by side.
+    pairs
+        Of each joint the numbers of its nodes along the grid of all elements, and the
+        length that belongs to each, scaled; shape (n_pairs,) both.
     """
 
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
-        columns, rows = stack.grid
         height = stack.height / stack.length
-        self._element = 1.0 / stack.elements[0], height / stack.elements[1]
-        x = np.linspace(0.0, columns / stack.elements[0], columns + 1)
-        y = np.linspace(0.0, rows * height / stack.elements[1], rows + 1)
-        nodes = list[Indices]()
-        positions = list[Array]()
-        first = 0
+        self._element = (1.0 / stack.elements[0], height / stack.elements[1])
+        grids = self._grids()
+        self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
+        self._pieces = list(_pieces(stack))
+        joints = self._joints()
+        self._touched = {side for joint in joints for side in joint.sides}
+        self.pairs = self._paired(joints)
+        # Equal substructures share a mesh and an operator.
+        self._mesh = cache(self._mesh_of)
+        self._operator = cache(self._operator_of)
+        self.parts = list(self._parts(_node_numbers(grids)))
+
+    def _grids(self) -> list[Array]:
+        """Positions of the nodes of each body, (n_rows, n_columns, 2), scaled."""
+        stack = self.stack
+        columns, rows = stack.grid
+        width = columns / stack.elements[0]
+        height = rows * (stack.height / stack.length) / stack.elements[1]
+        x = np.linspace(0.0, width, columns + 1)
+        y = np.linspace(0.0, height, rows + 1)
+        grids = list[Array]()
         for brick in stack.rectangles:
             along, up = brick.nodes()
-            everywhere = np.stack(np.meshgrid(x[along], y[up]), axis=-1)
-            positions.append(everywhere.reshape(-1, 2))
-            count = len(positions[-1])
-            nodes.append(np.arange(first, first + count).reshape(everywhere.shape[:2]))
-            first += count
-        self.positions = np.concatenate(positions)
-        self._pieces = list(_pieces(stack))
+            grids.append(np.stack(np.meshgrid(x[along], y[up]), axis=-1))
+        return grids
+
+    def _joints(self) -> list[Joint]:
+        """Joints of substructures; those with a support only where there is one."""
         joints = joints_of([piece.rectangle for piece in self._pieces])
-        joints = [one for one in joints if one.below is not None or stack.support]
-        self._touched = {place for joint in joints for place in joint.sides}
-        every = ((joint, self._pairs_of(joint)) for joint in joints)
-        self.pairs = {joint: pairs for joint, pairs in every if len(pairs[0])}
-        self._mesh, self._operator = cache(self._mesh_of), cache(self._operator_of)
-        self.parts: list[Part] = []
+        if self.stack.support is not None:
+            return joints
+        return [joint for joint in joints if joint.below is not None]
+
+    def _paired(self, joints: Sequence[Joint]) -> dict[Joint, tuple[Indices, Array]]:
+        """Pairs of nodes of those joints that have any, as `pairs`."""
+        pairs = {joint: self._pairs_of(joint) for joint in joints}
+        return {joint: found for joint, found in pairs.items() if len(found[0])}
+
+    def _parts(self, nodes: Sequence[Indices]) -> Iterator[Part]:
+        """Substructures, by the numbers of each body's nodes, (n_rows, n_columns)."""
         n_rows = 0
         for number, traces in enumerate(self._traces()):
-            own, body, _ = self._pieces[number]
-            modulus = stack.modulus(body)
-            mesh = self._mesh(own.columns, own.rows, modulus)
+            rectangle, body, _ = self._pieces[number]
+            modulus = self.stack.modulus(body)
+            mesh = self._mesh(rectangle.columns, rectangle.rows, modulus)
             force = self._force(number, mesh)
             # Members of a group have body forces on all or on none, and see the same
             # macro forces.
             kinds = tuple(traces.values())
-            condensed, operator = self._operator(
-                mesh, modulus, kinds, force is not None
+            has_force = force is not None
+            condensed, operator = self._operator(mesh, modulus, kinds, has_force)
+            rows = _numbered(traces, mesh, n_rows)
+            n_rows += sum(each.size for each in rows.values())
+            yield Part(
+                rectangle=mesh,
+                condensed=condensed,
+                elasticity=operator,
+                nodes=self._own_nodes(number, nodes[body]),
+                body=body,
+                rows=rows,
+                force=force,
             )
-            numbers: dict[Hashable, Indices] = {}
-            for name, trace in traces.items():
-                shape = trace.dofs(mesh).shape
-                numbers[name] = n_rows + np.arange(shape[0] * shape[1]).reshape(shape)
-                n_rows += numbers[name].size
-            brick = stack.rectangles[body]
-            along, up = own._replace(x=own.x - brick.x, y=own.y - brick.y).nodes()
-            self.parts.append(
-                Part(
-                    mesh,
-                    condensed,
-                    operator,
-                    nodes[body][up, along],
-                    body,
-                    numbers,
-                    force,
-                )
-            )
+
+    def _own_nodes(self, number: int, nodes: Indices) -> Indices:
+        """Nodes of a substructure, (n_rows, n_columns), out of those of its body."""
+        rectangle, body, _ = self._pieces[number]
+        brick = self.stack.rectangles[body]
+        inside = rectangle._replace(x=rectangle.x - brick.x, y=rectangle.y - brick.y)
+        along, up = inside.nodes()
+        return nodes[up, along]
 
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
         elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
@@ -163,61 +225,76 @@ class CutStack:
     def _operator_of(
         self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace], has_force: bool
     ) -> tuple[SchurComplement, Elasticity]:
+        """Condensed stiffness and elasticity; `has_force` tells operators apart."""
         dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
         condensed = SchurComplement(mesh.outline, np.unique(dofs))
         density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
-        weights = [mesh.edge_weights(one.side)[one.first : one.last] for one in traces]
-        k = [
-            w.repeat(len(one.components))
-            for w, one in zip(weights, traces, strict=True)
-        ]
-        trace = np.searchsorted(condensed.kept, dofs)
+        weights = np.concatenate([trace.weights(mesh) for trace in traces])
         return condensed, Elasticity(
-            condensed.stiffness, trace, density * np.concatenate(k)
+            stiffness=condensed.stiffness,
+            trace=np.searchsorted(condensed.kept, dofs),
+            direction=density * weights,
         )
 
     def _outer(self, number: int) -> Iterator[str]:
-        """Sides of a substructure on which nothing is but what is given for such a side."""
-        own = self._pieces[number].rectangle
-        (columns, _) = self.stack.grid
-        is_end = {"left": own.x == 0, "right": own.x + own.columns == columns}
+        """Outer sides of a substructure: free, loaded or prescribed.
+
+        On the left and right only those of bodies that reach farthest.
+        """
+        rectangle = self._pieces[number].rectangle
+        columns, _ = self.stack.grid
+        is_end = {
+            "left": rectangle.x == 0,
+            "right": rectangle.x + rectangle.columns == columns,
+        }
         for side in SIDES:
             if (number, side) not in self._touched and is_end.get(side, True):
                 yield side
 
     def bodies(self, joint: Joint) -> tuple[int, int | None]:
-        """Body above, or to the right of, a joint, and the other one; None is the support."""
+        """Body above or to the right of a joint, and the other one (None: support)."""
+        above = self._pieces[joint.above].body
         if joint.below is None:
-            below = None
-        else:
-            below = self._pieces[joint.below].body
-        return self._pieces[joint.above].body, below
+            return above, None
+        return above, self._pieces[joint.below].body
+
+    def is_within_body(self, joint: Joint) -> bool:
+        """Check whether both sides of a joint are of one body, which is glued there."""
+        above, below = self.bodies(joint)
+        return above == below
 
     def has_macro(self, joint: Joint) -> bool:
-        """Whether macro forces are to balance on a joint: not within a group of bodies."""
-        (above, below) = self.bodies(joint)
+        """Check whether macro forces balance on a joint.
+
+        They do on cuts and between bodies of different groups, not on the support.
+        """
+        above, below = self.bodies(joint)
         groups = self.stack.groups
         if below is None or groups is None or above == below:
             return below is not None
         return bool(groups[above] != groups[below])
 
     def name(self, joint: Joint) -> str:
-        """Name of the interface of which a joint is a part."""
+        """Name of the interface to which a joint belongs."""
         above, below = self.bodies(joint)
         if joint.below is not None and above == below:
-            return f"cut {self._pieces[joint.below].name} to {self._pieces[joint.above].name}"
+            first = self._pieces[joint.below].name
+            second = self._pieces[joint.above].name
+            return f"cut {first} to {second}"
         if self.stack.is_pile:
             if below is None:
                 return "support"
             return f"contact {above}-{above + 1}"
         if below is None:
-            other = "support"
-        else:
-            other = f"brick {below + 1}"
-        return f"{other} and brick {above + 1}"
+            return f"support and brick {above + 1}"
+        return f"brick {below + 1} and brick {above + 1}"
 
     def basis(self, joint: Joint, which: int) -> Array:
-        """Macro basis of one component on a side of a joint, (n_points, n_macro); above is 0."""
+        """Macro basis of one component on a joint, (n_points, n_macro).
+
+        `which` is the side of the joint whose substructure gives the degree: 0 is the
+        one above.
+        """
         number, side = joint.sides[which]
         part = self.parts[number]
         mesh = part.rectangle
@@ -225,93 +302,111 @@ class CutStack:
         return side_basis(mesh, side, count, self.stack.macro_degree)
 
     def _is_known(self, joint: Joint) -> bool:
-        """Whether it is with a support of known bound."""
+        """Check whether a joint is with a support of known bound."""
         support = self.stack.support
         return joint.below is None and support is not None and support.bound is not None
 
     def _pairs_of(self, joint: Joint) -> tuple[Indices, Array]:
+        """Nodes of a joint on the grid, and their scaled lengths, (n_pairs,) both."""
         before, after = self._left_out(joint)
         count = joint.last - joint.first
         lengths = self._element[joint.is_upright] * tributary(count)
         if joint.is_upright:
+            # The length of a node that is left out goes to its neighbour.
             lengths[1] += before * lengths[0]
             lengths[-2] += after * lengths[-1]
-        some = slice(int(before), count + 1 - after)
-        return np.arange(joint.first, joint.last + 1)[some], lengths[some]
+        paired = slice(int(before), count + 1 - after)
+        nodes = np.arange(joint.first, joint.last + 1)
+        return nodes[paired], lengths[paired]
 
     def _left_out(self, joint: Joint) -> tuple[bool, bool]:
-        """Whether the node at the first, and at the last end of a joint has no pair.
+        """Check whether the first, and the last, node of a joint has no pair.
 
-        None has at an end where the left or right side prescribes the normal
-        displacement: any pressing force would be a solution there, and so would any
-        friction up to it. Nor has an upright joint: three contacts would meet in a
-        corner, of whose forces only sums are determined, and which of them slips would
-        depend on how they share.
+        A lying joint has no pair at an end where the left or right side prescribes the
+        normal displacement: any pressing force would be a solution there, and so would
+        any friction up to it. An upright joint has no pair at the ends of its bodies:
+        three contacts would meet in a corner, of whose forces only sums are determined,
+        and which of them slips would depend on how they share.
         """
-        above, below = self.bodies(joint)
-        if above == below or self._is_known(joint):
+        if self.is_within_body(joint) or self._is_known(joint):
             return False, False
         if joint.is_upright:
-            bodies = [
-                self.stack.rectangles[self._pieces[one].body] for one, _ in joint.sides
-            ]
-            first = joint.first == max(brick.y for brick in bodies)
-            return first, joint.last == min(brick.y + brick.rows for brick in bodies)
-        left, right = (
-            self.stack.sides[side].y.prescribed for side in ("left", "right")
+            numbers = [self._pieces[piece].body for piece, _ in joint.sides]
+            bodies = [self.stack.rectangles[number] for number in numbers]
+            lowest = max(brick.y for brick in bodies)
+            highest = min(brick.y + brick.rows for brick in bodies)
+            return joint.first == lowest, joint.last == highest
+        sides = self.stack.sides
+        at_left = joint.first == 0
+        at_right = joint.last == self.stack.grid[0]
+        return (
+            at_left and sides["left"].y.prescribed,
+            at_right and sides["right"].y.prescribed,
         )
-        return joint.first == 0 and left, joint.last == self.stack.grid[0] and right
 
     def _traces(self) -> Iterator[dict[Hashable, _Trace]]:
-        """Rows of every substructure, by joint, or by the name of a side: "spring" at a foot.
+        """Traces of every substructure, by joint or by the name of a side.
 
-        All at an interface, or those of prescribed components. A support of known bound
-        has the component along it.
+        A joint has both components, or with a support of known bound the one along it;
+        an outer side those that are prescribed; the foot under a spring ("spring")
+        both.
         """
-        stack = self.stack
-        traces: list[list[tuple[Hashable, _Trace]]] = [[] for _ in self._pieces]
+        of_joints = self._traces_of_joints()
+        for number, at_joints in enumerate(of_joints):
+            traces = at_joints | self._traces_of_sides(number)
+            in_order = sorted(
+                traces.items(), key=lambda named: SIDES.index(named[1].side)
+            )
+            yield dict(in_order)
+
+    def _traces_of_joints(self) -> list[dict[Hashable, _Trace]]:
+        """Traces of every substructure on its joints."""
+        traces: list[dict[Hashable, _Trace]] = [{} for _ in self._pieces]
         for joint, (nodes, _) in self.pairs.items():
-            held: tuple[int, ...] = (0, 1)
+            components: tuple[int, ...] = (0, 1)
             if self._is_known(joint):
-                held = (0,)
+                components = (0,)
+            has_macro = self.has_macro(joint)
             for number, side in joint.sides:
-                own = self._pieces[number].rectangle
-                first = int(nodes[0]) - (own.y if joint.is_upright else own.x)
-                trace = _Trace(
-                    side, held, first, first + len(nodes), self.has_macro(joint)
-                )
-                traces[number].append((joint, trace))
-        for number, named in enumerate(traces):
-            own, body, _ = self._pieces[number]
-            for side in self._outer(number):
-                given = enumerate(stack.sides[side])
-                components = tuple(
-                    component for component, one in given if one.prescribed
-                )
-                if components:
-                    named.append((side, _Trace(side, components)))
-                elif (
-                    side == "right"
-                    and stack.spring is not None
-                    and (own.y, body) == (0, 0)
-                ):
-                    named.append(("spring", _Trace(side, (0, 1), 0, 1)))
-            yield dict(sorted(named, key=lambda each: SIDES.index(each[1].side)))
+                rectangle = self._pieces[number].rectangle
+                corner = rectangle.y if joint.is_upright else rectangle.x
+                first = int(nodes[0]) - corner
+                last = first + len(nodes)
+                trace = _Trace(side, components, first, last, has_macro)
+                traces[number][joint] = trace
+        return traces
+
+    def _traces_of_sides(self, number: int) -> dict[Hashable, _Trace]:
+        """Traces of a substructure on prescribed outer sides, and at a spring."""
+        stack = self.stack
+        rectangle, body, _ = self._pieces[number]
+        is_foot = (rectangle.y, body) == (0, 0)
+        traces = dict[Hashable, _Trace]()
+        for side in self._outer(number):
+            components = tuple(
+                component
+                for component, given in enumerate(stack.sides[side])
+                if given.prescribed
+            )
+            if components:
+                traces[side] = _Trace(side, components)
+            elif side == "right" and stack.spring is not None and is_foot:
+                traces["spring"] = _Trace(side, (0, 1), 0, 1)
+        return traces
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
-        """Nodal forces of tractions and weight, (2 n_nodes, n_instants), or None."""
+        """Nodal forces of tractions and weight, scaled, or None.
+
+        Shape (2 n_nodes, n_instants).
+        """
         stack = self.stack
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
         for side in self._outer(number):
-            nodes = mesh.edge(side)
-            step = mesh.height if side in ("left", "right") else mesh.width
-            edges = np.arange(len(nodes) - 1)[:, None] + np.arange(2)
             for component, given in enumerate(stack.sides[side]):
                 if given.prescribed or given.is_zero:
                     continue
                 traction = self.values(number, side, given) / stack.young
-                force = step * np.matmul(EDGE_MASS, traction[edges])
-                np.add.at(total[:, component], nodes[edges], force)
+                _add_traction(total[:, component], mesh, side, traction)
         if stack.body_force is not None:
             areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
             density = stack.body_force * stack.length / stack.young
@@ -321,15 +416,32 @@ class CutStack:
         return None
 
     def values(self, number: int, side: str, given: Given) -> Array:
-        """What is given at the nodes of a substructure on an outer side, (n_nodes, n_instants)."""
-        own, body, _ = self._pieces[number]
-        first = own.x
-        count = own.columns
-        whole = self.stack.grid[0]
+        """Given displacement or traction at a substructure's nodes on a side.
+
+        Shape (n_nodes, n_instants), m or Pa.
+        """
+        rectangle, body, _ = self._pieces[number]
         if side in ("left", "right"):
             brick = self.stack.rectangles[body]
-            first = own.y - brick.y
-            count = own.rows
+            first = rectangle.y - brick.y
+            count = rectangle.rows
             whole = brick.rows
+        else:
+            first = rectangle.x
+            count = rectangle.columns
+            whole = self.stack.grid[0]
         nodes = np.arange(first, first + count + 1)[:, None]
         return np.asarray(given.mean + (2.0 * nodes / whole - 1.0) * given.slope)
+
+
+def _add_traction(force: Array, mesh: Rectangle, side: str, traction: Array) -> None:
+    """Add nodal forces of a traction on a side to those of all nodes.
+
+    `force` is (n_nodes, n_instants), `traction` that of the nodes on the side, (nodes
+    along, n_instants); both scaled, of one component.
+    """
+    nodes = mesh.edge(side)
+    size = mesh.height if side in ("left", "right") else mesh.width
+    ends = np.arange(len(nodes) - 1)[:, None] + np.arange(2)
+    of_edges = size * np.matmul(EDGE_MASS, traction[ends])
+    np.add.at(force, nodes[ends], of_edges)

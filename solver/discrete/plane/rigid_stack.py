@@ -1,4 +1,4 @@
-"""A stack's lowest body as if it were rigid: whether loads hold it, and where it comes to rest."""
+"""Equilibrium of a rigid body on its support: loss, rest, and sliding."""
 
 from __future__ import annotations
 
@@ -6,31 +6,32 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 
 if TYPE_CHECKING:
     from solver.discrete.plane.stack import Given, Spring, Stack
 
 SLACK = 1e-9
-"""Share of the loads that rounding may add to them."""
+"""Largest rounding of the loads, as a share of them."""
 BEDDING = 7.0
 """Stiffness of the support per area, times the body's length over E: that of the
 contact itself, as the automatic search direction estimates it."""
 STEPS = 50
-"""Newton steps; a few suffice."""
+"""Largest number of Newton steps; a few suffice."""
 SETTLED = 1e-9
-"""Share of the load that need not be held when the body is at rest."""
+"""Share of the load that the support need not hold when Newton's steps end."""
 FREE = 1e-9
-"""Stiffness, as a share of the largest, of a motion that is free; and share of the load
-that says that a free motion is pushed."""
+"""Stiffness, as a share of the largest, up to which a motion is free; and share of the
+load beyond which it pushes a free motion."""
 
 
 def wrench(stack: Stack) -> tuple[Array, Array, Array]:
-    """Resultants of tractions and body forces on a single body, shape (n_instants,) each.
+    """Resultants of tractions and body forces on a single body.
 
     Forces along x and y, N, and the counter-clockwise moment about the lower left
-    corner, N m.
+    corner, N m; shape (n_instants,) each.
     """
     length = stack.length
     height = stack.height
@@ -43,6 +44,7 @@ def wrench(stack: Stack) -> tuple[Array, Array, Array]:
         loads = [_resultant(given, size) for given in side]
         force += [total for total, _ in loads]
         (along_x, first_x), (along_y, first_y) = loads
+        # Along a side the moment is that about its first end.
         if x is None:
             moment += first_y
         else:
@@ -59,85 +61,95 @@ def wrench(stack: Stack) -> tuple[Array, Array, Array]:
 
 
 def _resultant(given: Given, size: float) -> tuple[Array, Array]:
-    """A traction's resultant, and its moment about the first end of the side."""
+    """Resultant of a traction, N, and its moment about the first end of the side, N m.
+
+    Shape (n_instants,) both; `size` is the length of the side, m. A prescribed
+    displacement has none.
+    """
     if given.prescribed:
-        none = np.zeros_like(given.mean)
-        return none, none
+        zero = np.zeros_like(given.mean)
+        return zero, zero
     total = size * given.mean
     return total, 0.5 * size * total + size**2 / 6.0 * given.slope
 
 
 def is_held_up(stack: Stack) -> bool:
-    """Whether a side prescribes a displacement upwards."""
+    """Check whether a side prescribes the vertical displacement."""
     return any(side.y.prescribed for side in stack.sides.values())
 
 
 def is_upright(stack: Stack) -> bool:
-    """Whether a side keeps the body from turning."""
+    """Check whether a side keeps the body from turning."""
     sides = stack.sides
-    return sides["top"].y.prescribed or any(
-        sides[name].x.prescribed for name in ("left", "right")
+    return (
+        sides["top"].y.prescribed
+        or sides["left"].x.prescribed
+        or sides["right"].x.prescribed
     )
 
 
 def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
-    """From when on, s, and why a body on a support cannot rest under its loads.
+    """Time, s, and reason of the first loss of equilibrium on a support, or None.
 
-    None if nothing forbids it.
-
-    Nothing but the support can hold what no side holds: it presses and does not pull,
-    friction carries no more than its law allows, and the pressure's resultant acts on
-    the base. A spring holds against all that pushes to the left; at the foot, it does
-    not keep from tipping. What is lost first counts; of two at once, what friction does
-    not mend.
+    A rigid body can rest only where the support holds all that no side holds: it
+    presses and does not pull, friction carries no more than its law allows, and the
+    pressure's resultant acts on the base. A spring at the foot holds against all that
+    pushes to the left; it does not keep the body from tipping. Of two losses at the
+    same instant, the one that more friction does not mend is returned.
     """
     assert stack.support is not None
     x, y, moment = wrench(stack)
-    sides = stack.sides
-    held_x = any(side.x.prescribed for side in sides.values())
-    held_y = is_held_up(stack)
-    upright = is_upright(stack)
-    if stack.spring is None:
-        pushed = np.abs(x)
-    else:
-        pushed = x
     size = np.abs([x, y]).max() + np.abs(moment).max() / stack.length
     slack = SLACK * size
-    # Whoever holds the body up may press it as hard as it takes.
+    # A side that holds the body up may press it with any force.
+    held_y = is_held_up(stack)
     pressing = np.where(held_y, np.inf, np.maximum(-y, 0.0))
-    most = _without_slip(stack, pressing) * stack.friction_law.strongest
-    checks = []
+    friction = _without_slip(stack, pressing) * stack.friction_law.strongest
+    # In the order in which losses at the same instant count.
+    losses = list[tuple[NDArray[np.bool_], str]]()
     if not held_y:
-        checks.append((y > slack, "the loads lift it off its support"))
-    if not upright and not held_y:
-        beyond = np.maximum(moment, stack.length * y - moment)
-        if sides["top"].x.prescribed:
-            # The top is dragged with any force that friction can answer, which may hold
-            # it upright.
-            middle = moment + stack.height * x
-            reach = stack.height * most
-            beyond = np.maximum(middle - reach, stack.length * y - middle - reach)
-        checks.append(
-            (beyond > slack * stack.length, "it tips over an end of its base")
-        )
-    if not held_x:
-        checks.append((pushed > most + slack, "friction cannot hold it"))
-    losses = [
-        (float(stack.instants[np.argmax(lost)]), reason)
-        for lost, reason in checks
-        if lost.any()
+        losses.append((y > slack, "the loads lift it off its support"))
+    if not held_y and not is_upright(stack):
+        tips = _tipping(stack, friction) > slack * stack.length
+        losses.append((tips, "it tips over an end of its base"))
+    if not any(side.x.prescribed for side in stack.sides.values()):
+        pushed = x if stack.spring is not None else np.abs(x)
+        losses.append((pushed > friction + slack, "friction cannot hold it"))
+    first = [
+        (float(stack.instants[np.argmax(is_lost)]), reason)
+        for is_lost, reason in losses
+        if is_lost.any()
     ]
-    return min(losses, key=itemgetter(0), default=None)
+    return min(first, key=itemgetter(0), default=None)
+
+
+def _tipping(stack: Stack, friction: Array) -> Array:
+    """Moment that the pressure on the base cannot balance, (n_instants,), N m.
+
+    Below 0 the pressure balances all moments. `friction` is the largest friction force,
+    (n_instants,), N.
+    """
+    x, y, moment = wrench(stack)
+    if not stack.sides["top"].x.prescribed:
+        return np.maximum(moment, stack.length * y - moment)
+    # The top is dragged with any force that friction can answer, which may hold the
+    # body upright.
+    middle = moment + stack.height * x
+    answered = stack.height * friction
+    return np.asarray(
+        np.maximum(middle - answered, stack.length * y - middle - answered)
+    )
 
 
 def _without_slip(stack: Stack, pressing: Array) -> Array:
-    """Friction that may hold the body before slip, N, of the shape of what presses."""
+    """Largest friction force on the body before slip, N, by the pressing force, N.
+
+    Both have the shape (n_instants,).
+    """
     assert stack.support is not None
     mu = float(np.max(stack.support.friction))
-    if mu:
-        rubbed = mu * pressing
-    else:
-        rubbed = np.zeros_like(pressing)
+    # The pressing force may be infinite, and zero times that is no number.
+    rubbed = mu * pressing if mu else np.zeros_like(pressing)
     return stack.friction_law.without_slip(rubbed, stack.length)
 
 
@@ -145,71 +157,82 @@ def rigid_rest(stack: Stack) -> Array | None:
     """Rigid motion that brings the body onto its support, shape (2, n_instants).
 
     Displacement upwards of the lower left corner, m, and counter-clockwise rotation
-    about it; None where a side holds the body up, or where it rests already. The body
-    is rigid, the support an elastic bedding (Winkler), so that a curved side rests on a
-    patch and not on a point. While nothing presses the body stays where it is.
+    about it; None where a side holds the body up, or where the body rests already. The
+    body is rigid, the support an elastic bedding (Winkler), so that a curved side rests
+    on a patch and not on a point. While nothing presses, the body stays where it is.
     """
     if stack.support is None or len(stack.rectangles) > 1 or is_held_up(stack):
         return None
+    length = stack.length
+    middle = 0.5 * length
     gap = stack.support.gap
-    x = np.linspace(0.0, stack.length, len(gap))
+    x = np.linspace(0.0, length, len(gap))
     _, force, moment = wrench(stack)
-    bedding = BEDDING * stack.young / len(gap)
     # Taken about the middle and over the length, the rotation is a motion like the
     # other.
-    middle = 0.5 * stack.length
-    length = stack.length
-    shapes = np.stack([np.ones_like(x), (x - middle) / length])[
-        : 1 if is_upright(stack) else 2
-    ]
+    n_motions = 1 if is_upright(stack) else 2
+    shapes = np.stack([np.ones_like(x), (x - middle) / length])[:n_motions]
+    wrenches = np.stack([force, (moment - middle * force) / length])[:n_motions]
     presses = np.flatnonzero(force < 0.0)
-    wrenches = np.stack([force, (moment - middle * force) / length])[
-        : len(shapes), presses
-    ]
+    bedding = BEDDING * stack.young / len(gap)
     settled = np.zeros((2, len(force)))
-    settled[: len(shapes), presses] = _settled(gap, shapes, -wrenches / bedding)
+    wanted = -wrenches[:, presses] / bedding
+    settled[:n_motions, presses] = _settled(gap, shapes, wanted)
+    # From the middle to the corner.
     settled[1] /= length
     settled[0] -= middle * settled[1]
-    # The last instant that pressed says where the body is; before the first it is where
-    # it began.
-    last = np.full(len(force), -1)
-    last[presses] = presses
+    rest = _since_last(settled, presses)
+    return rest if rest.any() else None
+
+
+def _since_last(values: Array, known: Indices) -> Array:
+    """Values of the last known instant at every instant, and zero before the first.
+
+    `values` are (n, n_instants), `known` the numbers of instants, ascending.
+    """
+    last = np.full(values.shape[1], -1)
+    last[known] = known
     last = np.maximum.accumulate(last)
-    settled = np.where(last >= 0, settled[:, last], 0.0)
-    return settled if settled.any() else None
+    return np.where(last >= 0, values[:, last], 0.0)
 
 
 def rigid_slide(stack: Stack, spring: Spring) -> Array:
-    """How far the body would slide if it were rigid, to the right, (n_instants,), m.
+    """Displacement to the right of the rigid body that slides, (n_instants,), m.
 
-    It moves no farther than it must: until friction and the spring together hold it.
+    The body moves no farther than it must: until friction and the spring together hold
+    it.
     """
     assert stack.support is not None
     pushed, pressed, _ = wrench(stack)
-    bound = _without_slip(stack, np.maximum(-pressed, 0.0))
+    bounds = _without_slip(stack, np.maximum(-pressed, 0.0))
     slid = np.zeros_like(pushed)
-    place = 0.0
-    for instant, (load, most) in enumerate(zip(pushed, bound, strict=True)):
-        pull = spring.stiffness * max(-place - spring.slack, 0.0)
-        # What the spring has to pull at least, and at most, for friction to do the
-        # rest.
-        wanted = min(max(pull, -load - most), most - load)
+    position = 0.0
+    for instant, (load, bound) in enumerate(zip(pushed, bounds, strict=True)):
+        pull = spring.stiffness * max(-position - spring.slack, 0.0)
+        # Pull of the spring, at least and at most, with which friction can do the rest.
+        lowest = -load - bound
+        highest = bound - load
+        wanted = min(max(pull, lowest), highest)
         if wanted != pull:
-            place = -spring.slack - max(wanted, 0.0) / spring.stiffness
-        slid[instant] = place
+            position = -spring.slack - max(wanted, 0.0) / spring.stiffness
+        slid[instant] = position
     return slid
 
 
 def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:
-    """Motions a with sum over points of shape * max(-(gap + shape' a), 0) = wanted.
+    """Motions under which the bedding carries the loads, (n_motions, n_instants).
 
-    They make a convex energy least. Newton's step goes as far as that falls. Where the
-    points that press leave a motion free, as one point leaves a rotation, and the loads
-    push that way, the body moves on until others touch. `gap` is (n_points,), `shapes`
-    what motions add to it.
+    Motions a with sum over points of shape * max(-(gap + shape' a), 0) = wanted. They
+    minimise a convex energy; Newton's step goes as far as that falls. Where the points
+    that press leave a motion free, as one point leaves a rotation, and the loads push
+    that way, the body moves on until other points touch.
+
+    `gap` is (n_points,), `shapes` the opening by each motion, (n_motions, n_points),
+    `wanted` the loads over the bedding's stiffness, (n_motions, n_instants).
     """
     products = shapes[:, None] * shapes[None]
     sizes = np.abs(wanted).max(axis=0)
+    # Begin with all points pressing.
     motion = np.linalg.solve(products.sum(axis=-1), -wanted - (shapes @ gap)[:, None])
     for _ in range(STEPS):
         opening = gap[:, None] + shapes.T @ motion
@@ -218,37 +241,50 @@ def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:
             break
         matrix = np.moveaxis(products @ (opening < 0.0), -1, 0)
         inverse = np.linalg.pinv(matrix, rcond=FREE, hermitian=True)
-        way = -np.einsum("tij,jt->it", inverse, missing)
-        unheld = missing + np.einsum("tij,jt->it", matrix, way)
+        step = -np.einsum("tij,jt->it", inverse, missing)
+        unheld = missing + np.einsum("tij,jt->it", matrix, step)
         is_free = np.abs(unheld).max(axis=0) > FREE * sizes
-        way[:, is_free] = -unheld[:, is_free]
-        motion += way * _farthest(opening, shapes.T @ way, (wanted * way).sum(axis=0))
+        step[:, is_free] = -unheld[:, is_free]
+        work = (wanted * step).sum(axis=0)
+        motion += step * _step_length(opening, shapes.T @ step, work)
     return motion
 
 
-def _farthest(opening: Array, way: Array, work: Array) -> Array:
-    """How far the energy of the bedding and of the loads falls along a way, (n_instants,).
+def _step_length(opening: Array, step: Array, work: Array) -> Array:
+    """Factor on a step that minimises the energy of bedding and loads, (n_instants,).
 
-    Its slope grows with the distance t, by straight lines between the places where
-    points begin or end to touch: `work` of the loads, and the sum over those that do of
-    way (opening + t way).
+    `opening` and its change by the whole `step` are (n_points, n_instants), the `work`
+    of the loads on it (n_instants,). The slope of the energy over the factor t is the
+    work plus the sum of step (opening + t step) over the points that touch. It grows by
+    straight lines between the factors at which points begin or end to touch.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        changes = -opening / way
+        changes = -opening / step
     changes[~(changes > 0.0)] = np.inf
     order = np.argsort(changes, axis=0)
-    opening, way, changes = (
-        np.take_along_axis(one, order, 0) for one in (opening, way, changes)
-    )
-    touches = (opening < 0.0) | ((opening == 0.0) & (way < 0.0))
+    opening = np.take_along_axis(opening, order, 0)
+    step = np.take_along_axis(step, order, 0)
+    changes = np.take_along_axis(changes, order, 0)
+    touches = (opening < 0.0) | ((opening == 0.0) & (step < 0.0))
+    # A point that touches lets go at its change, another one begins to touch.
     turn = np.where(np.isfinite(changes), np.where(touches, -1.0, 1.0), 0.0)
-    offset, growth = (
-        np.vstack([(touches * one).sum(axis=0), turn * one]).cumsum(axis=0)
-        for one in (way * opening, way * way)
-    )
+    offset = _sums_between(step * opening, touches, turn)
+    growth = _sums_between(step * step, touches, turn)
     ends = np.vstack([changes, np.full(len(work), np.inf)])
     with np.errstate(divide="ignore", invalid="ignore"):
         rises = work + offset + growth * ends >= 0.0
-        least = np.where(rises, -(work + offset) / growth, 0.0)
-    distance = np.take_along_axis(least, rises.argmax(axis=0)[None], axis=0)[0]
-    return np.where(np.isfinite(distance), distance, 0.0)
+        zeros = np.where(rises, -(work + offset) / growth, 0.0)
+    first = rises.argmax(axis=0)[None]
+    factor = np.take_along_axis(zeros, first, axis=0)[0]
+    return np.where(np.isfinite(factor), factor, 0.0)
+
+
+def _sums_between(terms: Array, touches: NDArray[np.bool_], turn: Array) -> Array:
+    """Sums of terms over the points that touch, (n_points + 1, n_instants).
+
+    Before the first change, then after each: `touches` says which points do at first,
+    and `turn`, 1 or -1, whether a point comes or goes at its change; (n_points,
+    n_instants) all.
+    """
+    at_first = (touches * terms).sum(axis=0)
+    return np.asarray(np.vstack([at_first, turn * terms]).cumsum(axis=0))

@@ -1,8 +1,8 @@
-"""Rectangular bodies in the plane: one on a support, several on each other, a wall of bricks."""
+"""Rectangular bodies in the plane: one on a support, several, or a wall."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -46,23 +46,25 @@ from solver.refusal import RefusedError
 
 SIDES = "left", "right", "top", "bottom"
 MOST_POISSON = 0.4999
-"""Poisson's ratio from which on a body keeps its volume to the digits of its
+"""Largest Poisson's ratio; above it a body keeps its volume up to the rounding of its
 strains."""
 DRIVEN = "top", "left", "right"
-"""Sides of a body on a support, in the order in which one looks for what drives it."""
+"""Sides of a body on a support; the first that is loaded or moved drives the body."""
 
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """What is given for one component along a side: mean + slope (2 s / length - 1).
+    """Displacement or traction along a side, in one component.
+
+    At the distance s from its lower or left end it is mean + slope (2 s / length - 1).
 
     Attributes
     ----------
     prescribed
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
-        Over time, shape (n_instants,); no slope is 0. On the left and the right s runs
-        over each body anew.
+        Values over time, shape (n_instants,); the slope may be 0. On the left and the
+        right s runs over each body anew.
     """
 
     prescribed: bool
@@ -77,12 +79,12 @@ class Given:
 
     @property
     def is_zero(self) -> bool:
-        """Whether it is zero throughout."""
+        """Check whether mean and slope are zero at all instants."""
         return not np.any(self.mean) and not np.any(self.slope)
 
 
 class Side(NamedTuple):
-    """What is given along a side of the stack, for the components along x and y."""
+    """Displacements or tractions along a side of the stack, along x and along y."""
 
     x: Given
     y: Given
@@ -90,21 +92,21 @@ class Side(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """A rigid rough support below the stack, or its image.
+    """A rigid rough support below the stack, or the image of the stack.
 
     Attributes
     ----------
     gap, friction
         Opening at the nodes of the lowest side, m, shape (nodes along,), and
-        coefficient mu there, or of all.
+        coefficient mu there, or one for all nodes.
     bound
         Largest friction force per area where it is known, shape (nodes along,
         n_instants), Pa; the support then presses as much as that takes, and adds no
-        pressure of its own. None where contact decides, and may open.
+        pressure of its own. None where the contact force decides, and contact may open.
     is_image
         Whether below lies the image of the stack, turned by half a turn, which moves
-        along as much the other way: slip is between both, twice what the stack moves,
-        and so is that of the friction law. The bound has to be known.
+        along as much the other way: slip is between both, twice the displacement of the
+        stack, and the friction law is one of this slip. The bound has to be known.
     """
 
     gap: Array
@@ -129,10 +131,10 @@ class Support:
 
 @dataclass(frozen=True)
 class Spring:
-    """A spring along x at the foot of the right side of the lowest body, slack at first.
+    """A spring along x at the foot of the right side of the lowest body.
 
-    Before it is pulled back, the foot may move to the left by the slack, m; stiffness
-    in N/m.
+    The foot may move to the left by the slack, m, before the spring pulls it back; the
+    stiffness is in N/m.
     """
 
     slack: float
@@ -144,30 +146,28 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """Rectangular bodies that lie on each other, or stand beside each other; one metre thick.
+    """Rectangular bodies that lie on each other or stand side by side, one metre thick.
 
-    They are in contact wherever sides meet, and where they stand at y = 0 with the
-    support.
-
-    They have one friction law, also on the support; times are in s.
+    Bodies are in contact wherever their sides meet, and with the support where they
+    stand at y = 0. All contacts have one friction law; times are in s.
 
     Attributes
     ----------
     length, height
-        Of one body, m.
+        Size of one body, m.
     bricks
-        Where bodies are and how large, on the grid of the elements of one; None is a
-        single one. What is given on the left and the right holds for those which reach
-        farthest, and on top and bottom for all that lies open there.
+        Positions and sizes of the bodies, on the grid of the elements of one; None is a
+        single body. Sides "left" and "right" are those of the bodies that reach
+        farthest, "top" and "bottom" all that lies open there.
     groups
         Number of the group of each body, shape (bodies,), or None: bodies of one group
         pass no macro forces to each other.
     elements, substructures
-        Of one body, along and up. Bodies on each other that all begin at the left are
-        also cut where any of them ends.
+        Numbers for one body, along and up. Bodies on each other that all begin at the
+        left are also cut where any of them ends.
     macro_degree
-        Of the macro basis on each side of a substructure; long sides get more in
-        proportion.
+        Degree of the macro basis on each side of a substructure; long sides get a
+        higher one.
     young, poisson, state
         Elasticity, Pa; `state` is "strain" or "stress".
     stiffness
@@ -177,24 +177,25 @@ class Stack:
         along,), or that of each interface, shape (bodies - 1, 1) or (bodies - 1, nodes
         along).
     support
-        Below the lowest body, or None.
+        Support below the lowest body, or None.
     sides
-        What is given along the outer sides, by "left", "right", "top", "bottom"; others
-        are free. A support replaces "bottom". `left` and `right` run over the sides of
-        all bodies.
+        Displacements and tractions along the outer sides, by "left", "right", "top",
+        "bottom"; others are free. A support replaces "bottom". "left" and "right" run
+        over the sides of all bodies.
     body_force
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
     spring
-        At the right side, of which nothing is prescribed then; or None.
+        Spring at the right side, where no displacement is prescribed then; or None.
     tilt
-        Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever
-        draws it: `body_force` has turned the other way already. None where it does not.
+        Angle over time by which the x axis rises, shape (n_instants,), rad, for
+        drawings: `body_force` has turned the other way already. None where the axis
+        does not rise.
 
     Raises
     ------
     RefusedError
-        For a number that is not above zero or none, a field of another shape, instants
-        that do not increase, bodies that overlap, or a side that there is not.
+        For a number that is not above zero or not finite, a field of another shape,
+        instants that do not increase, bodies that overlap, or an unknown side.
     """
 
     length: float
@@ -219,7 +220,7 @@ class Stack:
     groups: Indices | None = None
 
     def __post_init__(self) -> None:
-        """Check all that is given, and leave free what is not."""
+        """Check all fields, and make sides free that are not given."""
         check(
             self,
             length=POSITIVE,
@@ -241,13 +242,13 @@ class Stack:
         self._check_bodies()
         self._check_fields()
         free = Given(False, np.zeros_like(self.instants))
-        others = dict.fromkeys(
-            [side for side in SIDES if side not in self.sides], Side(free, free)
-        )
-        object.__setattr__(self, "sides", {**self.sides, **others})
+        sides = dict(self.sides)
+        for name in SIDES:
+            sides.setdefault(name, Side(free, free))
+        object.__setattr__(self, "sides", sides)
 
     def _check_bodies(self) -> None:
-        """Refuse parts without elements, and bodies that overlap or lie beside the grid."""
+        """Refuse substructures without elements, and bodies that overlap."""
         for axis, elements in enumerate(self.elements):
             parts = self.substructures[axis]
             check_value(f"Stack.substructures[{axis}]", parts, Count(1, elements))
@@ -256,23 +257,22 @@ class Stack:
             check_value(f"Stack.bricks[{number}]", brick[2:], Each(Count(1), 2))
         taken = np.zeros(self.grid, dtype=bool)
         for number, (x, y, columns, rows) in enumerate(self.rectangles):
-            own = taken[x : x + columns, y : y + rows]
-            if own.any():
+            covered = taken[x : x + columns, y : y + rows]
+            if covered.any():
                 raise RefusedError(
                     f"Stack.bricks[{number}]",
                     [x, y, columns, rows],
                     "bodies that lie beside each other",
                     "it overlaps one before, move it",
                 )
-            own[:] = True
+            covered[:] = True
 
     def _check_fields(self) -> None:
-        """Refuse what does not fit the numbers of bodies, nodes and instants."""
+        """Refuse fields that do not fit the numbers of bodies, nodes and instants."""
         instants = len(self.instants)
         bodies = len(self.rectangles)
         nodes = self.grid[0] + 1
         over_time = Numbers(((instants,),))
-        along = Numbers(((nodes,),))
         joints = (bodies - 1, 1), (bodies - 1, nodes)
         check(
             self,
@@ -282,60 +282,60 @@ class Stack:
             body_force=Numbers(((2, instants),)),
             tilt=over_time,
         )
+        slope = Either(ANY_NUMBER, over_time)
         for side, components in self.sides.items():
             for component, given in zip("xy", components, strict=True):
                 where = f"Stack.sides[{side!r}].{component}"
                 check_value(where, given, Part(Given))
                 check_value(f"{where}.mean", given.mean, over_time)
-                check_value(
-                    f"{where}.slope", given.slope, Either(ANY_NUMBER, over_time)
-                )
-        support = self.support
-        if support is not None:
-            check_value("Stack.support.gap", support.gap, along)
-            check_value(
-                "Stack.support.friction", support.friction, Either(NON_NEGATIVE, along)
-            )
-            if support.bound is not None:
-                by_time = Numbers(((nodes, instants),), low=0.0)
-                check_value("Stack.support.bound", support.bound, by_time)
+                check_value(f"{where}.slope", given.slope, slope)
+        if self.support is not None:
+            self._check_support(self.support, nodes, instants)
+
+    def _check_support(self, support: Support, nodes: int, instants: int) -> None:
+        """Refuse fields of the support that do not fit nodes and instants."""
+        along = Numbers(((nodes,),))
+        friction = Either(NON_NEGATIVE, along)
+        check_value("Stack.support.gap", support.gap, along)
+        check_value("Stack.support.friction", support.friction, friction)
+        if support.bound is not None:
+            bound = Numbers(((nodes, instants),), low=0.0)
+            check_value("Stack.support.bound", support.bound, bound)
 
     @cached_property
     def rectangles(self) -> Sequence[Brick]:
-        """Every body on the grid of elements."""
+        """Bodies on the grid of elements."""
         if self.bricks is None:
             return [Brick(0, 0, *self.elements)]
         return self.bricks
 
     @cached_property
     def is_pile(self) -> bool:
-        """Whether all bodies begin at the left, one on the other."""
+        """Check whether all bodies begin at the left, one on the other."""
         return not any(brick.x for brick in self.rectangles)
 
     @cached_property
     def grid(self) -> tuple[int, int]:
         """Elements of all bodies together, along and up."""
-        ends = [
-            (brick.x + brick.columns, brick.y + brick.rows) for brick in self.rectangles
-        ]
-        return max(end for end, _ in ends), max(end for _, end in ends)
+        columns = max(brick.x + brick.columns for brick in self.rectangles)
+        rows = max(brick.y + brick.rows for brick in self.rectangles)
+        return columns, rows
 
     @property
     def size(self) -> tuple[float, float]:
         """Length and height of all bodies together, m."""
-        (along, up) = self.elements
-        (columns, rows) = self.grid
+        along, up = self.elements
+        columns, rows = self.grid
         return columns / along * self.length, rows / up * self.height
 
     @property
     def weight(self) -> Array:
         """Resultant of the body force, shape (2, n_instants), N."""
-        elements = sum(brick.columns * brick.rows for brick in self.rectangles)
-        area = (
-            elements / (self.elements[0] * self.elements[1]) * self.length * self.height
-        )
         if self.body_force is None:
             return np.zeros((2, len(self.instants)))
+        elements = sum(brick.columns * brick.rows for brick in self.rectangles)
+        of_one_body = self.elements[0] * self.elements[1]
+        area = elements / of_one_body * self.length * self.height
         return np.asarray(self.body_force * area)
 
     @property
@@ -351,7 +351,7 @@ class Stack:
 
     @property
     def end_force(self) -> Array:
-        """Transverse force of what is given on the right as a traction, (n_instants,), N."""
+        """Transverse force of the traction on the right, shape (n_instants,), N."""
         return np.asarray(self.sides["right"].y.mean * self.longest * self.height)
 
     def modulus(self, body: int) -> float:
@@ -380,59 +380,63 @@ class Stack:
 
     @property
     def _is_turned(self) -> bool:
-        """Whether a moment acts on the end, which nothing else bends."""
+        """Check whether a moment acts on the right end, without a transverse force."""
         bent = self.sides["right"].y
         return self.support is None and not bent.prescribed and not np.any(bent.mean)
 
     @property
     def _shown_side(self) -> str:
-        """Side whose displacement the loop is over: of a single body the one that is driven."""
+        """Side whose displacement the loop shows: of a single body the driven one."""
         if self.support is None:
             return "right"
         if len(self.rectangles) > 1:
             return "top"
-        driven = (
-            name for name in DRIVEN if not all(one.is_zero for one in self.sides[name])
-        )
-        return next(driven, DRIVEN[0])
+        for name in DRIVEN:
+            x, y = self.sides[name]
+            if not (x.is_zero and y.is_zero):
+                return name
+        return DRIVEN[0]
 
     def loop(self, problem: Problem) -> Loop:
-        """Spring force on a slope, shear force on a support, or what bends the end."""
+        """Loop of the spring force, the shear force, or the load that bends the end."""
         if self.tilt is not None and self.spring is not None:
             # The spring's force lags behind on the way back.
-            return Loop(
-                *self.axes,
-                constant(np.degrees(self.tilt)),
-                lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
-            )
-        rests = self.support is not None
+            angle = constant(np.degrees(self.tilt))
+            return Loop(*self.axes, angle, _spring_force)
         if self._is_turned:
-            size = self.longest * self.height**2
-            moment = np.broadcast_to(
-                -size / 6.0 * self.sides["right"].x.slope, self.instants.shape
-            )
-            rotation = end_rotation(problem)
-            force = constant(moment).of
-            return Loop(*self.axes, rotation, force)
+            moment = constant(self._end_moment)
+            return Loop(*self.axes, end_rotation(problem), moment.of)
         side = self._shown_side
-        component = 0 if rests else 1
-        given = self.sides[side][component]
-        if rests and len(self.rectangles) == 1:
-            force = _shear_force
-        elif given.prescribed:
-            force = reaction(problem, side, component).of
-        else:
-            if rests:
-                whole = self.size[0]
-            else:
-                whole = self.longest * self.height
-            force = constant(
-                np.broadcast_to(given.mean * whole, self.instants.shape)
-            ).of
+        component = 1 if self.support is None else 0
+        force = self._loop_force(problem, side, component)
         return Loop(*self.axes, side_mean(problem, side, component), force)
 
+    @property
+    def _end_moment(self) -> Array:
+        """Moment of the traction on the right, shape (n_instants,), N m."""
+        size = self.longest * self.height**2
+        moment = -size / 6.0 * self.sides["right"].x.slope
+        return np.broadcast_to(moment, self.instants.shape)
+
+    def _loop_force(
+        self, problem: Problem, side: str, component: int
+    ) -> Callable[[LoopFields], Array]:
+        """Force of the loop over the mean displacement of a side in a component."""
+        rests = self.support is not None
+        given = self.sides[side][component]
+        if rests and len(self.rectangles) == 1:
+            return _shear_force
+        if given.prescribed:
+            return reaction(problem, side, component).of
+        if rests:
+            whole = self.size[0]
+        else:
+            whole = self.longest * self.height
+        force = np.broadcast_to(given.mean * whole, self.instants.shape)
+        return constant(force).of
+
     def described(self) -> Description:
-        """The bodies in words, for whoever draws them."""
+        """Description of the bodies for drawings."""
         length, height = self.size
         return Description(
             bodies=len({brick.y for brick in self.rectangles}),
@@ -445,51 +449,68 @@ class Stack:
         )
 
     def _acts(self) -> Iterator[Act]:
+        """Loads and prescribed displacements of the sides, and the weight."""
         for name, side in self.sides.items():
             if name == "bottom" and self.support is not None:
                 continue
             for component, given in enumerate(side):
-                yield self._given(given, name, component)
+                yield self._act_on_side(given, name, component)
         size = np.hypot(*self.weight)
         towards = self.weight / np.where(size > 0.0, size, 1.0)
         yield Act("body", "W", on_side("body", [0.5]), towards, size, "N")
 
-    def _given(self, given: Given, side: str, component: int) -> Act:
-        """What is given along a side: evenly in the middle, unevenly at both ends."""
-        towards = ((1.0, 0.0), (0.0, 1.0))[component]
-        along = "xy"[component]
-        unit = "m" if given.prescribed else "Pa"
+    def _act_on_side(self, given: Given, side: str, component: int) -> Act:
+        """Load or displacement of a side: drawn at both ends if it is uneven."""
         is_normal = OUTWARD[side][component] != 0.0
+        along = "xy"[component]
         if given.prescribed:
             symbol = f"u_{along}"
+            unit = "m"
         elif is_normal:
             symbol = "σ"
+            unit = "Pa"
         else:
             symbol = "τ"
-        shares = [0.7 if is_normal else 0.15]
+            unit = "Pa"
+        # Arrows along a side stand beside those across it.
+        shares = [0.7] if is_normal else [0.15]
         values = given.mean
         if np.any(given.slope):
             shares = [0.0, 1.0]
             values = np.stack([given.mean - given.slope, given.mean + given.slope])
         elif is_normal and not given.prescribed:
             shares = [0.15, 0.5, 0.85]
-        places = self._open(side, on_side(side, shares))
-        return Act(f"{side} {along}", symbol, places, towards, values, unit)
+        return Act(
+            where=f"{side} {along}",
+            symbol=symbol,
+            places=self._on_bodies(side, on_side(side, shares)),
+            towards=((1.0, 0.0), (0.0, 1.0))[component],
+            values=values,
+            unit=unit,
+        )
 
-    def _open(self, side: str, places: Array) -> Array:
-        """Places on a side of all bodies, brought to those bodies that are there."""
+    def _on_bodies(self, side: str, points: Array) -> Array:
+        """Points on a side, moved up or down onto the bodies that are there.
+
+        Shape (n, 2) both, as shares of the length and height of all bodies.
+        """
         x, y, columns, rows = np.array(self.rectangles).T
-        places = places.copy()
-        (along, up) = self.grid
-        for place in places:
-            is_there = (x <= place[0] * along) & (place[0] * along <= x + columns)
+        points = points.copy()
+        along, up = self.grid
+        for point in points:
+            position = point[0] * along
+            is_there = (x <= position) & (position <= x + columns)
             low = y[is_there].min() / up
             high = (y + rows)[is_there].max() / up
-            ends = {"top": (high, high), "bottom": (low, low)}.get(side, (low, high))
-            place[1] = ends[0] + place[1] * (ends[1] - ends[0])
-        return places
+            if side == "top":
+                low = high
+            elif side == "bottom":
+                high = low
+            point[1] = low + point[1] * (high - low)
+        return points
 
     def _holds(self) -> Iterator[Hold]:
+        """Support, clamps, rollers and spring."""
         if self.support is not None:
             yield Hold("support", "bottom", gap=self.support.gap)
         for name, side in self.sides.items():
@@ -502,6 +523,13 @@ class Stack:
             yield Hold("spring", "right")
 
 
+def _spring_force(fields: LoopFields) -> Array:
+    """Force of the spring at the foot, shape (n_instants,), N."""
+    force: Array = np.asarray(fields.contact("spring").normal_force)[0]
+    return force
+
+
 def _shear_force(fields: LoopFields) -> Array:
+    """Friction force of the body on its support, shape (n_instants,), N."""
     force = -fields.contact("support").tangential_force
     return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))

@@ -1,11 +1,12 @@
-"""Rods as a discrete problem: linear elements that are cut, friction lumped at the nodes."""
+"""Discrete problem of rods: linear elements that are cut, friction lumped at nodes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import block_diag
 
@@ -23,49 +24,86 @@ if TYPE_CHECKING:
     from solver.discrete.rods.rods import End, Rods
 
 DEGREES = 2
-"""Polynomials of the friction force on each piece of a contact: resultant and first
-moment. Without them both sides balance each other but slowly: 1 % of the friction force
-then takes more than 200 iterations instead of 40 (measured by default, with Anderson
-acceleration and automatic k). 4 save up to half of the iterations with 20 wires or more
-in 4 pieces each, and so do 10 pieces; few wires gain nothing."""
+"""Macro modes of the friction force on each piece of a contact between rods: resultant
+and first moment. Without them the forces of both sides balance only slowly: 1 % of the
+friction force then takes more than 200 iterations instead of 40 (measured by default,
+with Anderson acceleration and automatic k). 4 modes save up to half of the iterations
+with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires gain nothing."""
 NO_ROW = -1
+"""Number of a boundary row that a node does not have."""
 SIDES = {"left": "support", "right": "load"}
 """Interfaces of the ends, by their side."""
 
 
 def _pieces_of(rods: Rods) -> tuple[list[int], int]:
-    """Elements of the pieces of each rod, and how many pieces lie before the break of one."""
+    """Elements of the pieces of each rod, and number of pieces before the broken node.
+
+    The number is 0 where no rod is broken.
+    """
     if rods.broken is None:
         return substructure_sizes(rods.elements, rods.substructures), 0
-    node = rods.broken[1]
+    _, node = rods.broken
     count = max(rods.substructures, 2)
     beyond = rods.elements - node
+    # Pieces are shared out by length, but each side of the break has at least one
+    # piece, and no more than it has elements.
     before = round(count * node / rods.elements)
     before = min(max(before, 1, count - beyond), node, count - 1)
-    return substructure_sizes(node, before) + substructure_sizes(
-        beyond, count - before
-    ), before
+    sizes_before = substructure_sizes(node, before)
+    sizes_beyond = substructure_sizes(beyond, count - before)
+    return sizes_before + sizes_beyond, before
+
+
+class _Piece(NamedTuple):
+    """A piece of a rod: its number, its first element, and how many elements it has."""
+
+    number: int
+    first: int
+    size: int
+
+    @property
+    def elements(self) -> slice:
+        """Elements of the piece among those of the rod."""
+        return slice(self.first, self.first + self.size)
+
+    @property
+    def nodes(self) -> slice:
+        """Nodes of the piece, among those of all pieces (a cut's are there twice)."""
+        first = self.first + self.number
+        return slice(first, first + self.size + 1)
+
+    def springs(self, rods: Rods) -> dict[int, End]:
+        """Ends of the rod that springs hold, by their node in this piece."""
+        ends = {0: rods.left, rods.elements: rods.right}
+        last = self.first + self.size
+        return {
+            node - self.first: end
+            for node, end in ends.items()
+            if end.is_on_spring and self.first <= node <= last
+        }
 
 
 class CutRods:
-    """Parallel rods that are all cut alike, with ends, elements and instants alike.
+    """Parallel rods with the same cuts, ends, elements and instants.
 
     Lengths are scaled by the longest rod, forces by ES of the stiffest
     (solver/README.md, 1).
 
     Each rod rubs on a support of its own, or on the rods before and behind it; `names`
-    are those of the interfaces, and `places` the positions of the nodes of each rod,
-    (n_nodes,), m. Degrees of freedom run along rod after rod; a broken one has two at
-    its break, and no boundary row there. Rows of one law follow each other: the lower
-    sides of all contacts, if they are between rods, the upper sides of all contacts,
-    then the left ends and the right ends, cut by cut.
+    are the names of these interfaces, `places` the positions of the nodes of each rod,
+    (n_nodes,), m, and `rub_at_ends` says whether the first and the last node rub.
+
+    Degrees of freedom run along rod after rod; a broken rod has two at its break, and
+    no boundary row there. Rows of one law follow each other: the lower sides of all
+    contacts, if they are between rods, the upper sides of all contacts, then the left
+    ends and the right ends, cut by cut.
 
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean
-    over the substructure. On the friction points it is that of a density ES/l_sub^2
-    over one element's length, the same at every node and on both sides of a contact:
-    with the halved tributary length at the two sides of a cut, the iterations miss the
-    figures that an independent implementation reports (displacement error 0.15 against
-    0.21 at iteration 10 of its test), with the whole element length they meet them.
+    over the substructure. On the friction points it is the density ES/l_sub^2 times one
+    element's length, the same at every node and on both sides of a contact: with the
+    halved tributary length at the two sides of a cut, the iterations miss the figures
+    that an independent implementation reports (displacement error 0.15 against 0.21 at
+    iteration 10 of its test); with the whole element length they meet them.
     """
 
     def __init__(
@@ -78,16 +116,16 @@ class CutRods:
         self._rods = rods
         self._places = places
         self._names = names
-        length = max(one.length for one in rods)
-        stiffness = max(one.stiffness for one in rods)
+        length = max(each.length for each in rods)
+        stiffness = max(each.stiffness for each in rods)
         self._scales = Scales(length, stiffness, rods[0].duration)
         self._sizes, before = _pieces_of(rods[0])
-        # Nodes of piece after piece: a cut's are there twice.
+        # Nodes of piece after piece, (n_nodes + n_cuts,): a cut's are there twice.
         self._piece = np.repeat(np.arange(len(self._sizes)), np.add(self._sizes, 1))
         self._nodes = np.arange(len(self._piece)) - self._piece
         self._shares = np.concatenate([tributary(size) for size in self._sizes])
         self._rubs = slice(1 - rub_at_ends[0], len(self._nodes) - 1 + rub_at_ends[1])
-        # Beyond its break a rod has one degree of freedom more.
+        # Degrees of freedom more that a rod has beyond its break, (n_rods, n_pieces).
         self._beyond = np.zeros((len(rods), len(self._sizes)), dtype=np.intp)
         if rods[0].broken is not None:
             self._beyond[rods[0].broken[0] - 1, before:] = 1
@@ -99,122 +137,133 @@ class CutRods:
             self._lower = 0
         else:
             self._lower = len(names)
+        # Rows of the sides of contacts, lower ones first, at the nodes of all pieces.
         self._sides = np.full((len(names) + self._lower, len(self._nodes)), NO_ROW)
         rubbing = self._sides[:, self._rubs]
         rubbing[:] = np.arange(rubbing.size).reshape(rubbing.shape)
+        # Rows of the left and the right end of every piece, (2, n_pieces, n_rods).
+        is_whole = breaks.T == 0
         is_there = np.ones((2, len(self._sizes), len(rods)), dtype=bool)
-        is_there[0, 1:] = is_there[1, :-1] = breaks.T == 0
+        is_there[0, 1:] = is_whole
+        is_there[1, :-1] = is_whole
         rows = rubbing.size - 1 + np.cumsum(is_there).reshape(is_there.shape)
         self._ends = np.where(is_there, rows, NO_ROW)
 
     def problem(self) -> Problem:
-        """The discrete problem."""
-        carried = self._rods[0].settlement
+        """Discrete problem of the rods."""
+        rods = self._rods[0]
         scales = self._scales
+        carried = None
+        if rods.settlement is not None:
+            carried = rods.settlement / scales.displacement
+        positions = [
+            np.repeat(places, dofs)
+            for places, dofs in zip(self._places, self._dofs_at, strict=True)
+        ]
+        # Pieces of equal operators share them, also those of different rods.
         shared: dict[tuple[object, ...], Elasticity] = {}
-        wholes = zip(self._places, self._dofs_at, strict=True)
+        substructures = list[Substructure]()
+        for rod in range(len(self._rods)):
+            substructures.extend(self._substructures(rod, shared))
         return Problem(
-            substructures=tuple(
-                piece
-                for rod in range(len(self._rods))
-                for piece in self._pieces(rod, shared)
-            ),
+            substructures=tuple(substructures),
             interfaces=dict(self._interfaces()),
-            positions=np.concatenate([np.repeat(own, dofs) for own, dofs in wholes]),
-            instants=self._rods[0].instants,
-            carried=None if carried is None else carried / scales.displacement,
+            positions=np.concatenate(positions),
+            instants=rods.instants,
+            carried=carried,
             scales=scales,
         )
 
-    def _pieces(
+    def _substructures(
         self, rod: int, shared: dict[tuple[object, ...], Elasticity]
     ) -> Iterator[Substructure]:
-        """All pieces of a rod; those of equal operators share it."""
+        """Substructures of a rod from left to right; `shared` are operators so far."""
         rods = self._rods[rod]
-        stiffness = self._stiffness(self._rods[rod])
-        sides = self._sides[[rod]]
-        if self._lower:
-            # On the rod before it, and below the one behind it.
-            sides = self._sides[
-                [self._lower + rod - 1] * (rod > 0) + [rod] * (rod < self._lower)
-            ]
-        strain = rods.strain
-        if rods.settlement is not None:
-            # Seen from a support that moves by s, a rod is as if it shrank by ds/dx.
-            moved = np.diff(rods.settlement, axis=0) * (rods.elements / rods.length)
-            if strain is None:
-                strain = -moved
-            else:
-                strain = strain - moved
-        if strain is None:
-            needed = None
-        else:
-            needed = strain * stiffness[:, None]
-        inner = self._inner_force(rods, needed)
-        held = {0: rods.left, rods.elements: rods.right}
-        on_springs = {node: end for node, end in held.items() if end.is_on_spring}
-        start = 0
+        stiffness = self._stiffness(rods)
+        free_force = _free_force(rods, stiffness)
+        inner_force = self._inner_force(rods, free_force)
         first_dof = int(self._dofs_at[:rod].sum())
-        for piece, size in enumerate(self._sizes):
-            elements = slice(start, start + size)
-            span = range(start, start + size + 1)
-            nodes = slice(span.start + piece, span.stop + piece)
-            rows = np.concatenate([sides[:, nodes].ravel(), self._ends[:, piece, rod]])
-            trace = np.concatenate([*[np.arange(size + 1)] * len(sides), [0, size]])
+        first = 0
+        for number, size in enumerate(self._sizes):
+            piece = _Piece(number, first, size)
+            rows, nodes = self._boundary(rod, piece)
             is_row = rows != NO_ROW
-            springs = {
-                node - start: on_springs[node] for node in on_springs if node in span
-            }
             key = (
                 is_row.tobytes(),
-                stiffness[elements].tobytes(),
+                stiffness[piece.elements].tobytes(),
                 rods.length,
-                tuple(springs),
+                tuple(piece.springs(rods)),
             )
             if key not in shared:
-                own = stiffness[elements]
-                ends = int(is_row[-2:].sum())
-                shared[key] = self._operator(rods, own, trace[is_row], ends, springs)
-            if inner is None:
-                force = None
-            else:
-                force = inner[nodes]
-            for node, end in springs.items():
-                if force is None:
-                    force = np.zeros((size + 1, len(rods.instants)))
-                else:
-                    force = force
-                force[node] += (
-                    end.spring / self._scales.force * _seen(rods, end, start + node)
-                )
-            first = first_dof + start + int(self._beyond[rod, piece])
+                shared[key] = self._operator(rods, piece, stiffness, nodes, is_row)
+            first_of_piece = first_dof + first + int(self._beyond[rod, number])
             yield Substructure(
                 elasticity=shared[key],
-                dofs=np.arange(first, first + size + 1),
+                dofs=np.arange(first_of_piece, first_of_piece + size + 1),
                 rows=rows[is_row],
-                body_force=force,
-                free_force=None if needed is None else needed[elements],
+                body_force=self._body_force(rods, piece, inner_force),
+                free_force=None if free_force is None else free_force[piece.elements],
             )
-            start += size
+            first += size
 
-    def _inner_force(self, rods: Rods, needed: Array | None) -> Array | None:
-        """Forces inside the pieces of a rod, piece after piece, (n_nodes, n_instants), scaled.
+    def _boundary(self, rod: int, piece: _Piece) -> tuple[Indices, Indices]:
+        """Boundary rows of a piece, or NO_ROW, and the node of each in it, (n,) both.
 
-        Of body forces, and of elements that push against their nodes with the force
-        that would keep them as they were; None of neither.
+        Those of the contacts come first, then those of both ends.
+        """
+        sides = self._sides[self._sides_of(rod)]
+        at_sides = sides[:, piece.nodes]
+        at_ends = self._ends[:, piece.number, rod]
+        along = np.tile(np.arange(piece.size + 1), len(sides))
+        rows = np.concatenate([at_sides.ravel(), at_ends])
+        return rows, np.concatenate([along, [0, piece.size]])
+
+    def _sides_of(self, rod: int) -> list[int]:
+        """Sides of contacts on a rod: with its support, or with its neighbours."""
+        if not self._lower:
+            return [rod]
+        sides = list[int]()
+        if rod > 0:
+            sides.append(self._lower + rod - 1)
+        if rod < self._lower:
+            sides.append(rod)
+        return sides
+
+    def _body_force(
+        self, rods: Rods, piece: _Piece, inner_force: Array | None
+    ) -> Array | None:
+        """Nodal forces of a piece, (n_nodes, n_instants), scaled; None without any.
+
+        Springs at the ends push with the displacement of what holds them.
+        """
+        force = None
+        if inner_force is not None:
+            force = inner_force[piece.nodes]
+        for node, end in piece.springs(rods).items():
+            if force is None:
+                force = np.zeros((piece.size + 1, len(rods.instants)))
+            seen = _seen(rods, end, piece.first + node)
+            force[node] += end.spring / self._scales.force * seen
+        return force
+
+    def _inner_force(self, rods: Rods, free_force: Array | None) -> Array | None:
+        """Nodal forces of a rod, piece after piece, (n_nodes + n_cuts, n_instants).
+
+        Scaled; sum of the body force, and of `free_force`, (n_elements, n_instants),
+        with which elements push against their nodes; None without both.
         """
         forces: list[Array] = []
         if rods.body_force is not None:
             unit = self._scales.displacement
-            along = np.broadcast_to(
-                rods.body_force, (rods.elements + 1, len(rods.instants))
-            )
-            element = rods.length / unit / rods.elements * self._shares
-            forces.append(
-                element[:, None] * (along * unit / self._scales.force)[self._nodes]
-            )
-        if needed is not None:
-            pushing = np.insert(-needed, np.cumsum([0, *self._sizes]), 0.0, axis=0)
+            shape = (rods.elements + 1, len(rods.instants))
+            along = np.broadcast_to(rods.body_force, shape)
+            density = (along * unit / self._scales.force)[self._nodes]
+            lengths = rods.length / unit / rods.elements * self._shares
+            forces.append(lengths[:, None] * density)
+        if free_force is not None:
+            # Nothing pushes from beyond the ends of a piece.
+            ends = np.cumsum([0, *self._sizes])
+            pushing = np.insert(-free_force, ends, 0.0, axis=0)
             forces.append(np.diff(pushing, axis=0))
         if forces:
             return sum(forces[1:], forces[0])
@@ -223,29 +272,35 @@ class CutRods:
     def _operator(
         self,
         rods: Rods,
+        piece: _Piece,
         stiffness: Array,
-        trace: Indices,
-        ends: int,
-        springs: Mapping[int, End],
+        nodes: Indices,
+        is_row: NDArray[np.bool_],
     ) -> Elasticity:
-        """Operator of a piece by what its elements have for stiffness, its rows and springs."""
+        """Operator of a piece.
+
+        `stiffness` is ES of the elements of the rod, (n_elements,), scaled; `nodes` and
+        `is_row`, (n,), are the nodes of boundary rows, as of `_boundary`, and which of
+        these there are.
+        """
         units = self._scales
-        size = len(stiffness)
+        own_stiffness = stiffness[piece.elements]
         length = rods.length / units.displacement
-        part = size * (element := length / rods.elements)
-        at_ends = 1.0 / part / float(np.mean(1.0 / stiffness))
-        direction = np.full(len(trace), at_ends)
-        direction[: len(trace) - ends] = at_ends * element / part
-        springs_of = stiffness * (rods.elements / length)
-        at_nodes = np.append(springs_of, 0.0) + np.insert(springs_of, 0, 0.0)
-        bands = [-springs_of, at_nodes, -springs_of]
+        element = length / rods.elements
+        whole = piece.size * element
+        at_ends = 1.0 / whole / float(np.mean(1.0 / own_stiffness))
+        direction = np.full(len(nodes), at_ends)
+        direction[:-2] = at_ends * element / whole
+        of_springs = own_stiffness * (rods.elements / length)
+        at_nodes = np.append(of_springs, 0.0) + np.insert(of_springs, 0, 0.0)
+        bands = [-of_springs, at_nodes, -of_springs]
         matrix = sparse.csr_array(sparse.diags_array(bands, offsets=[-1, 0, 1]))
-        for node, end in springs.items():
+        for node, end in piece.springs(rods).items():
             matrix[node, node] += end.spring / (units.force / units.displacement)
-        return Elasticity(matrix, trace, direction)
+        return Elasticity(matrix, nodes[is_row], direction[is_row])
 
     def _stiffness(self, rods: Rods) -> Array:
-        """ES of every element of a rod, scaled."""
+        """ES of every element of a rod, (n_elements,), scaled."""
         if rods.section is None:
             section = np.ones(rods.elements)
         else:
@@ -253,31 +308,27 @@ class CutRods:
         return np.asarray(section * (rods.stiffness / self._scales.force))
 
     def _interfaces(self) -> Iterator[tuple[str, Interface]]:
-        """Contacts, and then ends and cuts from the left to the right."""
+        """All interfaces: contacts, then ends and cuts from the left to the right."""
+        rods = self._rods[0]
         first_above = len(self._rods) - len(self._names)
         for number, name in enumerate(self._names):
             yield name, self._friction(first_above + number)
-        yield (
-            SIDES["left"],
-            self._held_or_pulled(self._rods[0].left, self._ends[0, 0], 0),
-        )
+        yield SIDES["left"], self._held_or_pulled(rods.left, self._ends[0, 0], 0)
         for piece in range(len(self._sizes) - 1):
             first = self._ends[1, piece]
             second = self._ends[0, piece + 1]
             whole = first != NO_ROW
             # The macro problem balances the force of each rod.
             macro = np.eye(int(whole.sum()))
-            yield (
-                f"cut {piece + 1}-{piece + 2}",
-                Perfect(first[whole], second[whole], macro),
-            )
-        yield (
-            SIDES["right"],
-            self._held_or_pulled(self._rods[0].right, self._ends[1, -1], -1),
-        )
+            law = Perfect(first[whole], second[whole], macro)
+            yield f"cut {piece + 1}-{piece + 2}", law
+        yield SIDES["right"], self._held_or_pulled(rods.right, self._ends[1, -1], -1)
 
     def _held_or_pulled(self, end: End, rows: Indices, node: int) -> Interface:
-        """Law of the ends of all rods; a spring that holds one is part of the rod."""
+        """Law of the ends of all rods on a side, at their rows, (n_rods,).
+
+        A spring that holds the end is part of the rod: then the end is free.
+        """
         if end.is_prescribed:
             held = _seen(self._rods[0], end, node) / self._scales.displacement
             return Dirichlet(rows, np.tile(held, (len(rows), 1)))
@@ -289,50 +340,83 @@ class CutRods:
         return Neumann(rows, pulled, np.eye(len(rows)))
 
     def _friction(self, rod: int) -> Contact:
-        """Law of a rod on its support, or on the rod before it."""
+        """Contact of a rod with its support, or with the rod before it."""
         rods = self._rods[rod]
         units = (self._scales.displacement, self._scales.force)
-        component = Component(self._sides[rod, self._rubs])
         macro = None
-        piece = self._piece[self._rubs]
-        nodes = self._nodes[self._rubs]
         if self._lower:
             above, below = self._sides[[self._lower + rod - 1, rod - 1], self._rubs]
             component = Component(above, below)
-            on_pieces = np.bincount(piece).tolist()
-            bases = [
-                np.vander(np.linspace(-1.0, 1.0, n), min(DEGREES, n)) for n in on_pieces
-            ]
-            macro = sparse.csr_array(block_diag(*bases))
+            macro = self._macro_basis()
+        else:
+            component = Component(self._sides[rod, self._rubs])
+        nodes = self._nodes[self._rubs]
         weights = rods.length * (self._shares[self._rubs] / rods.elements)
-        # Where one of both is broken there are two points.
-        points = (
-            nodes
-            - nodes[0]
-            + self._beyond[max(rod - 1, 0) : rod + 1].max(axis=0)[piece]
-        )
-        positions = np.zeros(points[-1] + 1)
-        positions[points] = self._places[rod][nodes]
         known = rods.bounds[nodes] * weights[:, None] / units[1]
         known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
-        # Around a node are half an element on either side, in series.
-        soft = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
-        around = 2.0 / (soft[:-1] + soft[1:]) * (units[0] / rods.length)
+        points = self._points(rod)
+        positions = np.zeros(points[-1] + 1)
+        positions[points] = self._places[rod][nodes]
         return Contact(
             tangential=rods.friction_law.at(component, weights, units, known=known),
             points=points,
             positions=positions,
             weights=weights,
-            around=Rod(around[nodes]),
+            around=Rod(self._stiffness_at_nodes(rods)[nodes]),
             macro=macro,
         )
 
+    def _macro_basis(self) -> sparse.csr_array:
+        """Macro basis of a contact between rods, (n_pairs, n_macro), piece by piece."""
+        counts = np.bincount(self._piece[self._rubs]).tolist()
+        bases = list[Array]()
+        for count in counts:
+            along = np.linspace(-1.0, 1.0, count)
+            bases.append(np.vander(along, min(DEGREES, count)))
+        return sparse.csr_array(block_diag(*bases))
+
+    def _points(self, rod: int) -> Indices:
+        """Point of each pair of the contact of a rod, (n_pairs,), from 0.
+
+        Where the rod or the one before it is broken there are two points.
+        """
+        piece = self._piece[self._rubs]
+        nodes = self._nodes[self._rubs]
+        beyond = self._beyond[max(rod - 1, 0) : rod + 1].max(axis=0)
+        return np.asarray(nodes - nodes[0] + beyond[piece])
+
+    def _stiffness_at_nodes(self, rods: Rods) -> Array:
+        """ES around each node of a rod, (n_nodes,), scaled, per length of the rod.
+
+        Around a node are half an element on either side, in series.
+        """
+        compliance = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
+        in_series = 2.0 / (compliance[:-1] + compliance[1:])
+        return in_series * (self._scales.displacement / rods.length)
+
+
+def _free_force(rods: Rods, stiffness: Array) -> Array | None:
+    """Axial force of elements that would strain them as heat or settlement does.
+
+    Shape (n_elements, n_instants), scaled as `stiffness`, (n_elements,); None where
+    nothing strains them.
+    """
+    strain = rods.strain
+    if rods.settlement is not None:
+        # Seen from a support that moves by s, a rod is as if it shrank by ds/dx.
+        moved = np.diff(rods.settlement, axis=0) * (rods.elements / rods.length)
+        if strain is None:
+            strain = -moved
+        else:
+            strain = strain - moved
+    if strain is None:
+        return None
+    return strain * stiffness[:, None]
+
 
 def _seen(rods: Rods, end: End, node: int) -> Array:
-    """Displacement of what holds an end, as seen from the support, shape (n_instants,), m."""
+    """Displacement of what holds an end, relative to the support, (n_instants,), m."""
     assert end.displacement is not None
     if rods.settlement is None:
-        settled = 0.0
-    else:
-        settled = rods.settlement[node]
-    return np.asarray(end.displacement - settled)
+        return end.displacement
+    return np.asarray(end.displacement - rods.settlement[node])

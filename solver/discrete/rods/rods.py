@@ -1,4 +1,4 @@
-"""Elastic rods that rub on a support, or on each other."""
+"""Elastic rods that rub on a support, or on each other, as plain data."""
 
 from __future__ import annotations
 
@@ -39,33 +39,34 @@ from solver.laws import FrictionLaw
 from solver.refusal import RefusedError
 
 SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-"""Where a body force that changes along the rods is shown, and the pressure where
-anything rubs."""
+"""Positions at which a body force that changes along the rods is drawn, and the
+pressure where rods rub; over the length."""
 SEVERAL = 8
-"""Wires up to which the load of each is shown."""
+"""Largest number of wires of which each shows its load."""
 Side = Literal["left", "right"]
 
 
 @dataclass(frozen=True, eq=False)
 class End:
-    """How an end of every rod is pulled, or held; with nothing given it is free.
+    """Load or support at one end of every rod; without values the end is free.
 
     Attributes
     ----------
     force
-        Axial force on it, positive to the right, shape (n_instants,), N; None where it
-        is held.
+        Axial force on the end, positive to the right, shape (n_instants,), N; None
+        where the end is held.
     displacement
-        Of what holds it, shape (n_instants,), m; None where nothing does.
+        Displacement of the support that holds the end, shape (n_instants,), m; None
+        where the end is not held.
     spring
-        Stiffness of the spring by which that holds it, N/m; infinite where it does so
-        itself.
+        Stiffness of the spring between the end and that support, N/m; infinite without
+        a spring.
 
     Raises
     ------
     RefusedError
-        For a force and a displacement, a spring that is not stiffer than zero, or no
-        numbers.
+        For a force together with a displacement, a spring that is not stiffer than
+        zero, or values that are not finite.
     """
 
     force: Array | None = None
@@ -86,12 +87,12 @@ class End:
 
     @property
     def is_prescribed(self) -> bool:
-        """Whether its displacement is given."""
+        """Check whether the displacement of the end is prescribed."""
         return self.displacement is not None and bool(np.isinf(self.spring))
 
     @property
     def is_on_spring(self) -> bool:
-        """Whether a spring holds it."""
+        """Check whether a spring holds the end."""
         return self.displacement is not None and not np.isinf(self.spring)
 
 
@@ -104,24 +105,24 @@ class Rods:
     Attributes
     ----------
     length, stiffness
-        Length L, m, and axial stiffness ES of one rod, N; where that varies, of the
+        Length L, m, and axial stiffness ES of one rod, N; where ES varies, that of the
         uniform rod that the same force at both ends stretches by as much.
     elements, substructures
-        Of one rod: numbers of equal linear elements, and of parts that they are dealt
-        to.
+        Numbers of equal linear elements of one rod, and of its substructures.
     bound
         Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or
         where it changes with time (n_nodes, n_instants).
     factors
-        On the bound of each interface between several rods, shape (wires - 1,), or of
-        all.
+        Factors on the bound of each interface between several rods, shape (wires - 1,),
+        or one factor for all.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
     wires
-        Number of the rods, from 1: a single one rubs on its support, several on their
-        neighbours.
+        Number of the rods, from 1: a single rod rubs on its support, several rods on
+        their neighbours.
     broken
-        Number of the broken rod and of the node where it is broken, of several rods.
+        Number of the broken rod, from 1, and of the node where it is broken; for
+        several rods only.
     body_force
         Axial force per length, N/m: uniform along the rods, shape (n_instants,), or at
         the nodes of each, (n_nodes, n_instants).
@@ -130,20 +131,20 @@ class Rods:
         (n_elements, n_instants), 1.
     settlement
         Displacement s of the support itself, at the nodes of a single rod, shape
-        (n_nodes, n_instants), m. Ends are not on it.
+        (n_nodes, n_instants), m. What holds the ends does not move with it.
     section
         Stiffness of every element over `stiffness`, shape (n_elements,), where it
         varies; the mean of the inverse is 1.
     pressure
-        p behind the bound over time, shape (n_instants,), N/m, for whoever draws it,
-        where one number says it at every instant.
+        Pressure p behind the bound over time, shape (n_instants,), N/m, for drawings,
+        where it is uniform along the rods.
 
     Raises
     ------
     RefusedError
-        For a number that is not above zero or none, a field of another shape, instants
-        that do not increase, a bound below zero, a settlement under several rods, or a
-        break of a single one.
+        For a number that is not above zero or not finite, a field of another shape,
+        instants that do not increase, a bound below zero, a settlement under several
+        rods, or a break of a single rod.
     """
 
     length: float
@@ -188,7 +189,7 @@ class Rods:
             )
 
     def _check_fields(self) -> None:
-        """Refuse what does not fit the numbers of elements, rods and instants."""
+        """Refuse fields that do not fit the numbers of elements, rods and instants."""
         nodes = self.elements + 1
         instants = len(self.instants)
         over_time = Numbers(((instants,),))
@@ -206,12 +207,10 @@ class Rods:
             broken=Each(COUNT, 2),
         )
         for side, end in self.ends.items():
-            for what, values in (
-                ("force", end.force),
-                ("displacement", end.displacement),
-            ):
-                if values is not None:
-                    check_value(f"Rods.{side}.{what}", values, over_time)
+            if end.force is not None:
+                check_value(f"Rods.{side}.force", end.force, over_time)
+            if end.displacement is not None:
+                check_value(f"Rods.{side}.displacement", end.displacement, over_time)
         if self.broken is not None:
             check_value("Rods.wires", self.wires, Count(2))
             check_value("Rods.broken[0]", self.broken[0], Count(1, self.wires))
@@ -224,19 +223,19 @@ class Rods:
 
     @property
     def bounds(self) -> Array:
-        """The bound, shape (n_nodes, n_instants), or (n_nodes, 1) where it stays the same, N/m."""
+        """Friction bound, N/m, (n_nodes, n_instants), or (n_nodes, 1) if constant."""
         if self.bound.ndim == 2:
             return self.bound
         return self.bound[:, None]
 
     @property
     def ends(self) -> dict[Side, End]:
-        """Both, by their side."""
+        """Both ends by their side, the right one first."""
         return {"right": self.right, "left": self.left}
 
     @property
     def load(self) -> Array:
-        """Force on the right end of a rod that rubs nowhere, shape (n_instants,), N."""
+        """Force on the right end if there were no friction, shape (n_instants,), N."""
         if self.right.is_prescribed:
             assert self.right.displacement is not None
             return self.right.displacement * (self.stiffness / self.length)
@@ -246,18 +245,18 @@ class Rods:
 
     @property
     def is_only_pulled(self) -> bool:
-        """Whether nothing but a force at the right ends moves the rods, and the left ones rest."""
-        held = self.left.is_prescribed and not np.any(self.left.displacement)
-        moved = self.body_force, self.strain, self.settlement
-        return (
-            held
-            and self.right.force is not None
-            and all(each is None for each in moved)
-        )
+        """Check whether only a force at the right ends moves the rods.
+
+        The left ends are clamped then, and nothing acts between both ends.
+        """
+        is_clamped = self.left.is_prescribed and not np.any(self.left.displacement)
+        is_pulled = self.right.force is not None
+        between = (self.body_force, self.strain, self.settlement)
+        return is_clamped and is_pulled and all(each is None for each in between)
 
     @property
     def rubbing_sides(self) -> int:
-        """Neighbours of the broken rod."""
+        """Number of neighbours of the broken rod; 0 without one."""
         if self.broken is None:
             return 0
         return 1 + (1 < self.broken[0] < self.wires)
@@ -265,20 +264,20 @@ class Rods:
     def discretise(self) -> Problem:
         """Make the discrete problem.
 
-        On the support the interface is "friction"; "contact 1-2" lies between rods 1
-        and 2, the second being the body above. Its points run along the rods; at the
+        The interface with a support is "friction"; "contact 1-2" lies between rods 1
+        and 2, of which rod 2 is the body above. Its points run along the rods; at the
         break of either there are two, one for each of the parts that have come apart.
 
-        Between rods held ends do not rub: nothing slips there, and friction could not
-        be told from the reactions.
+        Between rods, ends of prescribed displacement do not rub: nothing slips there,
+        and friction could not be told from the reactions.
         """
-        names = ["friction"]
-        rub_at_ends = (True, True)
-        if self.wires > 1:
-            names = [
-                f"contact {number}-{number + 1}" for number in range(1, self.wires)
-            ]
-            rub_at_ends = not self.left.is_prescribed, not self.right.is_prescribed
+        if self.wires == 1:
+            names = ["friction"]
+            rub_at_ends = (True, True)
+        else:
+            numbers = range(1, self.wires)
+            names = [f"contact {number}-{number + 1}" for number in numbers]
+            rub_at_ends = (not self.left.is_prescribed, not self.right.is_prescribed)
         rods = [self] * self.wires
         places = [self.nodes] * self.wires
         return CutRods(rods, places, names, rub_at_ends).problem()
@@ -289,11 +288,9 @@ class Rods:
         drive = self._drive
         if self.driven_end is None and drive is not None:
             title, unit, _ = drive
-            is_held = self.ends["right"].displacement is not None
-            return (title, unit), ("Force", "N") if is_held else (
-                "End displacement",
-                "m",
-            )
+            if self.right.displacement is not None:
+                return (title, unit), ("Force", "N")
+            return (title, unit), ("End displacement", "m")
         if self.wires == 1:
             return ("End displacement", "m"), ("Force", "N")
         return ("Mean end displacement", "m"), ("Tension", "N")
@@ -301,8 +298,8 @@ class Rods:
     def loop(self, problem: Problem) -> Loop:
         """Mean force on the ends that are driven over their mean displacement.
 
-        Where no end is: what a right end does, or the force that holds it, over what
-        drives.
+        Where no end is driven: displacement of the right end, or the force that holds
+        it, over the strain, settlement or body force that drives.
         """
         side = self.driven_end or "right"
         drive = self._drive
@@ -319,9 +316,10 @@ class Rods:
         """Mean axial force at the ends of a side, N, positive to the right."""
         end = self.ends[side]
         if end.displacement is None:
-            return constant(
-                np.zeros(len(self.instants)) if end.force is None else end.force
-            )
+            force = end.force
+            if force is None:
+                force = np.zeros(len(self.instants))
+            return constant(force)
         if end.is_prescribed:
             return reaction(problem, SIDES[side]).times(1.0 / self.wires)
         moved = self._moved(problem, side).times(-end.spring)
@@ -329,32 +327,33 @@ class Rods:
         return replace(moved, constant=moved.constant + spring * end.displacement)
 
     def _moved(self, problem: Problem, side: Side) -> Probe:
-        """Mean displacement of the ends of a side, which stand on no support, m."""
+        """Mean displacement of the ends of a side, not relative to the support, m."""
         rows = problem.interfaces[SIDES[side]].rows
         node = 0 if side == "left" else -1
         if self.settlement is None:
             settled = 0.0
         else:
             settled = self.settlement[node]
-        return Probe(
-            problem.row_dofs[rows], np.full(len(rows), 1.0 / len(rows)), settled
-        )
+        weights = np.full(len(rows), 1.0 / len(rows))
+        return Probe(problem.row_dofs[rows], weights, settled)
 
     @property
     def driven_end(self) -> Side | None:
-        """The end that is pulled or moved, the right one before the left one, or None."""
+        """Side of the end that is pulled or moved, the right one first, or None."""
         for side, end in self.ends.items():
-            if (
-                np.any(end.force)
-                if end.displacement is None
-                else np.any(end.displacement)
-            ):
+            values = end.displacement
+            if values is None:
+                values = end.force
+            if np.any(values):
                 return side
         return None
 
     @property
     def _drive(self) -> tuple[str, str, Array] | None:
-        """What drives rods whose ends are left alone: title, unit, and values over time."""
+        """Title, unit and values over time of what drives rods beside their ends.
+
+        Values, (n_instants,), are those at the place where they are largest.
+        """
         drives = (
             ("Strain without force", "", self.strain),
             ("Settlement", "m", self.settlement),
@@ -367,8 +366,11 @@ class Rods:
         return None
 
     def described(self) -> Description:
-        """The rods in words, for whoever draws them."""
-        broken = self.broken and (self.broken[0] - 1, float(self.nodes[self.broken[1]]))
+        """Description of the rods for drawings."""
+        broken = None
+        if self.broken is not None:
+            number, node = self.broken
+            broken = (number - 1, float(self.nodes[node]))
         return Description(
             bodies=self.wires,
             length=self.length,
@@ -380,40 +382,43 @@ class Rods:
         )
 
     def _acts(self) -> Iterator[Act]:
+        """Loads and motions of the ends, along the rods, and of the pressure."""
+        yield from self._acts_at_ends()
         right = OUTWARD["right"]
-        pulled = self.wires if self.wires <= SEVERAL else 1
-        heights = (np.arange(pulled) + 0.5) / pulled
-        for side, end in self.ends.items():
-            if end.displacement is not None:
-                places = on_side(side, heights[:1] if side == "left" else heights)
-                yield Act(f"{side} x", "u", places, right, end.displacement, "m")
-            elif end.force is not None:
-                yield Act(
-                    f"{side} x", "F", on_side(side, heights), right, end.force, "N"
-                )
         shown = np.rint(SHOWN * self.elements).astype(np.intp)
-        if self.body_force is not None:
-            is_uniform = self.body_force.ndim == 1
-            if is_uniform:
-                values = self.body_force
-            else:
-                values = self.body_force[shown]
-            places = on_side("body", [0.5] if is_uniform else SHOWN)
-            yield Act("body", "b", places, right, values, "N/m")
+        if self.body_force is not None and self.body_force.ndim == 1:
+            places = on_side("body", [0.5])
+            yield Act("body", "b", places, right, self.body_force, "N/m")
+        elif self.body_force is not None:
+            places = on_side("body", SHOWN)
+            yield Act("body", "b", places, right, self.body_force[shown], "N/m")
         if self.strain is not None:
             values = self.strain[np.abs(self.strain).max(axis=1).argmax()]
             yield Act("body strain", "ε₀", on_side("body", []), right, values, "")
         if self.settlement is not None:
             places = on_side("bottom", SHOWN)
             yield Act("bottom x", "s", places, right, self.settlement[shown], "m")
-        rubs = SHOWN[
-            np.interp(SHOWN, self.nodes / self.length, self.bounds.max(axis=1)) > 0.0
-        ]
-        if self.pressure is not None and len(rubs):
-            places = on_side("top", rubs)
+        highest = self.bounds.max(axis=1)
+        is_rubbing = np.interp(SHOWN, self.nodes / self.length, highest) > 0.0
+        if self.pressure is not None and is_rubbing.any():
+            places = on_side("top", SHOWN[is_rubbing])
             yield Act("top y", "p", places, OUTWARD["bottom"], self.pressure, "N/m")
 
+    def _acts_at_ends(self) -> Iterator[Act]:
+        """Forces on the ends, and displacements of what holds them."""
+        right = OUTWARD["right"]
+        shown = self.wires if self.wires <= SEVERAL else 1
+        heights = (np.arange(shown) + 0.5) / shown
+        for side, end in self.ends.items():
+            if end.displacement is not None:
+                places = on_side(side, heights[:1] if side == "left" else heights)
+                yield Act(f"{side} x", "u", places, right, end.displacement, "m")
+            elif end.force is not None:
+                places = on_side(side, heights)
+                yield Act(f"{side} x", "F", places, right, end.force, "N")
+
     def _holds(self) -> Iterator[Hold]:
+        """Springs and clamps of the ends, and the support where a single rod rubs."""
         for side, end in self.ends.items():
             if end.is_on_spring:
                 yield Hold("spring", side, moved=end.displacement)

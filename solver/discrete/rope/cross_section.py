@@ -1,4 +1,4 @@
-"""The cross-section of a strand: a core and layers of helical wires, and what it says alone.
+"""Cross-section of a strand: core, layers of helical wires, stiffness, pressures.
 
 Sections of the strand stay plane and wires are long beside their diameter, so that each
 of them is a bar along its helix (G. A. Costello, Theory of Wire Rope, 2nd ed., Springer
@@ -20,14 +20,14 @@ STEEL = 200e9
 ALUMINIUM = 69e9
 """Young's moduli of wires, Pa."""
 PRESTRESSING = 195e9
-"""The same of prestressing steel, Pa (EN 1992-1-1, 3.3.6)."""
+"""Young's modulus of prestressing steel, Pa (EN 1992-1-1, 3.3.6)."""
 MOST_LAYERS = 5
 TIGHT = 1.01
 """Radius that wires beside each other need, over that of their helix, up to which they
 fit: those of real strands touch each other, and are pressed a little out of round."""
 LEAST_LAY = 0.1
-"""Of a layer, degrees: a wire that is hardly laid goes round once in hundreds of
-diameters."""
+"""Smallest lay angle of a layer, degrees: with less a wire goes round once in hundreds
+of diameters."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class WireLayer:
     Attributes
     ----------
     wires, diameter, young
-        Their number, diameter, m, and Young's modulus, Pa.
+        Number of wires, diameter, m, and Young's modulus, Pa.
     lay
-        Lay angle alpha, rad; negative if laid the other way round, 0 of a core alone.
+        Lay angle alpha, rad; negative if laid the other way round, 0 for a core only.
     """
 
     wires: int
@@ -49,7 +49,7 @@ class WireLayer:
 
     @property
     def area(self) -> float:
-        """Of one wire, m^2."""
+        """Area of the section of one wire, m^2."""
         return float(np.pi * self.diameter**2 / 4.0)
 
     @property
@@ -72,39 +72,49 @@ class CrossSection:
     Raises
     ------
     RefusedError
-        For what is no core in a layer of wires or more, and wires that have no room.
+        For a core of several wires or with a lay, for no layers, sizes or lay angles
+        out of range, and wires that have no room.
     """
 
     core: WireLayer
     layers: tuple[WireLayer, ...]
 
     def __post_init__(self) -> None:
-        if remedy := self._remedy():
+        remedy = self._remedy()
+        if remedy:
             allowed = (
                 "rows (wires, diameter, lay angle, modulus) from the core outwards"
             )
             raise RefusedError("CrossSection", self.rows, allowed, remedy)
 
     def _remedy(self) -> str:
-        """What to do with what is no strand, by the number of its row; empty for one."""
+        """Remedy for rows that make no strand, or "" for a strand."""
         if self.core.wires != 1 or self.core.lay:
             return "row 1 is the core: give it 1 wire and a lay angle of 0°"
         if not self.layers:
             return "it has a core alone: add a row for a layer of wires around it"
         for row, (count, diameter, lay, young) in enumerate(self.rows, start=1):
             if not all(0.0 < size < np.inf for size in (count, diameter, young)):
-                return f"row {row}: give one wire or more, a diameter and a modulus above 0"
+                return (
+                    f"row {row}: give one wire or more, a diameter and a modulus "
+                    "above 0"
+                )
             if row > 1 and not LEAST_LAY <= abs(lay) < 90.0:
                 least = plain(LEAST_LAY)
-                return f"row {row}: give a lay angle of {least}° or more in size, less than 90°"
+                return (
+                    f"row {row}: give a lay angle of {least}° or more in size, less "
+                    "than 90°"
+                )
         for layer, (count, diameter, lay, _) in enumerate(self.rows[1:]):
             needed = self.least_radius(layer)
             radius = self.radii[layer]
             if needed > TIGHT * radius:
                 return (
-                    f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do not fit "
-                    f"beside each other on a circle of {2.0 * np.pi * radius:.3g} m, they need "
-                    f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more inside"
+                    f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do "
+                    "not fit beside each other on a circle of "
+                    f"{2.0 * np.pi * radius:.3g} m, they need "
+                    f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more "
+                    "inside"
                 )
         return ""
 
@@ -132,20 +142,20 @@ class CrossSection:
 
     @property
     def rows(self) -> tuple[tuple[float, float, float, float], ...]:
-        """Wires, diameter, m, lay angle, in degrees, and Young's modulus, Pa, inside out."""
+        """Wires, diameter, m, lay angle, degrees, modulus, Pa, inside out."""
         return tuple(
             (
-                float(one.wires),
-                one.diameter,
-                float(f"{np.degrees(one.lay):.12g}"),
-                one.young,
+                float(layer.wires),
+                layer.diameter,
+                float(f"{np.degrees(layer.lay):.12g}"),
+                layer.young,
             )
-            for one in (self.core, *self.layers)
+            for layer in (self.core, *self.layers)
         )
 
     @property
     def diameter(self) -> float:
-        """Of the whole strand, m."""
+        """Diameter of the whole strand, m."""
         return 2.0 * self.radii[-1] + self.layers[-1].diameter
 
     @property
@@ -155,13 +165,13 @@ class CrossSection:
 
     @cached_property
     def stiffness(self) -> float:
-        """Axial stiffness of the strand, which does not untwist, N: tension over strain."""
+        """Axial stiffness, N, of a strand that does not untwist."""
         laid = (one.wires * one.stiffness * np.cos(one.lay) ** 3 for one in self.layers)
         return self.core.stiffness + float(sum(laid))
 
     @cached_property
     def slipping_bending(self) -> float:
-        """Bending stiffness E I cos(alpha) of wires that slip, each about its own axis, N m^2."""
+        """Bending stiffness of slipping wires about own axes, E I cos(alpha), N m^2."""
         return sum(
             float(
                 one.wires * one.young * np.pi * one.diameter**4 / 64.0 * np.cos(one.lay)
@@ -186,7 +196,7 @@ class CrossSection:
         )
 
     def line_pressures(self, tension: Array) -> tuple[Array, Array]:
-        """What presses the wires of every layer on what is below, and on it from above.
+        """Line pressures on the inner and outer face of the wires of every layer.
 
         A wire presses with N sin^2(alpha) / R per length. What a layer and all outside
         it press is spread over the wires below; each layer passes it on. Inner and
@@ -208,7 +218,7 @@ class CrossSection:
         return np.array(below[::-1]), np.array(above[::-1])
 
     def friction_bounds(self, tension: Array, friction: float, factors: Array) -> Array:
-        """Friction that the wires of every layer can take, from below and from above, N/m.
+        """Friction bounds of the wires of every layer, from below and above, N/m.
 
         Shape (n_layers, n_instants), per metre of wire, under the tension of the
         strand, (n_instants,), N; `factors` are mu of every layer on what it lies on
@@ -220,7 +230,7 @@ class CrossSection:
 
 
 def laid(rows: Iterable[Sequence[float]]) -> CrossSection:
-    """Strand of rows as `CrossSection.rows` has them."""
+    """Cross-section from its rows, in the format of `CrossSection.rows`."""
     core, *layers = (
         WireLayer(int(wires), diameter, young, float(np.radians(lay)))
         for wires, diameter, lay, young in rows
@@ -229,7 +239,7 @@ def laid(rows: Iterable[Sequence[float]]) -> CrossSection:
 
 
 def seven_wire() -> CrossSection:
-    """Seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.
+    """Seven-wire prestressing strand of 15.7 mm and 150 mm2 (prEN 10138-3).
 
     Six wires of 5.2 mm on one of 5.4 mm, with a lay length of 16 diameters (14 to 18
     are allowed).
@@ -239,7 +249,7 @@ def seven_wire() -> CrossSection:
 
 
 def mooring(layers: int) -> CrossSection:
-    """Spiral strand as it moors platforms and stays bridges: 6, 12, 18, ... wires.
+    """Spiral strand for moorings of platforms and stays of bridges: 6, 12, ... wires.
 
     Wires of 5 mm and lay angles of 17 degrees are usual sizes, of no one product; the
     core wire is so much thicker that the wires of a layer have room beside each other.
@@ -253,7 +263,7 @@ def mooring(layers: int) -> CrossSection:
 
 
 def conductor() -> CrossSection:
-    """Overhead conductor of aluminium on steel: Drake, 26 and 7 wires, 28.1 mm (ASTM B232).
+    """Overhead conductor of aluminium on steel: Drake, 28.1 mm (ASTM B232).
 
     Seven steel wires of 3.454 mm, then 10 and 16 of aluminium of 4.442 mm. Lay lengths
     are 25, 13 and 11 times the diameter over the layer, within what the standard
@@ -281,4 +291,4 @@ CONSTRUCTIONS: Mapping[str, Callable[[int], CrossSection]] = {
     "seven-wire": lambda layers: seven_wire(),
     "conductor": lambda layers: conductor(),
 }
-"""By name, each of a number of layers where it has a choice."""
+"""Constructions by name, as functions of the number of layers (where it is free)."""

@@ -1,7 +1,7 @@
-"""A strand of helical wires that is bent: rods, each on a support that is stretched with it.
+"""A bent strand of helical wires: rods, each on a support that bending stretches.
 
-Plane sections of the strand stay plane, so a curvature kappa stretches what a wire lies
-on by kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at
+Plane sections of the strand stay plane, so a curvature kappa stretches the support of a
+wire by kappa R cos^2(alpha) cos(theta) along the wire, with theta the polar angle at
 which the wire stands. Of the wire's displacement only what it slips on its support is
 unknown, and that is a rod's on a rigid support under the body force that the support's
 stretch brings about (K.-O. Papailiou, On the bending stiffness of transmission line
@@ -56,26 +56,26 @@ from solver.laws import FrictionLaw
 
 @dataclass(frozen=True, eq=False)
 class RopeWire:
-    """A wire of a strand, between two of its places that do not slip.
+    """A wire of a strand, between two of its sections that do not slip.
 
     Attributes
     ----------
     layer, number
-        From 0 on, inside out and around.
+        Number of the layer, inside out, and of the wire around it, from 0.
     made
-        Of what, and how it is laid: all wires of its layer.
+        The wire's layer: diameter, modulus and lay.
     radius, start, length
-        Of the helix of its centre line, R, m; polar angle theta at its beginning, from
-        the outermost fibre, rad; and length of the wire, m.
+        Radius R of the helix of its centre line, m; polar angle theta at its beginning,
+        from the outermost fibre, rad; and length of the wire, m.
     bound
         Friction bound per length of wire, N/m: a number, or over time, shape
         (n_instants,).
     curvature
-        Of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
+        Curvature of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
     tension
-        Its force before it is bent, shape (n_instants,), N.
+        Force of the wire before it is bent, shape (n_instants,), N.
     stands_for
-        Number of wires that are this one, each at another place along the strand.
+        Number of wires that this one represents, each shifted along the strand.
     """
 
     layer: int
@@ -107,7 +107,7 @@ class RopeWire:
 
     @property
     def name(self) -> str:
-        """What its interface is called: numbers of layer and wire, from 1 on."""
+        """Name of the wire's interface: numbers of layer and wire, from 1."""
         return f"wire {self.layer + 1}.{self.number + 1}"
 
     @property
@@ -117,7 +117,7 @@ class RopeWire:
 
     @property
     def along(self) -> Array:
-        """Places of the nodes along the strand, z, shape (n_nodes,), m."""
+        """Positions z of the nodes along the strand, shape (n_nodes,), m."""
         return np.asarray(np.cos(self.made.lay) * self.arc)
 
     @property
@@ -126,22 +126,22 @@ class RopeWire:
         return np.asarray(self.start + self.arc * np.sin(self.made.lay) / self.radius)
 
     def stuck_force(self, columns: slice | Indices = slice(None)) -> Array:
-        """Change of its force in the elements while all sticks, (n_elements, n_columns), N."""
+        """Change of force in the elements without slip, (n_elements, n_columns), N."""
         stuck = self._stuck_force(columns)
         return np.asarray(0.5 * (stuck[1:] + stuck[:-1]))
 
     def _stuck_force(self, columns: slice | Indices) -> Array:
-        """The same at the nodes."""
+        """Change of force at the nodes without slip, (n_nodes, n_columns), N."""
         stretch = self.made.stiffness * self.radius * np.cos(self.made.lay) ** 2
-        return np.asarray(
-            (stretch * np.cos(self.angle))[:, None] * self.curvature[:, columns]
-        )
+        per_curvature = stretch * np.cos(self.angle)
+        return np.asarray(per_curvature[:, None] * self.curvature[:, columns])
 
     def body_force(self) -> Array:
-        """Force per length that stands for the stretch of what it lies on.
+        """Force per length that has the effect of the support's stretch.
 
-        It is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along the
-        wire included, in differences of the elements' forces: equilibrium holds exactly
+        That is d/ds(E A kappa R cos^2(alpha) cos(theta)), a change of curvature along
+        the wire included, in differences of the elements' forces: equilibrium holds
+        exactly
         on the mesh. Shape (n_nodes, n_instants), N/m.
         """
         stuck = self._stuck_force(slice(None))
@@ -151,11 +151,11 @@ class RopeWire:
         return np.asarray(np.diff(force, axis=0) / np.diff(length)[:, None])
 
     def levers(self, *, at_beginning: bool) -> Array:
-        """What a newton in each element adds to the moment of the strand, (n_elements,), N m.
+        """Moment of the strand per force in each element, (n_elements,), m.
 
-        Either to that at the wire's beginning, where the force follows from the first
-        two elements, in whose middles it is known; or to the mean, which as many wires,
-        evenly laid, have together at every section.
+        Either the moment at the wire's beginning, where the force is extrapolated from
+        the middles of the first two elements; or the mean moment along the wire, which
+        is that of as many evenly laid wires together at every section.
         """
         arc = self.arc
         arm = self.radius * np.cos(self.made.lay)
@@ -170,20 +170,20 @@ class RopeWire:
 
 @dataclass(frozen=True, eq=False)
 class Rope:
-    """Helical wires of a strand whose sections stay plane, so that none is tied to another.
+    """Helical wires of a strand whose sections stay plane: wires are independent.
 
     Attributes
     ----------
     wires
-        All on equally many elements, in any order.
+        Wires in any order, all with the same number of elements.
     substructures
-        Parts that the elements of a wire are dealt to.
+        Number of substructures of a wire.
     tension, curvature
-        Of the strand, N, for whoever draws it; and, uniform or at its clamp, 1/m:
-        (n_instants,).
+        Tension of the strand, N, for drawings, and its curvature, uniform or at its
+        clamp, 1/m; shape (n_instants,) both.
     is_clamped
-        Whether the curvature falls away from a clamp, so that every wire is there; or
-        it is the same all along, and the wires of a layer differ by their phase alone.
+        Whether the curvature falls away from a clamp, and all wires are given; or it is
+        uniform, and the wires of a layer differ by their phase alone.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
 
@@ -227,22 +227,22 @@ class Rope:
 
     @property
     def elements(self) -> int:
-        """Of one wire."""
+        """Number of elements of one wire."""
         return len(self.wires[0].curvature) - 1
 
     @property
     def seen_length(self) -> float:
-        """Of the strand that is drawn, m: what is bent, or a turn of its outermost wires."""
+        """Length of the strand that is drawn, m: of its wires, or of a turn."""
         longest = max(float(wire.along[-1]) for wire in self.wires)
         if self.is_clamped:
             return longest
         return 2.0 * longest
 
     def discretise(self) -> Problem:
-        """Cut all wires alike and write the laws of their interfaces: rods on supports that bend.
+        """Make the discrete problem: all wires as rods with the same cuts.
 
-        Positions are those along the strand. Where a wire stands for its layer, over
-        half a turn of it, so does its interface, over the strand that is drawn.
+        Positions are those along the strand. Where a wire represents its layer, over
+        half a turn, so does its interface, over the strand that is drawn.
         """
         problem = CutRods(
             [self._rod(wire) for wire in self.wires],
@@ -259,6 +259,7 @@ class Rope:
         return replace(problem, interfaces=interfaces)
 
     def _rod(self, wire: RopeWire) -> Rods:
+        """A wire as a rod that is held at both ends."""
         held = End(displacement=np.zeros(len(self.instants)))
         return Rods(
             length=wire.length,
@@ -275,10 +276,10 @@ class Rope:
         )
 
     def moment(self) -> Probe:
-        """Bending moment of the strand, N m, from what its wires slip.
+        """Bending moment of the strand, N m, from the slip of its wires.
 
-        At the clamp, or the mean along the strand, which is that of every section; with
-        the wires bent each about their own axis.
+        At the clamp, or the mean along the strand, which is that of every section; the
+        moment of each wire about its own axis is included.
         """
         weights = []
         stuck = self.section.slipping_bending * self.curvature
@@ -301,13 +302,13 @@ class Rope:
         return (title, "1/m"), ("Moment", "N·m")
 
     def loop(self, problem: Problem) -> Loop:
-        """Moment over the curvature, which drives it."""
+        """Moment over the curvature, which drives the strand."""
         across = constant(self.curvature)
         moment = self.moment().of
         return Loop(*self.axes, across, moment)
 
     def described(self) -> Description:
-        """The strand in words, for whoever draws it."""
+        """Description of the strand for drawings."""
         end = on_side("right", [0.5])
         acts = (
             Act("right y", "κ", end, OUTWARD["top"], self.curvature, "1/m"),

@@ -1,4 +1,4 @@
-"""Forces and stresses in the wires of a strand that is bent, and what one of its sections cuts."""
+"""Forces and stresses in the wires of a bent strand, and the wires cut by a section."""
 
 from __future__ import annotations
 
@@ -12,12 +12,19 @@ from solver.discrete.rope.rope import Rope
 
 @dataclass(frozen=True, eq=False)
 class CutWires:
-    """All wires of the layers at one section, inside out and around, shape (n_cut,) each.
+    """All wires of the layers at one section, inside out and around.
 
-    A wire is cut at its centre, sideways and towards the outermost fibre, (n_cut, 2),
-    m. The one that stands for it has this place in `Rope.wires`, and is there at this
-    arc length, m; the side is -1 where a wire slips the other way, on the other side of
-    the plane of bending, else 1.
+    Attributes
+    ----------
+    wire
+        Number in `Rope.wires` of the wire that stands for each, shape (n_cut,).
+    centres
+        Centre of each, sideways and towards the outermost fibre, shape (n_cut, 2), m.
+    arc
+        Arc length of the section along the wire that stands for it, (n_cut,), m.
+    side
+        -1 where a wire slips the other way, on the other side of the plane of bending,
+        else 1; (n_cut,).
     """
 
     wire: Indices
@@ -27,7 +34,7 @@ class CutWires:
 
 
 def cut_at(rope: Rope, place: float) -> CutWires:
-    """Cut all wires at a place along the strand, m.
+    """Cut all wires at a position along the strand, m.
 
     Under a uniform curvature the one wire of a layer passes half a turn, from the
     outermost fibre to the innermost; the other half is its mirror image in the plane of
@@ -70,15 +77,15 @@ def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Ar
 
 
 def wire_stresses(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
-    """Mean stresses over the sections of all wires in their elements, as `wire_forces`, Pa."""
+    """Mean stresses over the wires' sections, Pa, of the shape of `wire_forces`."""
     areas = np.array([wire.made.area for wire in rope.wires])
     return np.asarray(wire_forces(rope, displacement, columns) / areas[:, None, None])
 
 
 def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
-    """Mean stress of every wire that is cut, from `wire_stresses`.
+    """Mean stress of every cut wire, (n_cut, n_columns), from `wire_stresses`, Pa.
 
-    Shape (n_cut, n_columns), Pa; linear between the middles of elements, and beyond the
+    The stress is linear between the middles of elements, and beyond the
     first and the last of them.
     """
     sizes = np.array([wire.length / rope.elements for wire in rope.wires])
@@ -91,10 +98,10 @@ def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
 
 
 def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
-    """How far the stress of every wire swings where it swings most, shape (n_wires,), Pa.
+    """Largest range of the stress of every wire over instants, (n_wires,), Pa.
 
-    At the fibre of the wire where its bending about its own axis adds to it; over some
-    instants.
+    At the fibre of the wire where its bending about its own axis adds to the mean
+    stress. `displacement` is that of the problem's dofs, (n_dofs, n_instants), m.
     """
     axial = wire_stresses(rope, displacement, some)
     curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
@@ -102,5 +109,5 @@ def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
         [0.5 * wire.made.young * wire.made.diameter for wire in rope.wires]
     )
     bent = outer[:, None, None] * 0.5 * (curvature[:, 1:] + curvature[:, :-1])
-    swings = [np.ptp(axial + way * bent, axis=2).max(axis=1) for way in (-1.0, 1.0)]
+    swings = [np.ptp(axial + sign * bent, axis=2).max(axis=1) for sign in (-1.0, 1.0)]
     return np.asarray(np.maximum(*swings))
