@@ -154,7 +154,7 @@ class IncrementalRod:
         load = self._movable * (force - self._stiffness.product(given))
         bound = self._on_dofs(rules.bound_at(instant))
         least: Minimum | None
-        if rules.ages:
+        if rules.changes_with_slip:
             least = self._with_changing_bound(bound, load, status, gone)
         else:
             search = self._search

@@ -79,13 +79,15 @@ class Instants:
         self._shift = np.zeros_like(rules.gap)
         self._motion = np.zeros(condensed.gauge.shape[1])
         self._intact = np.ones_like(rules.gap)
-        self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
+        self._states: States = np.where(rules.is_frictionless, OPEN, HELD).astype(
+            np.int8
+        )
         self._starts = Starts()
         self._has_guess = guess is not None
         self._guesses: list[States] = []
         if guess is not None:
             self._guesses.append(
-                np.where(rules.smooth[:, None], OPEN, guess).astype(np.int8)
+                np.where(rules.is_frictionless[:, None], OPEN, guess).astype(np.int8)
             )
         if rest is not None:
             self._guesses.append(
@@ -121,7 +123,7 @@ class Instants:
         slip = step.jump - before
         self._force = step.force
         self._opening += slip
-        self._newton.gone += np.abs(slip)
+        self._newton.accumulated_slip += np.abs(slip)
         self._newton.strained += step.strained
         self._motion += step.motion
         opened = self._states[rules.partner[rules.bonds]] == OPEN
@@ -153,7 +155,7 @@ class Instants:
             moved = self._newton.strained + condensed.gauge @ self._motion - given
             moved += step.strained + condensed.gauge @ step.motion
             pull = condensed.tie * (stresses @ (stresses.T @ moved))
-            if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest:
+            if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest_load:
                 break
             sides = replace(sides, load=sides.load - pull)
         self._starts.took(self.system.solutions - done, from_guess=from_guess)
@@ -172,11 +174,11 @@ class Instants:
         guesses = begin.guesses(known)
         # Where there may be several solutions, the one that goes on from the instant
         # before.
-        if self._has_guess and self._starts.from_guess and not rules.is_curved:
+        if self._has_guess and self._starts.from_guess and not rules.is_nonlinear:
             guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, sides, guesses)
         if solved is None and not self._is_lost:
-            if rules.is_curved:
+            if rules.is_nonlinear:
                 solved = self._in_parts(begin, sides, known, instant)
             elif self._may_hold(instant):
                 solved = newton.follow(begin, sides, newton.approach(begin, sides))

@@ -70,7 +70,7 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     # y = s - c f. A point whose bound is nothing at all times has f = 0.
     condensed = Condensation(problem)
     rules = condensed.rules
-    if rules.ages:
+    if rules.changes_with_slip:
         raise NoReferenceError(
             "Where friction changes with slip the theorem says nothing."
         )
@@ -188,9 +188,9 @@ def slip_space(problem: Problem) -> SlipSpace:
     if (
         not is_whole
         or rules.compliance.any()
-        or rules.is_curved
+        or rules.is_nonlinear
         or rules.bonds.size
-        or rules.smooth.any()
+        or rules.is_frictionless.any()
     ):
         raise NoReferenceError(
             "The planes are those of Coulomb's friction, where forces follow from slips."
