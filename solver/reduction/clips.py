@@ -228,7 +228,10 @@ class _NearestLines:
         return np.asarray(slope[:, None] * self._load + offset[:, None])
 
     def keep(self, slope: Array, offset: Array) -> None:
-        """Take other lines, (n_points,), where they are nearer; unless they rise, flat."""
+        """Take other lines, (n_points,), at the points where they are nearer.
+
+        A line that does not rise counts as one that keeps the friction of its point.
+        """
         is_usable = np.isfinite(slope) & np.isfinite(offset) & (slope > 0.0)
         slope = np.where(is_usable, slope, 0.0)
         offset = np.where(is_usable, offset, BELOW)

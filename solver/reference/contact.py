@@ -103,7 +103,9 @@ class IncrementalContact:
                 break
             for field, values in zip(done, instants(instant), strict=True):
                 field[:, instant] = values
-            turned[instant] = instants.system.turned or instants.has_others
+            turned[instant] = (
+                instants.system.has_negative_determinant or instants.has_others
+            )
             reached[instant] = True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break

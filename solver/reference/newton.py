@@ -174,7 +174,7 @@ class Newton:
                 return
 
     def _with_springs(self, springs: Array) -> LinearSystem:
-        """The linear system with springs at the jumps of the base, (n_base,), scaled."""
+        """The linear system with springs at the jumps of the base, (n_base,)."""
         condensed = self._condensed
         stiffness = condensed.elastic + np.diagflat(springs)
         no_motions = condensed.gauge[:, :0]
@@ -266,7 +266,7 @@ class Newton:
     def _linearised(
         self, system: LinearSystem, slip: Array, force: Array, sides: Sides
     ) -> tuple[Sides, Flags]:
-        """Replace the friction bound by its tangent at slips >= 0 and forces, both (n,).
+        """Replace the friction bound by its tangent at slips and forces, (n,) each.
 
         Returns
         -------

@@ -85,12 +85,12 @@ class Rules:
 
     @cached_property
     def bounded(self) -> Flags:
-        """Jumps with friction that needs no normal force at some instant, shape (n,)."""
+        """Jumps with friction that at some instant needs no normal force, (n,)."""
         return np.asarray(self.bound.any(axis=1))
 
     @cached_property
     def bonds(self) -> Indices:
-        """Places of jumps with a bound that ends where their contact opens, (n_bonds,)."""
+        """Places of jumps whose bound ends where their contact opens, (n_bonds,)."""
         return np.flatnonzero(self.bounded & self.normal[self.partner])
 
     def kept(self, moving: Indices) -> Rules:
@@ -120,7 +120,7 @@ class Rules:
 
     @cached_property
     def is_nonlinear(self) -> bool:
-        """Friction is not linear in pressing force and slip: it changes, or has a cap."""
+        """Friction is not linear in pressing force and slip."""
         return self.changes_with_slip or bool(np.isfinite(self.cap).any())
 
     def bound_at(self, instant: int) -> Array:
