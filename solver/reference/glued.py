@@ -69,8 +69,8 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
 
     Returns
     -------
-    T, shape (n_dofs, n_jumps), with J T = I but for such jumps, and Z, shape (n_dofs, n_trees) for
-    the trees that do not stand on the ground, with J Z = 0.
+    T, shape (n_dofs, n_jumps), with J T = I but for such jumps, and Z, shape (n_dofs,
+    n_trees) for the trees that do not stand on the ground, with J Z = 0.
     """
     ground = jumps.shape[1]
     edges = graph_of(jumps)
@@ -86,7 +86,7 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
 def _along_branches(
     jumps: sparse.csr_array, edges: tuple[Indices, Indices], roots: Indices
 ) -> sparse.csr_array:
-    """Displacements T of all points beyond each jump, as seen from the root of its tree.
+    """Displacements T: all points beyond a jump move, seen from the root of its tree.
 
     Shape (n_dofs, n_jumps), of jumps (n_jumps, n_dofs), their points and the roots of
     all trees, (n_trees,).
@@ -173,8 +173,8 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
 
     Returns
     -------
-    The base, shape (n_base,): all rigid jumps, and of the others as many as are independent. And
-    the matrix from jumps of the base to all, shape (n_jumps, n_base).
+    The base, shape (n_base,): all rigid jumps, and of the others as many as are
+    independent. And the matrix from jumps of the base to all, shape (n_jumps, n_base).
     """
     size = len(rigid)
     if rigid.all() or _is_forest(jumps):
@@ -196,7 +196,7 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
 
 
 def _spanning(jumps: sparse.csr_array, rigid: Flags) -> Indices:
-    """Jumps that join all points to trees, the rigid ones preferred, (n_tree_jumps,)."""
+    """Jumps that join all points to trees, rigid ones preferred, (n_tree_jumps,)."""
     first, last = graph_of(jumps)
     forest = DisjointSet(range(jumps.shape[1] + 1))
     chosen = []

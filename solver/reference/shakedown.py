@@ -98,8 +98,9 @@ def _forces_of_slips(
 
     Returns
     -------
-    Stiffness from slips to forces, shape (n, n); forces of the loads where nothing slips, shape
-    (n, n_instants of the cycle); and forces that move nothing, shape (n, n_stresses).
+    Stiffness from slips to forces, shape (n, n); forces of the loads where nothing
+    slips, shape (n, n_instants of the cycle); and forces that move nothing, shape (n,
+    n_stresses).
     """
     rules = condensed.rules
     stiffness = condensed.stiffness
@@ -246,9 +247,9 @@ def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
 
     Returns
     -------
-    The factor on the load's distance from its mean over the instants of whole cycles, equally far
-    apart, infinite where the load stands still; and a slip that stays under it, shape (n_points,),
-    m.
+    The factor on the load's distance from its mean over the instants of whole cycles,
+    equally far apart, infinite where the load stands still; and a slip that stays under
+    it, shape (n_points,), m.
 
     Raises
     ------
