@@ -1,4 +1,7 @@
-"""A separated basis: space modes times time functions (solver/README.md, 3; paper, problem 2.3)."""
+"""A separated basis: space modes times time functions.
+
+(solver/README.md, 3; paper, problem 2.3.)
+"""
 
 from __future__ import annotations
 
@@ -60,7 +63,7 @@ class SeparatedBasis:
         return np.asarray(self.modes @ self.time_functions)
 
     def coefficients(self, field: Array) -> Array:
-        """Time functions of a field that is projected on the modes, shape (n_modes, n_columns)."""
+        """Time functions (n_modes, n_columns) of a field projected on the modes."""
         return np.asarray((self.k[:, None] * self.modes).T @ field)
 
     def squared(self, field: Array, scratch: Array) -> float:
@@ -72,7 +75,7 @@ class SeparatedBasis:
         return float(self.k @ np.multiply(field, field, out=scratch) @ self.weights)
 
     def squared_of(self, time_functions: Array) -> float:
-        """Squared norm of what these time functions make with the modes."""
+        """Squared norm of the modes times time functions, (n_modes, n_columns)."""
         return float(np.sum(time_functions * time_functions @ self.weights))
 
     def appended(self, mode: Array, time_function: Array) -> SeparatedBasis:
@@ -97,7 +100,7 @@ class SeparatedBasis:
         return mode
 
     def downsized(self, tolerance: float, largest: int) -> SeparatedBasis:
-        """Basis with the modes of the field's singular values, sorted, without the smallest.
+        """Basis of the field's singular vectors, sorted, without the smallest.
 
         These are dropped up to `tolerance`, a share of the field's norm, and in any
         case beyond the `largest` number of modes. As modes are orthonormal, the
@@ -155,7 +158,9 @@ def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class SharedBasis:
-    """A separated basis of y = W + F/k, and the substructures that share it; read-only, scaled.
+    """A separated basis of y = W + F/k, and the substructures that share it.
+
+    Its fields are read-only and scaled.
 
     Columns of the basis run through the numbers of these, ascending, then through the
     instants; its modes have shape (n_boundary, n_modes), rows as `Substructure.rows`,
@@ -180,10 +185,10 @@ class SharedBasis:
 
     @cached_property
     def displacement_modes(self) -> Array:
-        """Z, shape (n_boundary, n_modes)."""
+        """Displacements Z, shape (n_boundary, n_modes)."""
         return 0.5 * (self.basis.modes + self.incoming)
 
     @cached_property
     def force_modes(self) -> Array:
-        """G = k (u - Z), shape (n_boundary, n_modes): the force that Z needs (paper, eq. 3)."""
+        """Forces G = k (u - Z) of Z, shape (n_boundary, n_modes) (paper, eq. 3)."""
         return 0.5 * self.basis.k[:, None] * (self.basis.modes - self.incoming)

@@ -1,9 +1,9 @@
-"""A friction field as clips with memory, two vectors a branch of the load (solver/README.md, 16).
+"""A friction field as clips with memory: two vectors per branch of the load.
 
-A slip front is no sum of a few products, but a fixed function of one: as in the Front
-Transport Reduction of P. Krah and others (J. Sci. Comput. 96, 28, 2023). The function
-here is the clip of the local stage; its stops are the bound, and the friction that the
-last reversal of the load left behind.
+A slip front is no sum of a few products, but a fixed function of one product: as in the
+Front Transport Reduction of P. Krah and others (J. Sci. Comput. 96, 28, 2023). The
+function here is the clip of the local stage; its stops are the bound, and the friction
+that the last reversal of the load left behind (solver/README.md, 16).
 """
 
 from __future__ import annotations
@@ -15,29 +15,36 @@ from itertools import pairwise
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.reduction.svd import decompose
 
 FADED = 1e-9
-"""Share of its largest value that the bound is not taken to be below, where the load is
-divided by it: an instant without any counts for nothing."""
+"""Smallest share of its largest value that the bound counts with where the load is
+divided by it: an instant without any bound has no weight."""
 BELOW = -2.0
-"""A line that lies below all shares: the point keeps what it has."""
-STEPS = 6
-"""Passes in which a line is fitted again to the instants at which its own clip shows
-it. With 2 the error where friction changes with slip is a sixth larger (measured)."""
-ENTRIES = 64
-"""Instants of a branch, at most, at which lines are drawn through the entries of all
-points."""
+"""Offset of a line that lies below all shares: the point keeps the friction it has."""
+REFITS = 6
+"""Number of times that a line is fitted again to the instants at which its own clip
+shows it. With 2 the error where friction changes with slip is a sixth larger
+(measured)."""
+MOST_ENTRIES = 64
+"""Largest number of instants of a branch at which lines are drawn through the entries
+of all points."""
 
 
 @dataclass(frozen=True, eq=False)
 class Clips:
-    """A friction field as it was given, and clips with memory fitted to it, and to its bound.
+    """A friction field, and clips with memory fitted to it and to its bound.
 
-    All have shape (n_points, n_instants), in N/m. The load goes one way in so many
-    branches; errors are measured with lengths of the points, and weights of the
-    instants.
+    Attributes
+    ----------
+    given, field, bound
+        The field, its clips, and its bound, shape (n_points, n_instants), N/m.
+    branches
+        Number of branches of the load, in each of which it goes one way.
+    space_weights, time_weights
+        Lengths of the points and weights of the instants, in which errors are measured,
+        shapes (n_points,) and (n_instants,).
     """
 
     given: Array
@@ -49,7 +56,7 @@ class Clips:
 
     @cached_property
     def errors(self) -> Array:
-        """Error of the clips with every number of singular vectors of the rest, (n_modes + 1,).
+        """Errors with 0 to n_modes singular vectors of the rest, (n_modes + 1,).
 
         Relative to the field in L2 over length and time; zero for a field that
         vanishes.
@@ -68,112 +75,209 @@ def clips_of(
 ) -> Clips:
     """Clips with memory fitted to a friction field.
 
-    Its branches are those of the load over the size of the bound; the arguments are
-    fitted to the entries that are not clipped, point by point. Of a rod whose friction
-    bound stays the same, and which nothing drives but this load, they are exact.
+    The branches are those of the load over the size of the bound; the lines are fitted
+    to the entries that are not clipped, point by point. Clips are exact for a rod whose
+    friction bound stays the same, and which this load alone drives.
 
-    The field, (n_points, n_instants), N/m, starts from rest at zero before the first
-    instant; the bound has shape (n_points,), (n_points, 1) or that of the field; the
-    load is in any unit.
+    Parameters
+    ----------
+    field
+        Friction, which starts from zero before the first instant, shape (n_points,
+        n_instants), N/m.
+    bound
+        Largest friction, shape (n_points,), (n_points, 1) or that of the field, N/m.
+    load
+        The load, shape (n_instants,), in any unit.
+    space_weights, time_weights
+        Lengths of the points and weights of the instants, shapes (n_points,) and
+        (n_instants,).
     """
     bound = np.broadcast_to(bound.reshape(len(field), -1), field.shape)
-    size = bound.max(axis=0)
-    most = float(size.max(initial=0.0)) or 1.0
-    share = np.maximum(size / most, FADED)
+    share = _size_of(bound)
     driving = np.asarray(load / share)
     weights = time_weights * share**2
     fitted = np.empty(field.shape)
+    # Every branch starts from the friction and the load at which the last one ended.
     held = np.zeros((len(field), 1))
     before = 0.0
     branches = list(monotone(driving))
-    for some in branches:
-        path = np.append(before, driving[some])
-        fitted[:, some] = _branch(
-            field[:, some], held, bound[:, some], path, weights[some]
-        )
-        held = fitted[:, some][:, -1:]
+    for branch in branches:
+        path = np.append(before, driving[branch])
+        clip = _branch(field[:, branch], held, bound[:, branch], path, weights[branch])
+        fitted[:, branch] = clip
+        held = clip[:, -1:]
         before = path[-1]
     return Clips(field, fitted, bound, len(branches), space_weights, time_weights)
 
 
+def _size_of(bound: Array) -> Array:
+    """Share of its largest value that a bound has at each instant, (n_instants,)."""
+    size = bound.max(axis=0)
+    largest = float(size.max(initial=0.0)) or 1.0
+    return np.asarray(np.maximum(size / largest, FADED))
+
+
 def monotone(load: Array) -> Iterator[slice]:
-    """Yield the branches of a load, from zero: as far as it goes one way, or stands still."""
-    ways = np.sign(np.diff(load, prepend=0.0))
-    moving = np.flatnonzero(ways)
-    turns = moving[1:][ways[moving[1:]] != ways[moving[:-1]]]
-    yield from (slice(int(a), int(b)) for a, b in pairwise([0, *turns, len(load)]))
+    """Yield the branches of a load: instants at which it goes one way or stands still.
+
+    The load, shape (n_instants,), is zero before the first instant.
+    """
+    directions = np.sign(np.diff(load, prepend=0.0))
+    moving = np.flatnonzero(directions)
+    turns = moving[1:][directions[moving[1:]] != directions[moving[:-1]]]
+    for first, end in pairwise([0, *turns, len(load)]):
+        yield slice(int(first), int(end))
 
 
 def _branch(
     field: Array, held: Array, bound: Array, load: Array, weights: Array
 ) -> Array:
-    """Clip fitted to a field between two reversals of the load, (n_points, n_instants).
+    """Clip fitted to a field in one branch, shape (n_points, n_instants), N/m.
 
-    From the friction that was `held` before, (n_points, 1), and the load from then on,
-    (n_instants + 1,). Each point is seen in the way that its friction goes; a lower
-    bound cuts what it held.
+    Every point is seen in the direction in which its friction goes, so that its line
+    rises. Where the bound falls below the friction that was held, it cuts that.
+
+    Parameters
+    ----------
+    field, bound
+        Friction and its bound, shape (n_points, n_instants), N/m.
+    held
+        Friction before the branch, shape (n_points, 1), N/m.
+    load
+        The load before the branch and at its instants, shape (n_instants + 1,).
+    weights
+        Weights of the instants, shape (n_instants,).
     """
-    up = np.where((field - held) @ weights < 0.0, -1.0, 1.0)[:, None]
+    falls = (field - held) @ weights < 0.0
+    sign = np.where(falls, -1.0, 1.0)[:, None]
     limit = np.where(bound > 0.0, bound, np.inf)
-    path = load if load[-1] >= load[0] else -load
-    low = np.clip(up * held / limit, -1.0, 1.0)
-    slope, offset = _ramps(up * field / limit, low, path, weights)
+    if load[-1] >= load[0]:
+        path = load
+    else:
+        path = -load
+    low = np.clip(sign * held / limit, -1.0, 1.0)
+    slope, offset = _ramps(sign * field / limit, low, path, weights)
     line = (slope[:, None] * path[1:] + offset[:, None]) * bound
-    return up * np.minimum(bound, np.maximum(np.clip(up * held, -bound, bound), line))
+    stops = np.clip(sign * held, -bound, bound)
+    return sign * np.minimum(bound, np.maximum(stops, line))
 
 
 def _ramps(
     shares: Array, low: Array, loads: Array, weights: Array
 ) -> tuple[Array, Array]:
-    """Slope and offset of the line fitted to every point in one branch, (n_points,) each.
+    """Slope and offset of a line for every point in one branch, (n_points,) each.
 
-    A point's share of its bound is min(1, max(low, a g + b)), of a load g that rises.
+    A point's share of its bound is min(1, max(low, a g + b)), with a load g that rises.
 
-    Of lines through entries, as steep as the point is before them or after them, the
-    nearest is taken. With the ones through the entry farthest from both stops, and the
-    first above their middle, it is exact where the clip shows the line at one instant,
-    or at none. Then lines are fitted to the instants at which its clip shows it. A
-    point that keeps what it has gets a slope of 0, and all others one above.
+    The nearest is taken of lines through entries, as steep as the point is before the
+    entry or after it. With the lines through the entry farthest from both stops, and
+    through the first entry above their middle, the fit is exact where the clip shows
+    the line at one instant, or at none. Then lines are fitted to the instants at which
+    the clip shows them. A point that keeps its friction gets a slope of 0, and all
+    others a slope above 0.
+
+    Parameters
+    ----------
+    shares
+        Friction over its bound, shape (n_points, n_instants), from -1 to 1.
+    low
+        Lower stop of every point, same shape.
+    loads
+        The load before the branch and at its instants, shape (n_instants + 1,).
+    weights
+        Weights of the instants, shape (n_instants,).
     """
     load = loads[1:]
-    missed = np.full(len(shares), np.inf)
-    slope = np.zeros_like(missed)
-    offset = np.zeros_like(missed)
+    nearest = _NearestLines(shares, low, load, weights)
+    nearest.keep(nearest.slope, nearest.offset)
+    steepest = _steepest(shares, low, np.diff(loads))
+    points = np.arange(len(shares))
+    for entry in _entries(shares, low):
+        slope = steepest[points, entry]
+        nearest.keep(slope, shares[points, entry] - slope * load[entry])
+    for _ in range(REFITS):
+        line = nearest.line(nearest.slope, nearest.offset)
+        is_shown = (line > low) & (line < 1.0)
+        slope, offset = _regression(load, shares, is_shown * weights)
+        nearest.keep(slope, offset)
+    return nearest.slope, nearest.offset
 
-    def line_of(slope: Array, offset: Array) -> Array:
-        return np.asarray(slope[:, None] * load + offset[:, None])
 
-    def keep(new_slope: Array, new_offset: Array) -> None:
-        usable = np.isfinite(new_slope) & np.isfinite(new_offset) & (new_slope > 0.0)
-        tried = np.where(usable, new_slope, 0.0), np.where(usable, new_offset, BELOW)
-        clipped = np.minimum(1.0, np.maximum(low, line_of(*tried)))
-        misses = (clipped - shares) ** 2 @ weights
-        better = misses < missed
-        for kept, new in zip((missed, slope, offset), (misses, *tried), strict=True):
-            kept[better] = new[better]
+class _NearestLines:
+    """The lines, one a point, whose clips are nearest to the shares of their points.
 
-    keep(slope, offset)
-    rises = np.diff(loads)
-    slopes = np.diff(np.hstack([low[:, :1], shares])) / np.where(
-        rises > 0.0, rises, np.inf
-    )
-    steepest = np.maximum(slopes, np.hstack([slopes[:, 1:], slopes[:, -1:]]))
-    deepest = np.argmax(np.minimum(shares - low, 1.0 - shares), axis=1)
-    slid = np.argmax(shares >= 0.5 * (low + 1.0), axis=1)
-    points = np.arange(len(slid))
-    count = len(load)
-    evenly = np.linspace(0, count - 1, min(count, ENTRIES)).astype(int)
-    for entry in [slid, deepest, *evenly]:
-        steep = steepest[points, entry]
-        keep(steep, shares[points, entry] - steep * load[entry])
-    for _ in range(STEPS):
-        line = line_of(slope, offset)
-        keep(*_regression(load, shares, ((line > low) & (line < 1.0)) * weights))
-    return slope, offset
+    Shares, stops, load and weights are those of `_ramps`.
+
+    Attributes
+    ----------
+    slope, offset
+        The lines, shape (n_points,) each.
+    """
+
+    def __init__(self, shares: Array, low: Array, load: Array, weights: Array) -> None:
+        self._shares = shares
+        self._low = low
+        self._load = load
+        self._weights = weights
+        self._distance = np.full(len(shares), np.inf)
+        self.slope = np.zeros(len(shares))
+        self.offset = np.zeros(len(shares))
+
+    def line(self, slope: Array, offset: Array) -> Array:
+        """Values of lines at all instants, shape (n_points, n_instants)."""
+        return np.asarray(slope[:, None] * self._load + offset[:, None])
+
+    def keep(self, slope: Array, offset: Array) -> None:
+        """Take other lines, (n_points,), at the points where they are nearer.
+
+        A line that does not rise counts as one that keeps the friction of its point.
+        """
+        is_usable = np.isfinite(slope) & np.isfinite(offset) & (slope > 0.0)
+        slope = np.where(is_usable, slope, 0.0)
+        offset = np.where(is_usable, offset, BELOW)
+        clipped = np.minimum(1.0, np.maximum(self._low, self.line(slope, offset)))
+        distance = (clipped - self._shares) ** 2 @ self._weights
+        nearer = distance < self._distance
+        self._distance[nearer] = distance[nearer]
+        self.slope[nearer] = slope[nearer]
+        self.offset[nearer] = offset[nearer]
+
+
+def _steepest(shares: Array, low: Array, rises: Array) -> Array:
+    """Larger slope of a point before and after each instant, (n_points, n_instants).
+
+    Shares and stops are those of `_ramps`; `rises` are those of the load, shape
+    (n_instants,).
+    """
+    changes = np.diff(np.hstack([low[:, :1], shares]))
+    before = changes / np.where(rises > 0.0, rises, np.inf)
+    after = np.hstack([before[:, 1:], before[:, -1:]])
+    return np.maximum(before, after)
+
+
+def _entries(shares: Array, low: Array) -> Iterator[Indices | int]:
+    """Yield instants through whose entries lines go: one a point, (n_points,), or one.
+
+    Shares and stops are those of `_ramps`.
+    """
+    yield np.argmax(shares >= 0.5 * (low + 1.0), axis=1)
+    yield np.argmax(np.minimum(shares - low, 1.0 - shares), axis=1)
+    count = shares.shape[1]
+    yield from np.linspace(0, count - 1, min(count, MOST_ENTRIES)).astype(int)
 
 
 def _regression(load: Array, shares: Array, weights: Array) -> tuple[Array, Array]:
-    """Lines fitted to entries by their weights; where fewer than two count, not a number."""
+    """Slope and offset of lines fitted to the entries of every point, (n_points,) each.
+
+    They are not numbers where fewer than two entries have a weight.
+
+    Parameters
+    ----------
+    load
+        Abscissa of the entries, shape (n_instants,).
+    shares, weights
+        Entries and their weights, shape (n_points, n_instants).
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         whole = weights.sum(axis=1)
         middle = weights @ load / whole

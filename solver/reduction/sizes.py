@@ -1,4 +1,4 @@
-"""How many numbers a friction field takes for an error: in products, modes, or as clips.
+"""Numbers that a friction field takes for an error: in products, modes, or clips.
 
 A product of a space vector and a function of time takes as many numbers as both
 together. Errors are relative to the field, in L2 over length and time.
@@ -31,75 +31,102 @@ class Sizes:
     errors: Array
 
     def within(self, share: float) -> float:
-        """Fewest numbers with which the error is within a share; infinite if none are."""
+        """Fewest numbers that bring the error within a share; else infinite."""
         return float(min(self.numbers[self.errors <= share], default=math.inf))
 
 
 def of_products(product: Decomposition) -> Sizes:
-    """Keep the largest singular vectors: no sum of products comes nearer with as many."""
+    """Sizes with the largest singular vectors, the best sums of products."""
     numbers = len(product.space_modes) + product.time_modes.shape[1]
     return Sizes(numbers * np.arange(len(product.errors)), product.errors)
 
 
 def of_clips(clips: Clips) -> Sizes:
-    """Keep clips with memory, and singular vectors of what these leave.
+    """Sizes with clips with memory, and singular vectors of the rest.
 
-    Clips take two vectors and a place a branch, the load, and the bound.
+    Clips take two vectors and an instant for each branch, the load, and the bound.
     """
     points, instants = clips.given.shape
     alone = (
         clips.branches * (2 * points + 1) + instants + _numbers_of_bound(clips.bound)
     )
-    return Sizes(
-        alone + (points + instants) * np.arange(len(clips.errors)), clips.errors
-    )
+    numbers = alone + (points + instants) * np.arange(len(clips.errors))
+    return Sizes(numbers, clips.errors)
 
 
 def _numbers_of_bound(bound: Array) -> int:
-    """How many numbers a bound takes: fewer if it changes in size alone."""
+    """Numbers of a bound, (n_points, n_instants): fewer if its size alone changes."""
     sizes = bound.max(axis=0)
-    most = float(bound.max(initial=0.0))
-    shape = bound[:, [int(sizes.argmax())]] / (most or 1.0)
-    if np.abs(bound - shape * sizes).max() > SAME_SHAPE * most:
-        return bound.size
-    return len(bound) + (bound.shape[1] if np.ptp(sizes) else 0)
+    largest = float(bound.max(initial=0.0))
+    shape = bound[:, [int(sizes.argmax())]] / (largest or 1.0)
+    if np.abs(bound - shape * sizes).max() > SAME_SHAPE * largest:
+        return int(bound.size)
+    if np.ptp(sizes):
+        return len(bound) + int(bound.shape[1])
+    return len(bound)
 
 
 def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Sizes:
-    """Keep as many modes of each of a run's separated bases, the largest.
+    """Sizes with the largest modes of a run's separated bases, as many of each.
 
-    Of F of all rows, (n_rows, n_instants), scaled; between two bodies friction is that
-    of the one above. Of space modes the entries count that rub; those of a basis that
-    several share, once.
+    The field is friction, between two bodies that of the body above. Of space modes the
+    entries count that rub; those of a basis that several substructures share, once.
+
+    Parameters
+    ----------
+    problem
+        The problem of the run.
+    force
+        F of all rows, shape (n_rows, n_instants), scaled.
+    bases
+        The basis of each substructure.
     """
     lengths = np.zeros(problem.n_rows)
     seen = set[SharedBasis]()
     for law in problem.rubbing.values():
         lengths[law.components[-1].above] = law.weights
-    most = max(basis.n_modes for basis in bases)
-    left = np.zeros(most + 1)
-    numbers = np.zeros(most + 1, dtype=int)
+    largest = max(basis.n_modes for basis in bases)
+    left = np.zeros(largest + 1)
+    numbers = np.zeros(largest + 1, dtype=int)
     for number, (part, basis) in enumerate(
         zip(problem.substructures, bases, strict=True)
     ):
         places = np.flatnonzero(lengths[part.rows])
-        rows = part.rows[places]
+        points = len(places)
         if basis in seen:
             points = 0
-        else:
-            points = len(places)
         seen.add(basis)
-        weights = lengths[rows]
-        per_length = problem.scales.force / lengths[rows, None]
-        rest = force[rows] * per_length
-        space = basis.force_modes[places] * per_length
-        time = basis.time_functions(number)
-        for rank in range(most + 1):
-            if 0 < rank <= basis.n_modes:
-                rest -= space[:, [rank - 1]] * time[rank - 1]
-            left[rank] += weights @ rest**2 @ problem.time_weights
-            if len(places):
-                numbers[rank] += min(rank, basis.n_modes) * (points + rest.shape[1])
-    return Sizes(
-        numbers, np.sqrt(left / left[0]) if left[0] > 0.0 else np.zeros_like(left)
-    )
+        _add_squares(left, problem, force, lengths, number, basis)
+        if len(places):
+            ranks = np.minimum(np.arange(largest + 1), basis.n_modes)
+            numbers += ranks * (points + force.shape[1])
+    errors = np.zeros_like(left)
+    if left[0] > 0.0:
+        errors = np.sqrt(left / left[0])
+    return Sizes(numbers, errors)
+
+
+def _add_squares(
+    left: Array,
+    problem: Problem,
+    force: Array,
+    lengths: Array,
+    number: int,
+    basis: SharedBasis,
+) -> None:
+    """Add the squared rest of one substructure with 0, 1, ... modes, (n_modes + 1,).
+
+    By F of all rows, (n_rows, n_instants), scaled, and their lengths, (n_rows,), m.
+    """
+    part = problem.substructures[number]
+    places = np.flatnonzero(lengths[part.rows])
+    rows = part.rows[places]
+    weights = lengths[rows]
+    per_length = problem.scales.force / lengths[rows, None]
+    rest = force[rows] * per_length
+    space = basis.force_modes[places] * per_length
+    time = basis.time_functions(number)
+    for rank in range(len(left)):
+        if 0 < rank <= basis.n_modes:
+            rest -= space[:, [rank - 1]] * time[rank - 1]
+        left[rank] += weights @ rest**2 @ problem.time_weights

@@ -47,7 +47,7 @@ class Decomposition:
 
     @cached_property
     def errors(self) -> Array:
-        """Error of the best approximation of every rank from 0 on, shape (n_modes + 1,).
+        """Errors of the best approximations of rank 0 to n_modes, shape (n_modes + 1,).
 
         Relative to the norm of the field; zero for a field that vanishes. The root of
         the sum of the squared values left out (Eckart and Young).
@@ -63,9 +63,10 @@ class Decomposition:
         return int(np.argmax(self.errors <= share))
 
     def correlations(self, modes: Array) -> Array:
-        """Cosines between modes, (n_points, n), and the space modes of the same place in the order.
+        """Cosines between modes and the space modes of the same rank, shape (n,).
 
-        Shape (n,), in the inner product of `space_weights`, from -1 to 1.
+        In the inner product of `space_weights`, from -1 to 1, with modes of shape
+        (n_points, n).
         """
         lengths = np.sqrt(self.space_weights @ modes**2)
         space_modes = self.space_modes[:, : modes.shape[1]]
@@ -100,7 +101,7 @@ def decompose(
 def decompositions(
     problem: Problem, field: Array, places: Indices | None = None, *, is_force: bool
 ) -> list[Decomposition]:
-    """Decomposition of F or W on the rows that rub, of some substructures or all (paper, 3.2).
+    """Decompositions of F or W on the rows that rub, of some substructures or all.
 
     Of fields of all rows, (n_rows, n_instants), scaled. Singular values of the friction
     force, per length, are in N sqrt(s/m), of the displacement in m sqrt(m s).
@@ -127,12 +128,17 @@ def decompositions(
 
 
 def front_decay(count: int) -> Array:
-    """Decay sigma_n/sigma_1 of a constant-speed front (solver/README.md, 3), shape (count,)."""
+    """Decay sigma_n/sigma_1 of a front of constant speed, shape (count,).
+
+    (solver/README.md, 3.)
+    """
     return np.asarray(1.0 / (2.0 * np.arange(1, count + 1) - 1.0))
 
 
 def _signs(modes: Array) -> Array:
-    if not modes.size:  # of a substructure that does not rub
+    """Signs (n_modes,) that make the largest entries of modes positive."""
+    # A substructure that does not rub has modes without entries.
+    if not modes.size:
         return np.ones(modes.shape[1])
     size = np.abs(modes)
     largest = np.argmax(size >= (1.0 - ALIKE) * size.max(axis=0), axis=0)

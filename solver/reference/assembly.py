@@ -1,4 +1,4 @@
-"""The whole structure as one: stiffness, load and jumps that incremental solvers start from."""
+"""Stiffness, load and jumps of the whole structure, for incremental solvers."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def external_force(problem: Problem) -> Array:
     Raises
     ------
     NoReferenceError
-        If these are not all, or the problem holds anything else that no incremental
+        If other forces act, or the problem holds anything else that no incremental
         solver reads.
     """
     if problem.no_reference:
@@ -57,7 +57,7 @@ def external_force(problem: Problem) -> Array:
 
 
 def points_dofs(problem: Problem) -> Indices:
-    """Degree of freedom under every point that rubs, stacked interface by interface."""
+    """Degree of freedom of every point that rubs, by interfaces, shape (n_points,)."""
     dofs = []
     for law in problem.rubbing.values():
         under = np.zeros(len(law.positions), dtype=np.intp)
@@ -87,7 +87,9 @@ def jumps(problem: Problem) -> sparse.csr_array:
 
 
 def separated(load: Array) -> tuple[Array, Array]:
-    """Write loads, (n, n_instants), as patterns (n, rank) times courses, exact up to rounding.
+    """Loads (n, n_instants) as patterns (n, rank) times courses (rank, n_instants).
+
+    The product is exact up to rounding.
 
     A structure has few patterns of load, and instants many: so there is less to solve
     for. Where it has many patterns, every instant counts as one.

@@ -1,23 +1,22 @@
-"""A structure seen from its contacts: stiffness and load between the jumps of all pairs.
+"""Condensation of a structure to its contacts: stiffness and load between all jumps.
 
-With J the jumps of the displacement (above minus below), the structure answers to
-contact forces f by K u = F + J' f. Its displacement is u = T j + Z a
+With J the jumps of the displacement (above minus below), the displacement u under
+contact forces f is that of K u = F + J' f. It is u = T j + Z a
 (`solver.reference.glued`): with jumps j, and a of the structure glued at its contacts.
-So S jump = f + q (solver/README.md, 6), which needs no more than that the structure,
-glued at its contacts, is held. Jumps and forces are stacked as `Problem.sum_of_contact`
-says.
+So S jump = f + q (solver/README.md, 6), if only the structure, glued at its contacts,
+is held. Jumps and forces are stacked as `Problem.sum_of_contact` says.
 
-Three things are kept apart, as they may differ by any number of digits:
+Three parts are kept apart, as they may differ by any number of digits:
 
-- The rigid motions a of bodies that contact alone holds: jump = y + Q a, with Q the jumps that they
-  make, orthonormal. They cost no force, S Q = 0, so forces follow from the deformation
-  y alone. It is chosen with Q' y = 0, which says that the forces are in equilibrium
-  with the load, as Q' q is known exactly. With that S may be replaced by S + s Q Q',
-  which is definite.
-- What is in series with a jump, like a spring: it is no part of S.
-- Jumps that depend on each other. Those that something in series tells apart follow from a `base`
-  of the others; where contacts close a rigid ring, S takes them for independent, with a
-  stiffness that ties them.
+- The rigid motions a of bodies that contact alone holds: jump = y + Q a, with Q the
+  jumps that they make, orthonormal. They cost no force, S Q = 0, so forces follow from
+  the deformation y alone. The deformation is chosen with Q' y = 0, which says that the
+  forces are in equilibrium with the load, as Q' q is known exactly. With that S may be
+  replaced by S + s Q Q', which is definite.
+- A compliance in series with a jump, like a spring: it is no part of S.
+- Jumps that depend on each other. If they have a compliance in series they follow from
+  a `base` of the others; where contacts close a rigid ring, S takes them for
+  independent, with a stiffness that ties them.
 """
 
 from __future__ import annotations
@@ -49,70 +48,74 @@ LOOSE = 1e-14
 held."""
 
 SOFTEST = 1e-8
-"""Spring at a pair, at least, as a share of the stiffest degree of freedom."""
+"""Smallest spring at a pair, as a share of the stiffest degree of freedom."""
 
 LEFT_INSIDE = 4.0 * ROUNDING
-"""Share of the forces that displacements make inside elements that rounding leaves of
-them."""
+"""Share of the forces inside elements that rounding of the displacements leaves."""
 
 BLURRED = 1e-5
-"""Share of the forces up to which what is out of balance may be rounding: forces in
+"""Share of the forces up to which forces out of balance may be rounding: forces in
 elements of slender bodies are 1e7 times those of contact."""
 
 TIE = 1e3
 """Stiffness that ties jumps which depend on each other, in springs at a pair."""
 
 BLOCK = 500
-"""Columns of a dense matrix at a time, where more would fill the memory."""
+"""Columns of a dense matrix that are taken at a time: more would fill the memory."""
 
 
 class Condensation:
-    """The structure between its contacts, without jumps that prescribed displacements make alone.
+    """The structure between its contacts, condensed to the jumps that are unknown.
 
-    `stop` is asked now and then while it is made; `Interrupted` is raised where it
-    returns True.
+    Jumps that prescribed displacements alone make are known.
 
     Attributes
     ----------
     moving
-        Which jumps are unknown, shape (n_moving,), places in the stack.
+        Places of the unknown jumps in the stack, shape (n_moving,).
     base, ties
-        Which of these the others follow from, shape (n_base,), places among the unknown
-        ones; and how, shape (n_moving, n_base).
+        Places among these of the jumps from which all follow, shape (n_base,); and the
+        matrix by which they follow, shape (n_moving, n_base).
     stiffness
         S + s Q Q' between the base, shape (n_base, n_base), symmetric, scaled.
     load
-        q of it, shape (n_base, n_instants), scaled.
+        q of the base, shape (n_base, n_instants), scaled.
     springs
-        Stiffness of a pair by what is next to it, of each, shape (n_base,), scaled.
+        Stiffness of each pair by the elements beside it, shape (n_base,), scaled.
     motions, gauge
         Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q
         of the base that they make, shape (n_base, n_motions).
     stresses, tie
-        Where jumps of the base depend on each other: forces that move nothing, of shape
-        (n_base, n_stresses), and the stiffness in S that keeps the jumps from coming
+        Forces that move nothing, where jumps of the base depend on each other, shape
+        (n_base, n_stresses); and the stiffness in S that keeps the jumps from coming
         apart along them, scaled.
     all_rules, rules
-        What all jumps obey, and those that are unknown.
+        Rules of all jumps, and of the unknown ones.
     given
-        Jumps that prescribed displacements make, shape (n_forces, n_instants); final
-        where a jump is not unknown.
+        Jumps that prescribed displacements make, shape (n_forces, n_instants), scaled;
+        final where a jump is not unknown.
     """
 
     def __init__(
         self, problem: Problem, stop: Callable[[], bool] | None = None
     ) -> None:
-        fixed, prescribed = problem.prescribed
-        free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
+        """Condense a problem.
+
+        Raises
+        ------
+        Interrupted
+            As soon as `stop` returns True; it is asked now and then.
+        NoReferenceError
+            If the structure can move with all contacts closed and stuck.
+        """
+        self._fixed, self._prescribed = problem.prescribed
+        self._free: Indices = np.setdiff1d(np.arange(problem.n_dofs), self._fixed)
         self._whole = assembled_stiffness(problem)
         self._force = external_force(problem)
         self._jumps = jumps(problem)
         self.all_rules = rules_of(problem)
-        self._fixed = fixed
-        self._prescribed = prescribed
-        self._free = free
-        self.given: Array = self._jumps[:, fixed] @ prescribed
-        free_jumps = self._jumps[:, free]
+        self.given: Array = self._jumps[:, self._fixed] @ self._prescribed
+        free_jumps = self._jumps[:, self._free]
         self.moving: Indices = np.flatnonzero(np.diff(free_jumps.indptr))
         self.rules = self.all_rules.kept(self.moving)
         free_jumps = free_jumps[self.moving]
@@ -128,11 +131,14 @@ class Condensation:
     def _condense(
         self, free_jumps: sparse.csr_array, stop: Callable[[], bool] | None
     ) -> None:
-        """Factor the glued structure once, and take it out for all jumps and instants together."""
-        free = self._free
-        stiffness = self._whole[free]
-        load = self._force[free] - stiffness[:, self._fixed] @ self._prescribed
-        stiffness = stiffness[:, free]
+        """Eliminate the glued structure from stiffness and load, factored once.
+
+        `free_jumps` are the jumps of the base by the degrees of freedom that are not
+        prescribed, shape (n_base, n_free).
+        """
+        stiffness = self._whole[self._free]
+        load = self._force[self._free] - stiffness[:, self._fixed] @ self._prescribed
+        stiffness = stiffness[:, self._free]
         diagonal = stiffness.diagonal()
         diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
         self.springs: Array = 1.0 / (abs(free_jumps) @ (1.0 / diagonal))
@@ -143,31 +149,39 @@ class Condensation:
         self._factor = factored(
             sparse.csc_array(self._glued.T @ stiffness @ self._glued)
         )
-        patterns, course = separated(load)
-        self._alone = self._solved(self._glued.T @ patterns) @ course
+        patterns, courses = separated(load)
+        self._alone = self._solved(self._glued.T @ patterns) @ courses
         load = self._jumped.T @ load - self._pulled.T @ self._alone
-        whole = (self._jumped.T @ strained).toarray(order="C")
-        for columns in _blocks(len(whole)):
-            if stop is not None and stop():
-                raise Interrupted
-            whole[:, columns] -= self._pulled.T @ self._solved(
-                self._pulled[:, columns].toarray()
-            )
-        _symmetrise(whole)
-        self._tie(whole)
-        self.stiffness: Array = whole
-        self.load: Array = self._balanced(load) + whole @ self._given_of_base
+        condensed = (self._jumped.T @ strained).toarray(order="C")
+        self._subtract_glued(condensed, stop)
+        _symmetrise(condensed)
+        self._tie(condensed)
+        self.stiffness: Array = condensed
+        self.load: Array = self._balanced(load) + condensed @ self._given_of_base
         if self.gauge.size:
             self._set_motions_apart()
 
-    def _solved(self, sides: Array) -> Array:
-        """Displacement of the glued structure under forces on it, shape (n_glued, ...)."""
-        if len(sides):
-            return np.asarray(self._factor.solve(sides))
-        return sides
+    def _subtract_glued(
+        self, condensed: Array, stop: Callable[[], bool] | None
+    ) -> None:
+        """Subtract the reaction of the glued structure, in place, (n_base, n_base)."""
+        for columns in _blocks(len(condensed)):
+            if stop is not None and stop():
+                raise Interrupted
+            pulled = self._pulled[:, columns].toarray()
+            condensed[:, columns] -= self._pulled.T @ self._solved(pulled)
+
+    def _solved(self, forces: Array) -> Array:
+        """Displacement of the glued structure under forces on it, (n_glued, n) each."""
+        if len(forces):
+            return np.asarray(self._factor.solve(forces))
+        return forces
 
     def _balanced(self, forces: Array) -> Array:
-        """Forces, or jumps, of the base without what moves nothing."""
+        """Forces or jumps of the base less their part in forces that move nothing.
+
+        Both have the shape (n_base, n_instants).
+        """
         rings = self._rings
         stresses = self.stresses[self._rings]
         balanced = forces.copy()
@@ -175,7 +189,7 @@ class Condensation:
         return balanced
 
     def _tie(self, stiffness: Array) -> None:
-        """Tie jumps of the base that depend on others to them, in S."""
+        """Tie jumps of the base that depend on others, in S (n_base, n_base)."""
         rings = self._rings
         stresses = self.stresses[self._rings]
         stiffness[rings] -= stresses @ (stresses.T @ stiffness[rings])
@@ -183,20 +197,20 @@ class Condensation:
         stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
 
     def _set_motions_apart(self) -> None:
-        """Remove from S what rounding makes rigid motions cost, from q what it adds to loads."""
+        """Remove the rounding of rigid motions from S and q, and add s Q Q' to S."""
         gauge = self.gauge
         stiffness = self.stiffness
         costs = stiffness @ gauge
         costs -= 0.5 * gauge @ (gauge.T @ costs)
         size = float(np.diagonal(stiffness).mean())
         for rows in _blocks(len(stiffness)):
-            more = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
-            stiffness[rows] -= more
+            excess = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
+            stiffness[rows] -= excess
         self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
 
     @cached_property
     def elastic(self) -> Array:
-        """S alone, (n_base, n_base): rigid motions cost nothing."""
+        """S alone, in which rigid motions cost nothing, (n_base, n_base), scaled."""
         stiffness = self.stiffness
         gauge = self.gauge
         if not gauge.size:
@@ -207,15 +221,22 @@ class Condensation:
 
     @property
     def _given_of_base(self) -> Array:
+        """Jumps of the base by prescribed displacements, (n_base, n_instants)."""
         return np.asarray(self.given[self.moving[self.base]])
 
     @cached_property
     def shift(self) -> Array:
-        """What prescribed displacements add to jumps beyond the base's, (n_moving, n_instants)."""
+        """Jumps by prescribed displacements that do not follow from those of the base.
+
+        Shape (n_moving, n_instants), scaled.
+        """
         return np.asarray(self.given[self.moving] - self.ties @ self._given_of_base)
 
     def deformation(self, strained: Array) -> Array:
-        """All displacements but for rigid motions, (n_dofs, n_instants), by jumps y of the base."""
+        """Displacements without rigid motions by jumps y of the base.
+
+        Shape (n_dofs, n_instants) by y of shape (n_base, n_instants), scaled.
+        """
         displacement = np.empty_like(self._force)
         displacement[self._fixed] = self._prescribed
         jumped = self._balanced(strained - self._given_of_base)
@@ -224,36 +245,48 @@ class Condensation:
         return displacement
 
     def jump(self, displacement: Array) -> Array:
-        """Jumps of a displacement, shape (n_forces, n_instants)."""
+        """Jumps (n_forces, n_instants) of a displacement (n_dofs, n_instants)."""
         return np.asarray(self._jumps @ displacement)
 
     def unbalanced(self, deformation: Array, force: Array) -> Array:
-        """Forces out of balance where nothing is prescribed, (n_free, n_instants), scaled.
+        """Forces out of balance, (n_free, n_instants), without those of supports.
 
-        By displacements without rigid motions, and the force of all contacts.
+        Parameters
+        ----------
+        deformation
+            Displacements without rigid motions, shape (n_dofs, n_instants), scaled.
+        force
+            Forces of all contacts, shape (n_forces, n_instants), scaled.
         """
         outer = self._force + self._jumps.T @ force
         return np.asarray((self._whole @ deformation - outer)[self._free])
 
     def rounding(self, deformation: Array, motion: Array, size: float) -> float:
-        """Bound what rounding alone may leave out of balance at any instant, scaled.
+        """Largest force that rounding alone may leave out of balance, scaled.
 
-        The forces inside a slender body are far larger than what acts on it. How far a
-        body has moved says where a spring ends, too, and what closes: there rounding of
-        the rigid motion deforms the body, by no more than a small share of the largest
-        force, `size`.
+        The forces inside a slender body are far larger than those that act on it.
+        Springs and closing contacts depend on how far a body has moved, too: there
+        rounding of the rigid motion deforms the body, by no more than a small share of
+        the largest force.
+
+        Parameters
+        ----------
+        deformation, motion
+            Displacements without rigid motions, and these, shape (n_dofs, n_instants),
+            scaled.
+        size
+            Largest force, scaled.
         """
         inside = abs(self._whole) @ np.abs(deformation)
         moved = self.unit[:, None] * np.abs(self.jump(motion))
         sprung = moved[self.all_rules.compliance > 0.0]
         left = LEFT_INSIDE * max(inside.max(initial=0.0), sprung.max(initial=0.0))
-        return float(
-            max(left, min(LEFT_INSIDE * moved.max(initial=0.0), BLURRED * size))
-        )
+        blurred = min(LEFT_INSIDE * moved.max(initial=0.0), BLURRED * size)
+        return float(max(left, blurred))
 
     @cached_property
     def unit(self) -> Array:
-        """A stiffness of every jump and what is in series with it, shape (n_forces,), scaled."""
+        """Stiffness of every jump with what is in series, shape (n_forces,), scaled."""
         unit = np.ones(len(self.all_rules.gap))
         springs = abs(self.ties) @ self.springs
         unit[self.moving] = springs / (1.0 + springs * self.rules.compliance)
@@ -261,10 +294,10 @@ class Condensation:
 
     @cached_property
     def largest_force(self) -> float:
-        """Largest force on any degree of freedom, of loads and of prescribed displacements.
+        """Largest force of loads and prescribed displacements on a degree of freedom.
 
-        Where there are none, the largest that closes bodies which overlap from the
-        start.
+        Where there are none, the largest force that closes bodies which overlap from
+        the start, scaled.
         """
         pushed = self._whole[:, self._fixed] @ self._prescribed
         largest = max(
@@ -275,21 +308,34 @@ class Condensation:
 
 
 def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
-    """Rigid motions, and the jumps Q of the base that they make, orthonormal."""
+    """Rigid motions, and the orthonormal jumps Q of the base that they make.
+
+    With the jumps of the base by displacements, shape (n_base, n_dofs).
+
+    Returns
+    -------
+    The motions, shape (n_dofs, n_motions), and their jumps, shape (n_base, n_motions).
+    """
     if problem.motions is None:
         return np.zeros((problem.n_dofs, 0)), np.zeros((base.shape[0], 0))
     _, size = np.linalg.qr(base @ problem.motions)
     steps = np.abs(np.diagonal(size))
     if len(steps) < size.shape[1] or steps.min() <= LOOSE * steps.max():
         raise NoReferenceError(_NOT_HELD)
-    # From the motions once more, so that what one does not move stays exactly where it
-    # is.
+    # From the motions once more, so that a part that a motion leaves in place has
+    # exactly no displacement in it.
     motions = solve_triangular(size, problem.motions.T, trans="T").T
     return motions, np.asarray(base @ motions)
 
 
 def factored(matrix: sparse.csc_array) -> SuperLU:
-    """Factor a stiffness, (n, n); NoReferenceError where something moves that costs no force."""
+    """Factor a stiffness, (n, n).
+
+    Raises
+    ------
+    NoReferenceError
+        If some motion costs no force.
+    """
     try:
         factor = sparse_factor(
             matrix,
@@ -306,12 +352,12 @@ def factored(matrix: sparse.csc_array) -> SuperLU:
 
 
 def _blocks(size: int) -> list[slice]:
-    """Slices of as many columns, or rows, as are taken at a time."""
+    """Slices of the columns, or rows, that are taken at a time."""
     return [slice(first, first + BLOCK) for first in range(0, size, BLOCK)]
 
 
 def _symmetrise(matrix: Array) -> None:
-    """Replace a square matrix by the mean of it and its transpose."""
+    """Replace a matrix (n, n), in place, by its mean with its transpose."""
     for rows in _blocks(len(matrix)):
         others = slice(rows.start, None)
         mean = matrix[rows, others] + matrix[others, rows].T
@@ -321,6 +367,6 @@ def _symmetrise(matrix: Array) -> None:
 
 
 _NOT_HELD = (
-    "The structure can move as a whole even where all its contacts are closed and stick: "
-    "prescribe displacements on a side, or add a support."
+    "The structure can move as a whole even where all its contacts are closed and "
+    "stick: prescribe displacements on a side, or add a support."
 )

@@ -1,7 +1,8 @@
-"""The incremental reference where contacts open or two sides rub: instant by instant, exact.
+"""The incremental reference where contacts open or two bodies rub on each other.
 
-In time it is backward Euler on the jumps (Jean and Moreau), from rest at zero, as the
-laws of LATIN: friction opposes the increment of the tangential jump.
+The solution of every instant is exact. In time it is backward Euler on the jumps (Jean
+and Moreau), from rest at zero, as the laws of LATIN: friction opposes the increment of
+the tangential jump.
 """
 
 from __future__ import annotations
@@ -23,30 +24,36 @@ from solver.reference.rules import Increment, Rules, States
 from solver.reference.solution import Reference
 
 MOST_JUMPS = 13_000
-"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4
-GB."""
+"""Largest number of jumps with a reference, which keeps a dense matrix of their size,
+1.4 GB."""
 
 
 class IncrementalContact:
     """The incremental solver of any interfaces with friction, ready to march through time.
 
-    Friction may have several solutions for a large mu, or none where contact alone
-    holds a body. Where several exist one of them is found, and `ambiguous` if that
-    shows; where none is found, `converged` is False, and the contacts stay where they
-    were, by forces that break the laws.
+    Friction may have several solutions for a large mu, or no solution where contact
+    alone holds a body. Where several exist one of them is found, and the instant is
+    `ambiguous` if that shows; where no solution is found, the instant is not
+    `converged`, and the contacts stay where they were, by forces that break the laws.
 
-    Where the normal jump is prescribed, contact shares its force with the support in
-    any way: it is taken as zero, and so is the friction there. Where the tangential
-    jump is, friction is as `Problem.with_driven_friction` says.
-
-    `stop` is asked now and then while it is made; `Interrupted` is raised where it
-    returns True. NoReferenceError is raised if there are more than `MOST_JUMPS` jumps,
-    or the structure can move with all contacts closed and stuck.
+    Where the normal jump is prescribed, contact may share its force with the support in
+    any way: the force is taken as zero, and so is the friction there. Where the
+    tangential jump is prescribed, friction is that of `Problem.with_driven_friction`.
     """
 
     def __init__(
         self, problem: Problem, stop: Callable[[], bool] | None = None
     ) -> None:
+        """Condense a problem.
+
+        Raises
+        ------
+        Interrupted
+            As soon as `stop` returns True; it is asked now and then.
+        NoReferenceError
+            If there are more than `MOST_JUMPS` jumps, or the structure can move with
+            all contacts closed and stuck.
+        """
         n_jumps = jumps_in(problem)
         if n_jumps > MOST_JUMPS:
             raise NoReferenceError(
@@ -74,82 +81,83 @@ class IncrementalContact:
             says, shape (n_forces, n_instants), unless those of the instant before turn
             out to be better.
         most
-            Linear systems to solve; the instants that are not reached then do not move,
-            and are not `converged`.
+            Largest number of linear systems to solve; the instants that are not reached
+            then do not move, and are not `converged`.
         stop
-            Called before each linear system; `Interrupted` is raised as soon as it
-            returns True.
+            Function called before each linear system; `Interrupted` is raised as soon
+            as it returns True.
         """
         problem = self._problem
         condensed = self._condensed
-        if guess is None:
-            own = None
-        else:
-            own = guess[condensed.moving]
+        states = None
+        if guess is not None:
+            states = guess[condensed.moving]
         instants = Instants(
             condensed,
             problem.rest,
-            own,
+            states,
             lambda instant: self._may_hold(instant, stop),
             stop,
         )
-        sizes = (len(condensed.moving),) * 2 + condensed.gauge.shape
-        done = Increment(*(np.zeros((size, problem.n_instants)) for size in sizes))
-        turned, reached = np.zeros((2, problem.n_instants), dtype=bool)
-        for instant in range(problem.n_instants):
+        n_instants = problem.n_instants
+        n_base, n_motions = condensed.gauge.shape
+        done = Increment(
+            jump=np.zeros((len(condensed.moving), n_instants)),
+            force=np.zeros((len(condensed.moving), n_instants)),
+            strained=np.zeros((n_base, n_instants)),
+            motion=np.zeros((n_motions, n_instants)),
+        )
+        has_others = np.zeros(n_instants, dtype=bool)
+        reached = np.zeros(n_instants, dtype=bool)
+        for instant in range(n_instants):
             if stop is not None and stop():
                 raise Interrupted
             if most is not None and instants.system.solutions >= most:
                 break
             for field, values in zip(done, instants(instant), strict=True):
                 field[:, instant] = values
-            turned[instant] = instants.system.turned or instants.has_others
+            is_negative = instants.system.has_negative_determinant
+            has_others[instant] = is_negative or instants.has_others
             reached[instant] = True
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
-        return self._judged(instants, done, turned, reached)
+        return self._judged(instants, done, has_others, reached)
 
     def _may_hold(self, instant: int, stop: Callable[[], bool] | None) -> bool:
-        """Whether any contact forces balance the loads of an instant."""
+        """Check that some contact forces balance the loads of an instant."""
         if not self._is_analysed:
             self._collapse = collapse_of(self._problem, stop)
             self._is_analysed = True
         return self._collapse is None or instant < self._collapse.instant
 
     def _judged(
-        self, instants: Instants, done: Increment, turned: Flags, reached: Flags
+        self, instants: Instants, done: Increment, has_others: Flags, reached: Flags
     ) -> Reference:
-        """All fields, and how far they are from equilibrium and laws."""
+        """The reference: all fields, and their distance from equilibrium and laws.
+
+        Parameters
+        ----------
+        instants
+            The march, at its end.
+        done
+            Steps of all instants, (..., n_instants).
+        has_others, reached
+            Instants that certainly have other solutions, and those that were tried,
+            shape (n_instants,).
+        """
         problem = self._problem
         condensed = self._condensed
-        rules = self._rules
-        motion = np.cumsum(done.motion, axis=1)
         deformation = condensed.deformation(np.cumsum(done.strained, axis=1))
-        rigid = condensed.motions @ motion
-        moved = condensed.jump(deformation)
-        forces = np.zeros_like(moved)
-        forces[condensed.moving] = done.force
-        rows = (deformation + rigid)[problem.row_dofs]
-        forces = problem.with_driven_friction(forces, rows)
-        moved += rules.compliance[:, None] * forces
-        slip = np.diff(moved, axis=1, prepend=0.0)
-        slip += condensed.jump(condensed.motions @ done.motion)
-        opening = moved + condensed.jump(rigid) + rules.gap[:, None]
-        wrong = broken_laws(rules, condensed.unit, forces, opening, slip)
-        # The force of a normal jump that is prescribed is not determinate, so it has no
-        # law.
-        wrong[np.setdiff1d(np.flatnonzero(rules.normal), condensed.moving)] = 0.0
-        wrong = np.concatenate(
-            [wrong, np.abs(condensed.unbalanced(deformation, forces))]
-        )
-        unbalanced = wrong.max(axis=0, initial=0.0)
+        rigid = condensed.motions @ np.cumsum(done.motion, axis=1)
+        forces = self._forces(done, deformation + rigid)
+        slip, opening = self._slip_and_opening(done, deformation, rigid, forces)
+        unbalanced = self._unbalanced(deformation, forces, slip, opening)
         slip[condensed.moving] = done.jump
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         blurred = condensed.rounding(deformation, rigid, size)
+        residual = unbalanced
         if size > 0.0:
             residual = unbalanced / size
-        else:
-            residual = unbalanced
         converged = reached & (unbalanced <= max(CONVERGED * size, blurred))
         scales = problem.scales
         return Reference(
@@ -157,27 +165,78 @@ class IncrementalContact:
             displacement=(deformation + rigid) * scales.displacement,
             deformation=deformation * scales.displacement,
             contact_force=forces * scales.force,
-            status=_status(rules, slip, forces),
+            status=_status(self._rules, slip, forces),
             residual=float(residual.max(initial=0.0)),
             unbalanced=float(unbalanced.max(initial=0.0)) * scales.force,
             rounding=blurred * scales.force,
             converged=converged,
-            ambiguous=turned & converged,
+            ambiguous=has_others & converged,
             steps=instants.system.solutions,
             jumps_at=instants.jumps_at,
             is_lost=bool(np.any(reached & ~converged)),
             collapse=self._collapse,
         )
 
+    def _forces(self, done: Increment, displacement: Array) -> Array:
+        """Forces of all jumps, shape (n_forces, n_instants), scaled.
+
+        By the steps of all instants and the displacement, shape (n_dofs, n_instants).
+        """
+        problem = self._problem
+        forces = np.zeros((len(self._rules.gap), problem.n_instants))
+        forces[self._condensed.moving] = done.force
+        return problem.with_driven_friction(forces, displacement[problem.row_dofs])
+
+    def _slip_and_opening(
+        self, done: Increment, deformation: Array, rigid: Array, forces: Array
+    ) -> tuple[Array, Array]:
+        """Slips per instant, and openings, with what is in series; scaled.
+
+        Both have the shape of the forces, (n_forces, n_instants); deformation and rigid
+        motion have the shape (n_dofs, n_instants).
+        """
+        condensed = self._condensed
+        rules = self._rules
+        moved = condensed.jump(deformation)
+        moved += rules.compliance[:, None] * forces
+        slip = np.diff(moved, axis=1, prepend=0.0)
+        slip += condensed.jump(condensed.motions @ done.motion)
+        opening = moved + condensed.jump(rigid) + rules.gap[:, None]
+        return slip, opening
+
+    def _unbalanced(
+        self, deformation: Array, forces: Array, slip: Array, opening: Array
+    ) -> Array:
+        """Largest violation of equilibrium and laws as a force, (n_instants,), scaled.
+
+        The deformation has the shape (n_dofs, n_instants), the others that of the
+        forces, (n_forces, n_instants).
+        """
+        condensed = self._condensed
+        rules = self._rules
+        violation = broken_laws(rules, condensed.unit, forces, opening, slip)
+        # The force of a normal jump that is prescribed is not determinate, so it has no
+        # law.
+        prescribed = np.setdiff1d(np.flatnonzero(rules.normal), condensed.moving)
+        violation[prescribed] = 0.0
+        missing = np.abs(condensed.unbalanced(deformation, forces))
+        violation = np.concatenate([violation, missing])
+        return np.asarray(violation.max(axis=0, initial=0.0))
+
 
 def jumps_in(problem: Problem) -> int:
     """Number of components of contact that `IncrementalContact` condenses."""
-    laws = problem.rubbing.values()
-    return sum(len(component.above) for law in laws for component in law.components)
+    count = 0
+    for law in problem.rubbing.values():
+        count += sum(len(component.above) for component in law.components)
+    return count
 
 
 def _status(rules: Rules, slip: Array, forces: Array) -> States:
-    """Status of every point, stacked interface by interface, (n_points, n_instants)."""
+    """Status of every point, stacked interface by interface, (n_points, n_instants).
+
+    By slips and forces of all jumps, shape (n_forces, n_instants).
+    """
     tangential = ~rules.normal
     status = np.sign(slip).astype(np.int8)
     with_normal = rules.normal[rules.partner][:, None]

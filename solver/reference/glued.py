@@ -1,4 +1,4 @@
-"""Displacements seen from the contacts: what jumps make, and what moves where nothing jumps.
+"""Displacements by jumps, and displacements of the structure glued at its contacts.
 
 Every jump is the displacement of one degree of freedom, or of one minus another. So
 jumps join degrees of freedom to trees, and the ground is a root. A displacement is u =
@@ -21,12 +21,15 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 from solver.arrays import Array, Flags, Indices, sparse_factor
 
 NONE = 1e-9
-"""Eigenvalue of J J', whose entries are whole numbers, and share of a force that count
+"""Eigenvalue of J J', whose entries are whole numbers, and share of a force, that count
 as zero."""
 
 
 def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:
-    """The two points that every jump is between, the last of all the ground, smaller first."""
+    """The two points of every jump, the smaller first, shape (n_jumps,) each.
+
+    The ground is the last point of all.
+    """
     ground = jumps.shape[1]
     first = jumps.indices[jumps.indptr[:-1]]
     last = np.where(
@@ -36,7 +39,11 @@ def graph_of(jumps: sparse.csr_array) -> tuple[Indices, Indices]:
 
 
 def trees_of(edges: tuple[Indices, Indices], ground: int) -> tuple[int, Indices]:
-    """Count the trees that edges join points to, and number the tree of every point."""
+    """Number of trees that edges make of points, and the tree of every point.
+
+    Edges are the points at both ends, shape (n_edges,) each; trees have the shape
+    (ground + 1,).
+    """
     size = len(edges[0])
     links = sparse.csr_array((np.ones(size), edges), shape=(ground + 1, ground + 1))
     count, number = connected_components(links, directed=False)
@@ -44,14 +51,14 @@ def trees_of(edges: tuple[Indices, Indices], ground: int) -> tuple[int, Indices]
 
 
 def _is_forest(jumps: sparse.csr_array) -> bool:
-    """Whether there is no ring: no jump that depends on others."""
+    """Check that there is no ring, and so no jump that depends on others."""
     size, ground = jumps.shape
     trees, _ = trees_of(graph_of(jumps), ground)
     return bool(size + trees == ground + 1)
 
 
 def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """T and Z.
+    """Matrices T of the jumps and Z of the trees, with u = T j + Z a.
 
     Parameters
     ----------
@@ -62,8 +69,8 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
 
     Returns
     -------
-    T, shape (n_dofs, n_jumps), with J T = I but for such jumps, and Z, shape (n_dofs, n_trees) for
-    the trees that do not stand on the ground, with J Z = 0.
+    T, shape (n_dofs, n_jumps), with J T = I but for such jumps, and Z, shape (n_dofs,
+    n_trees) for the trees that do not stand on the ground, with J Z = 0.
     """
     ground = jumps.shape[1]
     edges = graph_of(jumps)
@@ -79,8 +86,33 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
 def _along_branches(
     jumps: sparse.csr_array, edges: tuple[Indices, Indices], roots: Indices
 ) -> sparse.csr_array:
-    """Move all that is beyond a jump, seen from the root of its tree."""
+    """Displacements T: all points beyond a jump move, seen from the root of its tree.
+
+    Shape (n_dofs, n_jumps), of jumps (n_jumps, n_dofs), their points and the roots of
+    all trees, (n_trees,).
+    """
     size, ground = jumps.shape
+    points, parents = _parents(edges, roots, ground)
+    branches = _branches(edges, points, parents, ground)
+    signs = np.asarray(jumps[branches, points]).ravel()
+    step = sparse.csr_array((signs, (points, branches)), shape=(ground, size))
+    held = parents < ground
+    ones = np.ones(np.count_nonzero(held))
+    beyond = sparse.csr_array(
+        (ones, (points[held], parents[held])), shape=(ground, ground)
+    )
+    # Each pass hands the motion of all points to the points that hang on them.
+    moved = step
+    while step.nnz:
+        step = sparse.csr_array(beyond @ step)
+        moved = moved + step
+    return sparse.csr_array(moved)
+
+
+def _parents(
+    edges: tuple[Indices, Indices], roots: Indices, ground: int
+) -> tuple[Indices, Indices]:
+    """Points that are no roots, and the point before each, seen from its root, (n,)."""
     # Every root hangs on the ground, so that one search meets all points.
     others = roots[roots != ground]
     rows = np.concatenate([edges[0], others])
@@ -90,33 +122,28 @@ def _along_branches(
     )
     order, parents = breadth_first_order(links, ground, directed=False)
     points = np.setdiff1d(order, roots)
-    parents = parents[points]
+    return points, parents[points]
+
+
+def _branches(
+    edges: tuple[Indices, Indices], points: Indices, parents: Indices, ground: int
+) -> Indices:
+    """The first jump between each point and its parent, (n,) all."""
     keys, first = np.unique(edges[0] * (ground + 1) + edges[1], return_index=True)
     wanted = np.minimum(points, parents) * (ground + 1) + np.maximum(points, parents)
-    branches = first[np.searchsorted(keys, wanted)]
-    signs = np.asarray(jumps[branches, points]).ravel()
-    step = sparse.csr_array((signs, (points, branches)), shape=(ground, size))
-    held = parents < ground
-    ones = np.ones(np.count_nonzero(held))
-    beyond = sparse.csr_array(
-        (ones, (points[held], parents[held])), shape=(ground, ground)
-    )
-    moved = step
-    while step.nnz:
-        step = sparse.csr_array(beyond @ step)
-        moved = moved + step
-    return sparse.csr_array(moved)
+    return np.asarray(first[np.searchsorted(keys, wanted)])
 
 
 def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
-    """Forces that move nothing, an orthonormal basis of shape (n_jumps, n_stresses).
+    """Orthonormal forces that move nothing, shape (n_jumps, n_stresses).
 
     Parameters
     ----------
     jumps
         Each of one degree of freedom, or of one minus another, shape (n_jumps, n_dofs).
     rigid
-        Jumps with nothing in series, shape (n_jumps,): what has tells its own force.
+        Jumps with nothing in series, shape (n_jumps,): the force of others is
+        determinate.
     """
     size = len(rigid)
     places = np.flatnonzero(rigid)
@@ -137,7 +164,7 @@ def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
 
 
 def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_array]:
-    """Jumps from which those with something in series follow, where they depend on others.
+    """Base of the jumps: those from which the others follow.
 
     Parameters
     ----------
@@ -146,20 +173,16 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
 
     Returns
     -------
-    The base, shape (n_base,): all rigid jumps, and of the others as many as are independent. And
-    what all jumps are of them, shape (n_jumps, n_base).
+    The base, shape (n_base,): all rigid jumps, and of the others as many as are
+    independent. And the matrix from jumps of the base to all, shape (n_jumps, n_base).
     """
     size = len(rigid)
     if rigid.all() or _is_forest(jumps):
         return np.arange(size), sparse.csr_array(sparse.eye_array(size))
-    first, last = (points.tolist() for points in graph_of(jumps))
-    forest = DisjointSet(range(jumps.shape[1] + 1))
-    rigid_first = np.argsort(~rigid, kind="stable").tolist()
-    tree_jumps = np.array(
-        [jump for jump in rigid_first if forest.merge(first[jump], last[jump])]
-    )
+    tree_jumps = _spanning(jumps, rigid)
     base = np.union1d(np.flatnonzero(rigid), tree_jumps)
     others = np.setdiff1d(np.arange(size), base)
+    # A jump outside the trees is the sum of those along the path between its points.
     branches = jumps[tree_jumps]
     squares = sparse_factor(sparse.csc_array(branches @ branches.T))
     paths = squares.solve((branches @ jumps[others].T).toarray())
@@ -172,11 +195,26 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     return base, ties
 
 
+def _spanning(jumps: sparse.csr_array, rigid: Flags) -> Indices:
+    """Jumps that join all points to trees, rigid ones preferred, (n_tree_jumps,)."""
+    first, last = graph_of(jumps)
+    forest = DisjointSet(range(jumps.shape[1] + 1))
+    chosen = []
+    for jump in np.argsort(~rigid, kind="stable").tolist():
+        if forest.merge(int(first[jump]), int(last[jump])):
+            chosen.append(jump)
+    return np.array(chosen)
+
+
 def _rings(jumps: sparse.csr_array, group: Indices) -> Indices:
-    """Count the rings in every group of jumps that share points: edges beyond those of a tree."""
+    """Number of rings in every group of jumps that share points, (n_groups,).
+
+    A ring is an edge beyond those of a tree; groups have the shape (n_jumps,).
+    """
     _, at = np.unique(jumps.indices, return_index=True)
     of_entries = np.repeat(group, np.diff(jumps.indptr))
     edges = np.bincount(group)
     nodes = np.bincount(of_entries[at], minlength=len(edges))
-    nodes[np.unique(group[np.diff(jumps.indptr) == 1])] += 1  # the ground is one more
+    # The ground is one more node.
+    nodes[np.unique(group[np.diff(jumps.indptr) == 1])] += 1
     return np.asarray(edges - nodes + 1)

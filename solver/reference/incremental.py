@@ -1,4 +1,4 @@
-"""The incremental reference: friction solved instant by instant, on the assembled structure.
+"""The incremental reference: friction on the assembled structure, instant by instant.
 
 Over one instant the displacement increment v minimises a strictly convex function
 (solver/README.md, 6),
@@ -36,17 +36,16 @@ from solver.reference.search import Minimum, Search, Tridiagonal
 from solver.reference.solution import Reference
 
 DEARER = 30
-"""Points that make a system of the general solver cost one more of this one
-(measured)."""
+"""A system of the general solver costs 1 + n_points / DEARER of these (measured)."""
 TRIALS = 50
-"""Sets of points of the strength that are passed within an instant, at most."""
+"""Largest number of trials of how far friction changes within an instant."""
 BALANCED = 1e-6
 """KKT residual over all that acts up to which an instant is solved; rounding leaves
 1e-15, and more beside loads of 1e9 times what friction holds."""
 
 
 def rubs_on_supports(problem: Problem) -> bool:
-    """Whether all friction of rods is of known bound, on rigid supports, one at every point."""
+    """Check that friction of rods has known bounds, on one rigid support at every point."""
     laws = problem.rubbing.values()
     if not laws or not problem.is_chain or not all(law.is_plain for law in laws):
         return False
@@ -55,7 +54,7 @@ def rubs_on_supports(problem: Problem) -> bool:
 
 
 class IncrementalRod:
-    """The incremental solver of rods for which `rubs_on_supports`, ready to march through time.
+    """The incremental solver of rods that rub on supports (`rubs_on_supports`).
 
     A point whose displacement is prescribed may rub too: only the sum of friction force
     and reaction is determinate there, and friction is as `Problem.with_driven_friction`
@@ -83,13 +82,12 @@ class IncrementalRod:
     def _marched_in_general(
         self, guess: States | None, most: int | None, stop: Callable[[], bool] | None
     ) -> Reference:
-        """Solve by what also follows friction that softens faster than a rod unloads."""
+        """Solve by the general solver, which follows friction that softens fast, too."""
         if self._general is None:
             self._general = IncrementalContact(self._problem, stop)
         dearer = 1 + len(self._dofs) // DEARER
-        if most is None:
-            limit = None
-        else:
+        limit = None
+        if most is not None:
             limit = most // dearer
         return self._general.march(guess, limit, stop)
 
@@ -135,7 +133,7 @@ class IncrementalRod:
         return self._gathered(minima)
 
     def _on_dofs(self, values: Array | States) -> Array:
-        """Values of the points that rub, (n_points,), and 0 elsewhere, (n_dofs,)."""
+        """Values (n_points,) at the points that rub, and 0 elsewhere, (n_dofs,)."""
         spread = np.zeros(self._problem.n_dofs)
         spread[self._dofs] = values
         return spread
@@ -143,9 +141,10 @@ class IncrementalRod:
     def _minimise(
         self, instant: int, force: Array, status: Array, gone: Array
     ) -> Minimum | None:
-        """Minimise phi over one instant, from a guess of the statuses; None where it has none.
+        """Minimise phi over one instant; None where there is no certain minimum.
 
-        `gone` is the slip accumulated before; all have shape (n_dofs,).
+        By the load, a guess of the statuses, and the slip accumulated before, shape
+        (n_dofs,) each.
         """
         move = self._moves[instant]
         rules = self._rules
@@ -154,7 +153,7 @@ class IncrementalRod:
         load = self._movable * (force - self._stiffness.product(given))
         bound = self._on_dofs(rules.bound_at(instant))
         least: Minimum | None
-        if rules.ages:
+        if rules.changes_with_slip:
             least = self._with_changing_bound(bound, load, status, gone)
         else:
             search = self._search
@@ -170,11 +169,12 @@ class IncrementalRod:
     def _with_changing_bound(
         self, first: Array, force: Array, status: Array, gone: Array
     ) -> Minimum | None:
-        """Minimum that the instant before certainly goes over into, None where that is not sure.
+        """Minimum that certainly continues the instant before; None without certainty.
 
-        Which points of the strength are passed within the instant is found by trial. It
-        is sure if the structure is stable where points slip, however far they have
-        softened on the way: then no other minimum slips there alone.
+        How far friction changes within the instant is found by trial. The minimum is
+        sure if the structure is stable where points slip, however far they have
+        softened on the way: then no other minimum slips there alone. All arrays have
+        the shape (n_dofs,).
         """
         rules = self._rules
         movable = self._movable
@@ -211,7 +211,7 @@ class IncrementalRod:
         return None
 
     def _gathered(self, minima: list[Minimum]) -> Reference:
-        """Solution of the first instants' minima, after which nothing moves."""
+        """Reference of the minima of the first instants, after which nothing moves."""
         problem = self._problem
         dofs = self._dofs
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
@@ -267,8 +267,8 @@ def incremental_solver(
     Interrupted
         As soon as `stop` returns True.
     NoReferenceError
-        If there is none, as the problem holds what no solver reads, or goes on from
-        where another ends.
+        If there is no solver, as the problem holds data that no solver reads, or
+        continues another run.
     """
     if problem.no_reference:
         raise NoReferenceError(problem.no_reference)

@@ -1,8 +1,8 @@
 """Frictional contact through time, each instant from the states of the one before.
 
-Where friction softens an instant may have several solutions: the one that goes on from
-the instant before is followed while the load of the instant grows, in steps so small
-that between their ends no other branches off.
+Where friction softens an instant may have several solutions. The solution that
+continues the instant before is followed while the load of the instant grows, in steps
+so small that no other solution branches off between their ends.
 """
 
 from __future__ import annotations
@@ -26,14 +26,16 @@ from solver.reference.rules import (
 )
 
 PASSES = 30
-"""Times at most that an instant is solved to keep dependent jumps together."""
+"""Largest number of solutions of an instant that keep dependent jumps together."""
 TOGETHER = 1e-10
 """Force that still ties dependent jumps, as a share of the largest load."""
-SHORTEST = 2.0**-12
+FIRST_PART = 0.25
+"""Share of the load of an instant that is tried first where it is followed in parts."""
+SHORTEST_PART = 2.0**-12
 """Share of the load of an instant within which the solution is lost, where it jumps."""
 SLIDES = 100
-"""Slips at most, each with the friction that the one before has left, up to the next
-solution."""
+"""Largest number of slips up to the next solution, each with the friction that the slip
+before has left."""
 AT_REST = 1e-9
 """Change of slips, as a share of the largest, at which they have come to rest."""
 
@@ -41,18 +43,15 @@ AT_REST = 1e-9
 class Instants:
     """Jumps and forces of a condensed structure, one instant after the other.
 
-    `rest` is a displacement from which contacts may be guessed, (n_dofs, n_instants),
-    and `guess` are states to try, (n, n_instants). `may_hold` says whether there may be
-    an equilibrium at an instant, where none is found at once. `stop` is that of
-    `LinearSystem`.
-
     Attributes
     ----------
+    system
+        The linear system of the states.
     jumps_at
-        First instant at which no solution goes on from the one before; None while all
-        do.
+        First instant at which no solution continues the instant before; None while one
+        always does.
     has_others
-        Whether another solution of the last instant was met, which is not stable.
+        Another solution of the last instant was met, which is not stable.
     """
 
     jumps_at: int | None = None
@@ -66,6 +65,23 @@ class Instants:
         may_hold: Callable[[int], bool],
         stop: Callable[[], bool] | None = None,
     ) -> None:
+        """Start from rest at zero.
+
+        Parameters
+        ----------
+        condensed
+            The structure between its contacts.
+        rest
+            Displacement by which contacts may be guessed, shape (n_dofs, n_instants),
+            scaled.
+        guess
+            States to try, shape (n, n_instants).
+        may_hold
+            Function that says whether there may be an equilibrium at an instant, where
+            none is found at once.
+        stop
+            As that of `LinearSystem`.
+        """
         self._newton = Newton(condensed, stop)
         rules = condensed.rules
         self.system = self._newton.system
@@ -78,25 +94,26 @@ class Instants:
         self._load = np.zeros_like(self._newton.strained)
         self._shift = np.zeros_like(rules.gap)
         self._motion = np.zeros(condensed.gauge.shape[1])
+        # 1 where the friction of a bond is left, 0 where its contact has opened.
         self._intact = np.ones_like(rules.gap)
-        self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
+        self._states: States = np.where(rules.is_frictionless, OPEN, HELD).astype(
+            np.int8
+        )
         self._starts = Starts()
         self._has_guess = guess is not None
         self._guesses: list[States] = []
         if guess is not None:
-            self._guesses.append(
-                np.where(rules.smooth[:, None], OPEN, guess).astype(np.int8)
-            )
+            states = np.where(rules.is_frictionless[:, None], OPEN, guess)
+            self._guesses.append(states.astype(np.int8))
         if rest is not None:
-            self._guesses.append(
-                rules.states_at(condensed.jump(rest)[condensed.moving])
-            )
+            jumps = condensed.jump(rest)[condensed.moving]
+            self._guesses.append(rules.states_at(jumps))
         has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
         # Nothing has acted yet: then nothing moves, though a free body might.
         self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
 
     def __call__(self, instant: int) -> Increment:
-        """What an instant adds, with the slip, or opening, of each jump.
+        """Increments of an instant, with the slip, or opening, of each jump.
 
         The forces that move nothing are the multipliers that keep dependent jumps
         together (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch.
@@ -106,11 +123,11 @@ class Instants:
         rules = self._rules
         self.has_others = False
         if self._is_at_rest[instant]:
-            still = self._force, self._force, self._newton.strained, self._motion
-            return Increment(*map(np.zeros_like, still))
+            return self._nothing()
         load = (
             condensed.load[:, instant] - self._load - self.system.on_base(self._force)
         )
+        # Length before of what is in series with each jump.
         before = (
             rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         )
@@ -118,49 +135,69 @@ class Instants:
         step = self._together(Sides(load, self._bound(instant), held), instant)
         self._load = condensed.load[:, instant]
         self._shift = condensed.shift[:, instant]
-        slip = step.jump - before
+        step = step._replace(jump=step.jump - before)
+        self._move(step)
+        return step
+
+    def _nothing(self) -> Increment:
+        """The step of an instant at which nothing moves."""
+        return Increment(
+            jump=np.zeros_like(self._force),
+            force=np.zeros_like(self._force),
+            strained=np.zeros_like(self._newton.strained),
+            motion=np.zeros_like(self._motion),
+        )
+
+    def _move(self, step: Increment) -> None:
+        """Add the step of an instant, with the slip of each jump, to all before."""
+        rules = self._rules
         self._force = step.force
-        self._opening += slip
-        self._newton.gone += np.abs(slip)
+        self._opening += step.jump
+        self._newton.accumulated_slip += np.abs(step.jump)
         self._newton.strained += step.strained
         self._motion += step.motion
         opened = self._states[rules.partner[rules.bonds]] == OPEN
         self._intact[rules.bonds[opened]] = 0.0
-        return step._replace(jump=slip)
 
     def _bound(self, instant: int) -> Array:
-        """Friction force that needs no pressing one, where no bond is broken yet, (n,)."""
+        """Friction force that needs no normal force, (n,): none of broken bonds."""
         return self._rules.bound_at(instant) * self._intact
 
     def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""
-        condensed = self._condensed
-        stresses = self._condensed.stresses
         done = self.system.solutions
         from_guess = self._starts.from_guess
         for _ in range(PASSES):
             solved = self._solved(sides, instant)
             if solved is None:
-                # All contacts stay where they are.
-                held = sides.held + self._rules.normal * self._opening
-                return self.system(
-                    np.full_like(self._states, HELD), replace(sides, held=held)
-                )
+                return self._stuck(sides)
             self._states, step, _ = solved
-            if not stresses.size:
+            if not self._condensed.stresses.size:
                 break
-            given = condensed.given[condensed.moving[condensed.base], instant]
-            moved = self._newton.strained + condensed.gauge @ self._motion - given
-            moved += step.strained + condensed.gauge @ step.motion
-            pull = condensed.tie * (stresses @ (stresses.T @ moved))
-            if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest:
+            pull = self._pull_together(step, instant)
+            if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest_load:
                 break
             sides = replace(sides, load=sides.load - pull)
         self._starts.took(self.system.solutions - done, from_guess=from_guess)
         return step
 
+    def _stuck(self, sides: Sides) -> Increment:
+        """The step in which all contacts stay where they are."""
+        held = sides.held + self._rules.normal * self._opening
+        states = np.full_like(self._states, HELD)
+        return self.system(states, replace(sides, held=held))
+
+    def _pull_together(self, step: Increment, instant: int) -> Array:
+        """Forces by which dependent jumps that are apart tie each other, (n_base,)."""
+        condensed = self._condensed
+        stresses = condensed.stresses
+        given = condensed.given[condensed.moving[condensed.base], instant]
+        moved = self._newton.strained + condensed.gauge @ self._motion - given
+        moved += step.strained + condensed.gauge @ step.motion
+        return np.asarray(condensed.tie * (stresses @ (stresses.T @ moved)))
+
     def _solved(self, sides: Sides, instant: int) -> InstantSolution | None:
-        """Find the states of the jumps and the step, or None."""
+        """Find states and step of an instant; None where there is no solution."""
         rules = self._rules
         newton = self._newton
         # A body that falls, rolls or slides a long way touches elsewhere than one
@@ -170,13 +207,13 @@ class Instants:
         nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
         begin = InstantSolution(self._states, nothing, still)
         guesses = begin.guesses(known)
-        # Where there may be several solutions, the one that goes on from the instant
-        # before.
-        if self._has_guess and self._starts.from_guess and not rules.is_curved:
+        # Where there may be several solutions, the states of the instant before come
+        # first.
+        if self._has_guess and self._starts.from_guess and not rules.is_nonlinear:
             guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, sides, guesses)
         if solved is None and not self._is_lost:
-            if rules.is_curved:
+            if rules.is_nonlinear:
                 solved = self._in_parts(begin, sides, known, instant)
             elif self._may_hold(instant):
                 solved = newton.follow(begin, sides, newton.approach(begin, sides))
@@ -186,7 +223,10 @@ class Instants:
     def _in_parts(
         self, at: InstantSolution, sides: Sides, known: list[States], instant: int
     ) -> InstantSolution | None:
-        """Follow the solution from the instant before; where it is lost, look for any."""
+        """Follow the solution of the instant before; where it is lost, seek another.
+
+        `known` are states to try, shape (n,) each.
+        """
         rules = self._rules
         force = self._force
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
@@ -209,13 +249,26 @@ class Instants:
         sides: tuple[Sides, Sides],
         known: list[States],
     ) -> tuple[InstantSolution, float]:
-        """Follow a solution to other sides, in parts; how far it goes, as a share of the way.
+        """Follow a solution from some right sides to others, in parts.
 
-        The method may depend on the share, too.
+        Parameters
+        ----------
+        newton_at
+            Newton's method at a share of the change from one to the other.
+        at
+            Solution with the first right sides.
+        sides
+            The right sides at both ends.
+        known
+            States to try, shape (n,) each.
+
+        Returns
+        -------
+        The last solution found, and at which share.
         """
         begin, end = sides
         share = 0.0
-        length = 0.25
+        length = FIRST_PART
         while share < 1.0:
             target = min(share + length, 1.0)
             part = begin.towards(end, target)
@@ -224,7 +277,7 @@ class Instants:
                 at = following
                 share = target
                 length = 2.0 * length
-            elif length > SHORTEST:
+            elif length > SHORTEST_PART:
                 length *= 0.25
             else:
                 break
@@ -233,37 +286,41 @@ class Instants:
     def _beyond(
         self, at: InstantSolution, sides: tuple[Sides, Sides], known: list[States]
     ) -> InstantSolution | None:
-        """A stable solution beyond one that is lost, or None.
+        """Seek a stable solution beyond one that is lost.
 
         With the friction that slip so far has left the next slip is larger, and so on
         up to the nearest solution; Newton's method is tried once the same contacts slip
         again. Where the bound is known each slip lowers the energy (convex-concave
         procedure: Yuille, Rangarajan, Neural Comput. 15, 2003), so slips come to rest.
-        That may be where the structure is not stable, as on a ridge between two slopes:
-        it is left down one of them. What the last friction alone comes to is the last
-        resort.
+        They may come to rest where the structure is not stable, as on a ridge between
+        two slopes: then the solution is left down one of them. The last resort is the
+        solution with the friction that is left after any slip.
+
+        `known` are states to try, shape (n,) each.
         """
-        end = sides[1]
-        begins = sides[0]
+        begin, end = sides
         fallen = np.abs(at.slip)
         for number in range(SLIDES + 1):
+            is_last = number == SLIDES
             before = at
             falls = np.abs(at.slip)
-            if number == SLIDES:
+            if is_last:
                 falls = np.full_like(falls, self._rules.strength.slips[-1])
-            slid = self._slid(at, (begins, end), (fallen, falls), known)
+            slid = self._slid(at, (begin, end), (fallen, falls), known)
             if slid is None:
                 return None
             at = slid
-            begins = end
+            begin = end
             fallen = falls
-            if number < SLIDES and not np.array_equal(at.states, before.states):
+            if not is_last and not np.array_equal(at.states, before.states):
                 continue
             near = self._newton.near(at, end)
-            if near is not None and self._newton.is_stable(near, end):
+            if near is None:
+                continue
+            if self._newton.is_stable(near, end):
                 return near
-            self.has_others |= near is not None
-            if near is not None and _are_equal(at.slip, before.slip):
+            self.has_others = True
+            if _are_equal(at.slip, before.slip):
                 at = self._newton.leave(near, end)
         return None
 
@@ -274,29 +331,35 @@ class Instants:
         fallen: tuple[Array, Array],
         known: list[States],
     ) -> InstantSolution | None:
-        """Follow a solution to other sides with friction that falls no more by itself.
+        """Follow a solution to other right sides with friction of given slips.
 
-        It falls from what slips (n,) have left to what others have left.
+        Parameters
+        ----------
+        at
+            Solution with the first right sides.
+        sides
+            The right sides at both ends.
+        fallen
+            Slips up to which friction has fallen at both ends, shape (n,) each, scaled.
+        known
+            States to try, shape (n,) each.
         """
         before, after = fallen
         newton = self._newton.with_friction_left(after)
         slid = newton.follow(at, sides[1], at.guesses(known))
         if slid is not None:
             return slid
-        slid, share = self._followed(
-            lambda share: self._newton.with_friction_left(
-                before + share * (after - before)
-            ),
-            at,
-            sides,
-            known,
-        )
+
+        def newton_at(share: float) -> Newton:
+            return self._newton.with_friction_left(before + share * (after - before))
+
+        slid, share = self._followed(newton_at, at, sides, known)
         if share == 1.0:
             return slid
         return newton.follow(at, sides[1], newton.approach(at, sides[1]))
 
 
 def _are_equal(slip: Array, other: Array) -> bool:
-    """Whether slips (n,) are others up to the digits that a solution has."""
+    """Check that slips, (n,), are others up to the digits that a solution has."""
     size = np.abs(other).max(initial=0.0)
     return bool(np.abs(slip - other).max(initial=0.0) <= AT_REST * size)

@@ -1,12 +1,12 @@
-"""Whether any contact forces balance the loads, and where along the path none do any more.
+"""Limit analysis: from when on no contact forces balance the loads.
 
 An equilibrium of the discrete problem, whatever its elasticity, is one of nodal contact
 forces with N >= 0 and |T| <= r + mu N, times the strongest factor that slip may make,
 that balance the loads on every body that contact alone holds. The largest share of a
 step of the loads for which there are such forces is a linear program (R. K. Livesley,
-Int. J. Numer. Meth. Eng. 12, 1978, for rigid blocks). It is a bound: Coulomb's friction
-is not associated with slip, so a structure may fail before; it never fails after. The
-program's dual is the mechanism by which it collapses.
+Int. J. Numer. Meth. Eng. 12, 1978, for rigid blocks). That share is an upper bound:
+Coulomb's friction is not associated with slip, so a structure may fail before, but not
+after. The program's dual is the mechanism by which the structure collapses.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.optimize import linprog
+from scipy.optimize import OptimizeResult, linprog
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import (
     Interrupted,
@@ -29,21 +29,23 @@ from solver.reference.assembly import (
 from solver.reference.rules import rules_of
 
 WHOLE = 1.0 - 1e-6
-"""Share of a step of the loads from which on it is all of it, but for what HiGHS
-leaves."""
+"""Share of a step of the loads from which on it counts as all of it, by the tolerance
+of HiGHS."""
 TURNED = 1e-3
 """Difference of displacements in a body, over the largest of all, from which on it
 turns."""
+INFEASIBLE = 2
+"""Status of `linprog` where no contact forces balance the loads."""
 
 
 @dataclass(frozen=True, eq=False)
 class Collapse:
-    """Where the loads go beyond all that contact can balance.
+    """Collapse: the loads go beyond all that contact can balance.
 
     Attributes
     ----------
     time
-        From when on there is no equilibrium, s.
+        Time from which on there is no equilibrium, s.
     instant
         The first instant without one.
     share
@@ -52,7 +54,7 @@ class Collapse:
         Rigid motions of all bodies in which they begin to move, shape (n_dofs,), the
         largest 1.
     tips
-        Whether any of them turns, and does not only slide.
+        A body turns in the mechanism, and does not only slide.
     """
 
     time: float
@@ -62,10 +64,80 @@ class Collapse:
     tips: bool
 
 
+class _Program:
+    """The linear program of one step of the loads.
+
+    Its unknowns are all contact forces, shape (n,), and the share of the step.
+    """
+
+    def __init__(
+        self, problem: Problem, motions: sparse.csc_array, unit: float
+    ) -> None:
+        """Prepare what all instants share, with forces in a unit."""
+        self._rules = rules_of(problem)
+        rules = self._rules
+        self._unit = unit
+        self._balance = sparse.csc_array((jumps(problem) @ motions).T)
+        self._rubs: Indices = np.flatnonzero(~rules.normal)
+        # Slip may harden: what friction can ever carry is a bound whatever has slipped.
+        self._strongest = max(rules.strength.factors)
+        self._limits = self._friction_limits()
+        caps = rules.cap[self._rubs][self._capped]
+        self._caps = np.tile(self._strongest * caps, 2) / unit
+        size = len(rules.gap)
+        lows = np.append(np.where(rules.normal, 0.0, -np.inf), 0.0)
+        highs = np.append(np.full(size, np.inf), 1.0)
+        self._bounds = np.stack([lows, highs], axis=1)
+        self._aim = np.append(np.zeros(size), -1.0)
+
+    @property
+    def _capped(self) -> Indices:
+        """Places of the tangential jumps with a cap, among these, shape (n_capped,)."""
+        return np.flatnonzero(np.isfinite(self._rules.cap[self._rubs]))
+
+    def _friction_limits(self) -> sparse.sparray:
+        """Rows of |T| - mu N <= r and of |T| <= cap, (n_rows, n + 1)."""
+        rules = self._rules
+        every = sparse.eye_array(len(rules.gap), format="csr")
+        along = every[self._rubs]
+        pressing = every[rules.partner[self._rubs]]
+        friction = self._strongest * rules.friction[self._rubs]
+        carried = sparse.diags_array(friction) @ pressing
+        capped = along[self._capped]
+        cone = sparse.vstack([along - carried, -along - carried, capped, -capped])
+        return sparse.hstack([cone, sparse.csr_array((cone.shape[0], 1))])
+
+    def solve(
+        self, instant: int, before: Array, step: sparse.csr_array
+    ) -> OptimizeResult:
+        """Largest share of a step of the loads, (n_motions, 1), that contact balances.
+
+        With the loads before the step, shape (n_motions,).
+
+        Raises
+        ------
+        NoReferenceError
+            If HiGHS finds no answer.
+        """
+        known = self._strongest * self._rules.bound_at(instant)[self._rubs] / self._unit
+        program = linprog(
+            self._aim,
+            A_ub=self._limits,
+            b_ub=np.concatenate([known, known, self._caps]),
+            A_eq=sparse.hstack([self._balance, step]),
+            b_eq=-before,
+            bounds=self._bounds,
+            method="highs",
+        )
+        if program.status not in (0, INFEASIBLE):
+            raise NoReferenceError(f"limit analysis has no answer: {program.message}")
+        return program
+
+
 def collapse_of(
     problem: Problem, stop: Callable[[], bool] | None = None
 ) -> Collapse | None:
-    """Where a structure collapses on the path of its loads; None if it never does.
+    """Collapse of a structure on the path of its loads; None if there is none.
 
     `stop` is asked before each linear program, one an instant.
 
@@ -78,72 +150,50 @@ def collapse_of(
     """
     if problem.motions is None:
         return None
-    rules = rules_of(problem)
     motions = sparse.csc_array(problem.motions)
     loads = motions.T @ external_force(problem)
     unit = float(np.abs(loads).max(initial=0.0)) or 1.0
-    holds = sparse.csc_array((jumps(problem) @ motions).T)
-    size = len(rules.gap)
-    rubs = np.flatnonzero(~rules.normal)
-    every = sparse.eye_array(size, format="csr")
-    along = every[rubs]
-    under = every[rules.partner[rubs]]
-    # Slip may harden: what friction can ever carry is a bound whatever has slipped.
-    strongest = max(rules.strength.factors)
-    across = sparse.diags_array(strongest * rules.friction[rubs]) @ under
-    caps = np.flatnonzero(np.isfinite(rules.cap[rubs]))
-    capped = np.tile(strongest * rules.cap[rubs][caps], 2) / unit
-    cone = sparse.vstack([along - across, -along - across, along[caps], -along[caps]])
-    none = sparse.csr_array((cone.shape[0], 1))
-    lows = np.where(rules.normal, 0.0, -np.inf)
-    bounds = np.stack(
-        [np.append(lows, 0.0), np.append(np.full(size, np.inf), 1.0)], axis=1
-    )
+    program = _Program(problem, motions, unit)
     before = np.zeros(len(loads))
-    times = problem.instants
     for instant, now in enumerate(loads.T / unit):
-        known = strongest * rules.bound_at(instant)[rubs] / unit
         step = sparse.csr_array((now - before)[:, None])
         if not step.nnz and instant:
             continue
         if stop is not None and stop():
             raise Interrupted
-        program = linprog(
-            np.append(np.zeros(size), -1.0),
-            A_ub=sparse.hstack([cone, none]),
-            b_ub=np.concatenate([known, known, capped]),
-            A_eq=sparse.hstack([holds, step]),
-            b_eq=-before,
-            bounds=bounds,
-            method="highs",
-        )
-        if program.status not in (0, 2):
-            raise NoReferenceError(f"limit analysis has no answer: {program.message}")
-        if program.status == 0:
-            share = float(program.x[-1])
-        else:
-            share = 0.0
+        balanced = program.solve(instant, before, step)
+        share = 0.0
+        if balanced.status != INFEASIBLE:
+            share = float(balanced.x[-1])
         if share < WHOLE:
-            first = times[max(instant - 1, 0)]
-            time = float(first + share * (times[instant] - first))
-            if program.status:
-                shares = np.zeros(len(loads))
-            else:
-                shares = program.eqlin.marginals
-            moved = -problem.motions @ shares
-            mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
-            return Collapse(time, instant, share, mechanism, _tips(problem, mechanism))
+            return _collapse_at(problem, instant, share, balanced)
         before = now
     return None
 
 
+def _collapse_at(
+    problem: Problem, instant: int, share: float, balanced: OptimizeResult
+) -> Collapse:
+    """Collapse at a share of the step to an instant; its mechanism is the dual."""
+    times = problem.instants
+    first = times[max(instant - 1, 0)]
+    time = float(first + share * (times[instant] - first))
+    assert problem.motions is not None
+    shares = np.zeros(problem.motions.shape[1])
+    if balanced.status != INFEASIBLE:
+        shares = balanced.eqlin.marginals
+    moved = -problem.motions @ shares
+    mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
+    return Collapse(time, instant, share, mechanism, _tips(problem, mechanism))
+
+
 def _tips(problem: Problem, mechanism: Array) -> bool:
-    """Whether points of a body do not move alike in a mechanism."""
+    """Check whether points of a body move apart in a mechanism, shape (n_dofs,)."""
     assert problem.inside is not None
     component = problem.inside.components
-    return any(
-        float(np.ptp(mechanism[part.dofs[component[part.dofs] == axis]])) > TURNED
-        for part in problem.substructures
-        for axis in (0, 1)
-        if np.any(component[part.dofs] == axis)
-    )
+    for part in problem.substructures:
+        for axis in (0, 1):
+            dofs = part.dofs[component[part.dofs] == axis]
+            if len(dofs) and float(np.ptp(mechanism[dofs])) > TURNED:
+                return True
+    return False

@@ -1,9 +1,9 @@
-"""One instant of frictional contact, its states known: a linear system.
+"""One instant of frictional contact with known states: a linear system.
 
-With S y = f + q and jumps y + Q a (`solver.reference.condensation`), unknown are y
+With S y = f + q and jumps y + Q a (`solver.reference.condensation`), the unknowns are y
 where a jump is not held or where something is in series, the forces of jumps that
-follow from others, and the rigid motions a. Their equations say what free jumps carry,
-what held ones come to, and that Q' y = 0.
+follow from others, and the rigid motions a. The equations are the friction law of free
+jumps, the given increments of held ones, and Q' y = 0.
 """
 
 from __future__ import annotations
@@ -24,14 +24,16 @@ free."""
 SINGULAR = 1e-12
 """Pivot, as a share of the largest, below which a system is singular."""
 FEW = 4
-"""Rows of S at most, one in so many, that are gathered sooner than all of S is read."""
+"""Rows of S are gathered where they are at most one in this number; else all of S is
+read."""
 
 
 class LinearSystem:
     """The linear system of given states; the last factorisation is kept.
 
     The stiffness and gauge are those of the condensed structure, or others where
-    springs hold it.
+    springs hold it. Rows of the system are the jumps of the base that are free or have
+    something in series, and the jumps that follow from the base.
 
     Attributes
     ----------
@@ -40,17 +42,17 @@ class LinearSystem:
     friction
         Coefficient mu of each jump, shape (n,).
     stop
-        Asked before each system is solved; where it returns True, `Interrupted` is
-        raised instead.
+        Function asked before each system is solved; where it returns True,
+        `Interrupted` is raised instead.
     solutions
-        Systems solved.
+        Number of systems solved.
     unbalanced
-        Largest force out of balance in the last one; more than rounding, where a motion
-        is free.
-    turned
-        Whether the determinant of the last one is negative. That of a convex problem
-        never is, and the signs at all solutions of an instant add up to one: so it has
-        others.
+        Largest force out of balance in the last system, scaled; more than rounding,
+        where a motion is free.
+    has_negative_determinant
+        Sign of the determinant of the last system. The determinant of a convex problem
+        is never negative, and the signs at all solutions of an instant add up to one:
+        so an instant with a negative one has other solutions.
     """
 
     def __init__(
@@ -68,27 +70,26 @@ class LinearSystem:
         self.friction = rules.friction
         self._growth = np.zeros_like(rules.friction)
         self._base = condensed.base
-        self._soft = rules.compliance
+        self._compliance = rules.compliance
         self._base_rows = as_slice(condensed.base)
         self._others: Indices = np.setdiff1d(np.arange(len(rules.gap)), self._base)
+        self._ties: Array | None = None
         if len(self._others):
             self._ties = condensed.ties.toarray()
-        else:
-            self._ties = None
         self._of_unknowns = self._forces_of_unknowns()
-        alone = abs(condensed.ties) @ np.diagonal(self._stiffness)
-        self.unit: Array = alone / (1.0 + alone * rules.compliance)
         self._alone = np.diagonal(self._stiffness)
+        alone = abs(condensed.ties) @ self._alone
+        self.unit: Array = alone / (1.0 + alone * rules.compliance)
         self._pulls_of_gauge = self._of_unknowns[:, : len(self._base)] @ self._gauge
-        self._is_plain = not self._soft.any() and not self._gauge.size
+        self._is_plain = not self._compliance.any() and not self._gauge.size
         self._states: States | None = None
         self._factors: Factors
         self.solutions = 0
         self.unbalanced = 0.0
-        self.turned = False
+        self.has_negative_determinant = False
 
     def _forces_of_unknowns(self) -> Array:
-        """Forces of all jumps by y and forces of jumps that follow from others, (n, n)."""
+        """Forces of all jumps by y and by forces of jumps beyond the base, (n, n)."""
         if self._ties is None:
             return self._stiffness
         n_base = len(self._base)
@@ -100,74 +101,101 @@ class LinearSystem:
         return forces
 
     def set_friction(self, friction: Array, growth: Array) -> None:
-        """Change coefficients of friction, and growths of their bounds per slip, shape (n,)."""
+        """Change coefficients of friction and growths of bounds per slip, (n,) each."""
         self.friction = friction
         self._growth = growth
         self._states = None
 
     def __call__(self, states: States, sides: Sides) -> Increment:
-        """Solve for the step from the instant before."""
+        """Solve for the step from the instant before, with states of shape (n,)."""
         if self.stop is not None and self.stop():
             raise Interrupted
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)
         self.solutions += 1
-        rows = self._rows
         kept = self._kept
-        sprung = self._sprung
         n_base = len(self._base)
         n_free = len(self._free)
-        n_rows = len(rows)
+        n_rows = len(self._rows)
         unknown = np.zeros(len(self._of_unknowns))
         unknown[kept] = sides.held[self._base[kept]]
-        stays = self._forces(unknown, kept)
-        stays[self._base_rows] -= sides.load
-        force = stays
-        given = -self._way * sides.bound[rows]
-        right = (
-            given - self._share_of_own * force[rows] - self._slope * force[self._under]
-        )
-        if self._grows:
-            right += self._stiffer * (sides.held[rows] - self._slips @ unknown[:n_base])
-        if not self._is_plain:
-            right = np.concatenate([right, self._gauge_kept.T @ unknown[kept]])
-            if len(sprung):
-                springs = rows[sprung]
-                come = (
-                    self._come @ unknown[:n_base] + self._soft[springs] * force[springs]
-                )
-                right[sprung] = self._share * (sides.held[springs] - come)
-        solution = self._factors.solve(right)
+        force = self._force_of_kept(unknown, sides)
+        solution = self._factors.solve(self._right(unknown, force, sides))
         motion = solution[n_rows:]
         unknown[self._free] = solution[:n_free]
         unknown[n_base:] = solution[n_free:n_rows]
         if len(motion):
+            # Held jumps are given with the rigid motion: y is what remains of them.
             unknown[kept] -= self._gauge_kept @ motion
-            stays = self._forces(unknown, kept)
-            stays[self._base_rows] -= sides.load
-        force = stays + self._forces(unknown, self._unknowns, self._own)
-        carried = given - self._slope * force[self._under]
+            force = self._force_of_kept(unknown, sides)
+        force = force + self._forces(unknown, self._unknowns, self._stiffness_rows)
+        strained = unknown[:n_base]
+        self._set_carried(force, strained, motion, sides)
+        end = self._ends(strained, motion, force, sides.held)
+        return Increment(end, force, strained, motion)
+
+    def _force_of_kept(self, unknown: Array, sides: Sides) -> Array:
+        """Forces of all jumps by y of held jumps and by the load, (n,)."""
+        force = self._forces(unknown, self._kept)
+        force[self._base_rows] -= sides.load
+        return force
+
+    def _right(self, unknown: Array, force: Array, sides: Sides) -> Array:
+        """Right side of the system, by y of held jumps and the force of these, (n,)."""
+        rows = self._rows
+        strained = unknown[: len(self._base)]
+        right = (
+            -self._direction * sides.bound[rows]
+            - self._lengthening * force[rows]
+            - self._drag * force[self._carriers]
+        )
         if self._grows:
-            slip = (
-                self._slips @ (unknown[:n_base] + self._gauge @ motion)
-                - sides.held[rows]
-            )
-            carried = (carried - self._stiffer * slip) / self._share_of_own
-        carried[sprung] = force[rows[sprung]]
+            slip = sides.held[rows] - self._jumps_of_rows @ strained
+            right += self._growth_of_rows * slip
+        if self._is_plain:
+            return np.asarray(right)
+        right = np.concatenate([right, self._gauge_kept.T @ unknown[self._kept]])
+        if len(self._sprung):
+            springs = rows[self._sprung]
+            length = self._compliance[springs] * force[springs]
+            end = self._jumps_of_sprung @ strained + length
+            right[self._sprung] = self._sprung_scale * (sides.held[springs] - end)
+        return right
+
+    def _set_carried(
+        self, force: Array, strained: Array, motion: Array, sides: Sides
+    ) -> None:
+        """Set the forces of the rows by their friction law, and note the difference.
+
+        Forces have the shape (n,), y of the base (n_base,), and motions (n_motions,).
+        """
+        rows = self._rows
+        carried = -self._direction * sides.bound[rows]
+        carried = carried - self._drag * force[self._carriers]
+        if self._grows:
+            jump = strained + self._gauge @ motion
+            slip = self._jumps_of_rows @ jump - sides.held[rows]
+            carried = (carried - self._growth_of_rows * slip) / self._lengthening
+        carried[self._sprung] = force[rows[self._sprung]]
         self.unbalanced = float(np.abs(force[rows] - carried).max(initial=0.0))
         force[rows] = carried
-        strained = unknown[:n_base]
-        return Increment(
-            self._ends(strained, motion, force, sides.held), force, strained, motion
-        )
 
     def _forces(
         self, unknown: Array, places: Indices, rows: Array | None = None
     ) -> Array:
-        """Forces of all jumps that the unknowns at some places make.
+        """Forces of all jumps that the unknowns at some places make, (n,).
 
-        Most of what is held comes to nothing, and few jumps slip at a time: so S, which
-        is symmetric, is read at the `rows` of what does, if these are not at hand.
+        Most held jumps do not move, and few jumps slip at a time: so S, which is
+        symmetric, is read at the rows of the others alone.
+
+        Parameters
+        ----------
+        unknown
+            All unknowns, shape (n,).
+        places
+            Places of the unknowns that count.
+        rows
+            Rows of S at these places, shape (n_places, n), where they are at hand.
         """
         if rows is None:
             places = places[unknown[places] != 0.0]
@@ -179,6 +207,7 @@ class LinearSystem:
         return np.asarray(rows.T @ unknown[places])
 
     def _jump(self, strained: Array, motion: Array) -> Array:
+        """Jumps (n,) by y of the base, (n_base,), and rigid motions, (n_motions,)."""
         if len(motion):
             strained = strained + self._gauge @ motion
         if self._ties is None:
@@ -186,115 +215,151 @@ class LinearSystem:
         return np.asarray(self._ties @ strained)
 
     def _ends(self, strained: Array, motion: Array, force: Array, held: Array) -> Array:
-        """What all jumps come to, the held ones to the last bit."""
+        """Jumps with what is in series, (n,): those that are held to the last bit."""
         if self._is_plain:
             return strained.copy()
-        ends = self._jump(strained, motion) + self._soft * force
+        ends = self._jump(strained, motion) + self._compliance * force
         ends[self._held] = held[self._held]
         return ends
 
     def on_base(self, force: Array) -> Array:
-        """Forces on the base that forces of all jumps are."""
+        """Forces on the base, (n_base,), that equal forces of all jumps, (n,)."""
         if self._ties is None:
             return force
         return np.asarray(self._ties.T @ force)
 
     def inside(self, strained: Array) -> float:
-        """Largest force that y of a single jump of the base takes."""
+        """Largest force that y (n_base,) of a single jump takes, scaled."""
         return float((self._alone * np.abs(strained)).max())
 
     def blur(self, motion: Array) -> Array:
-        """Force that rounding of a rigid motion may make at every jump, shape (n,)."""
+        """Force that rounding of a rigid motion may make at every jump, (n,), scaled.
+
+        Shape (1,) where there is none. The motion has the shape (n_motions,).
+        """
         if self._is_plain:
             return np.zeros(1)
         moved = self._jump(np.zeros(len(self._base)), motion)
         return np.asarray(ROUNDING * self.unit * np.abs(moved))
 
     def _factor(self, states: States) -> None:
+        """Factor the system of states, (n,)."""
         self._states = states.copy()
-        is_free = (states != HELD) | (self._soft > 0.0)
+        self._choose_rows(states)
+        smallest = 0.0
+        if self._is_plain:
+            smallest = LOOSE * float(self.unit.max(initial=0.0))
+        matrix = self._with_friction()
+        if not self._is_plain:
+            matrix = self._with_motions(matrix)
+        self._factors = Factors(matrix, smallest, scaled=not self._is_plain)
+        self.has_negative_determinant = self._factors.has_negative_determinant
+
+    def _choose_rows(self, states: States) -> None:
+        """Choose unknowns and rows of the system by states (n,), and their friction."""
+        is_free = (states != HELD) | (self._compliance > 0.0)
         self._free: Indices = np.flatnonzero(is_free[self._base])
         self._kept: Indices = np.flatnonzero(~is_free[self._base])
         rows = np.concatenate([self._base[self._free], self._others])
         self._rows = rows
+        others = np.arange(len(self._base), len(self._of_unknowns))
+        self._unknowns: Indices = np.concatenate([self._free, others])
+        self._stiffness_rows: Array | None = None
+        if self._ties is None and len(rows) * FEW <= len(self._stiffness):
+            self._stiffness_rows = self._stiffness.take(rows, axis=0)
+        # Friction of each row: its direction, how the normal force and the slip change
+        # it, and which jump carries it.
         of_rows = states[rows]
         self._sprung: Indices = np.flatnonzero(of_rows == HELD)
-        self._way = np.where(np.abs(of_rows) == 1, of_rows, 0).astype(float)
-        self._slope = slope = self._way * self.friction[rows]
-        self._stiffer = np.abs(self._way) * self._growth[rows]
-        self._grows = bool(self._stiffer.any())
-        self._under: Indices = self._partner[rows]
-        others = np.arange(len(self._base), len(self._of_unknowns))
-        unknowns = self._unknowns = np.concatenate([self._free, others])
-        is_few = self._ties is None and len(rows) * FEW <= len(self._stiffness)
-        self._own: Array | None = None
-        if is_few:
-            self._own = self._stiffness.take(rows, axis=0)
-        matrix = self._of_unknowns[np.ix_(rows, unknowns)]
+        self._direction = np.where(np.abs(of_rows) == 1, of_rows, 0).astype(float)
+        self._drag = self._direction * self.friction[rows]
+        self._carriers: Indices = self._partner[rows]
+        self._growth_of_rows = np.abs(self._direction) * self._growth[rows]
+        self._grows = bool(self._growth_of_rows.any())
         # A spring in series lengthens the slip by its force over its stiffness.
-        self._share_of_own = 1.0 + self._stiffer * self._soft[rows]
+        self._lengthening = 1.0 + self._growth_of_rows * self._compliance[rows]
+
+    def _with_friction(self) -> Array:
+        """Force of each row less its friction by all unknowns, (n_rows, n_rows)."""
+        unknowns = self._unknowns
+        matrix = self._of_unknowns[np.ix_(self._rows, unknowns)]
         if self._grows:
-            matrix *= self._share_of_own[:, None]
-        tied = np.flatnonzero(slope)
+            matrix *= self._lengthening[:, None]
+        tied = np.flatnonzero(self._drag)
         if len(tied):
-            under = self._of_unknowns[np.ix_(self._under[tied], unknowns)]
-            matrix[tied] += slope[tied, None] * under
+            normal = self._of_unknowns[np.ix_(self._carriers[tied], unknowns)]
+            matrix[tied] += self._drag[tied, None] * normal
         if self._grows:
-            self._slips = self._jumps_of(rows)
-            matrix[:, : len(self._free)] += (
-                self._stiffer[:, None] * self._slips[:, self._free]
-            )
-        if not self._is_plain:
-            matrix = self._with_motions(matrix)
-        if self._is_plain:
-            least = LOOSE * float(self.unit.max(initial=0.0))
-        else:
-            least = 0.0
-        self._factors = Factors(matrix, least, scaled=not self._is_plain)
-        self.turned = self._factors.turned
+            self._jumps_of_rows = self._jumps_of(self._rows)
+            slips = self._jumps_of_rows[:, self._free]
+            matrix[:, : len(self._free)] += self._growth_of_rows[:, None] * slips
+        return np.asarray(matrix)
 
     def _with_motions(self, forces: Array) -> Array:
-        """All equations: what is in series comes to its end, and y is chosen."""
+        """The whole system: with rigid motions, and springs in series that are held.
+
+        Of the forces of the rows by all unknowns, (n_rows, n_rows).
+        """
         free = self._free
         gauge = self._gauge
-        sprung = self._sprung
-        kept = self._gauge_kept = gauge[self._kept]
-        held = self._rows[sprung]
         n_rows = len(forces)
-        n_free = len(free)
-        self._held = np.concatenate([self._base[self._kept], held])
+        self._gauge_kept = gauge[self._kept]
+        self._held = np.concatenate([self._base[self._kept], self._rows[self._sprung]])
         matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
         matrix[:n_rows, :n_rows] = forces
         if gauge.size:
-            pulls = self._share_of_own[:, None] * self._pulls_of_motions(self._rows)
-            tied = np.flatnonzero(self._slope)
-            pulls[tied] += self._slope[tied, None] * self._pulls_of_motions(
-                self._under[tied]
-            )
-            matrix[:n_rows, n_rows:] = pulls
-            if self._grows:
-                slid = self._slips[:, free] @ gauge[free]
-                matrix[:n_rows, n_rows:] += self._stiffer[:, None] * slid
-        if len(sprung):
-            come = self._come = self._jumps_of(held)
-            soft = self._soft[held, None]
-            size = (len(held), len(self._others))
-            share = 1.0 / (1.0 + soft)
-            moved = [come[:, free], np.zeros(size), come[:, free] @ gauge[free]]
-            matrix[sprung] = share * (soft * matrix[sprung] + np.hstack(moved))
-            self._share = share[:, 0]
-        matrix[n_rows:, :n_free] = -gauge[free].T
-        matrix[n_rows:, n_rows:] = kept.T @ kept
+            matrix[:n_rows, n_rows:] = self._pulls_with_friction()
+        if len(self._sprung):
+            matrix[self._sprung] = self._rows_of_sprung(matrix[self._sprung])
+        # Of all y with the same forces the one with Q' y = 0.
+        matrix[n_rows:, : len(free)] = -gauge[free].T
+        matrix[n_rows:, n_rows:] = self._gauge_kept.T @ self._gauge_kept
         return matrix
 
+    def _pulls_with_friction(self) -> Array:
+        """Force of each row less its friction by each motion, (n_rows, n_motions)."""
+        free = self._free
+        pulls = self._lengthening[:, None] * self._pulls_of_motions(self._rows)
+        tied = np.flatnonzero(self._drag)
+        normal = self._pulls_of_motions(self._carriers[tied])
+        pulls[tied] += self._drag[tied, None] * normal
+        if self._grows:
+            slips = self._jumps_of_rows[:, free] @ self._gauge[free]
+            pulls += self._growth_of_rows[:, None] * slips
+        return np.asarray(pulls)
+
+    def _rows_of_sprung(self, forces: Array) -> Array:
+        """Equations of held jumps with something in series: both end at a given length.
+
+        Parameters
+        ----------
+        forces
+            Rows of the forces of these jumps, shape (n_sprung, n_rows + n_motions).
+
+        Returns
+        -------
+        The equations, same shape, scaled to the size of the jumps or of the forces,
+        whichever is larger.
+        """
+        free = self._free
+        springs = self._rows[self._sprung]
+        self._jumps_of_sprung = self._jumps_of(springs)
+        jumps = self._jumps_of_sprung[:, free]
+        compliance = self._compliance[springs, None]
+        none = np.zeros((len(springs), len(self._others)))
+        moved = np.hstack([jumps, none, jumps @ self._gauge[free]])
+        scale = 1.0 / (1.0 + compliance)
+        self._sprung_scale = scale[:, 0]
+        return np.asarray(scale * (compliance * forces + moved))
+
     def _pulls_of_motions(self, rows: Indices) -> Array:
-        """Forces at some jumps where the base is kept in place of each motion, (n, n_motions)."""
+        """Forces at jumps by each motion with the base held, (n_rows, n_motions)."""
         free = self._free
         moved = self._of_unknowns[np.ix_(rows, free)] @ self._gauge[free]
         return np.asarray(moved - self._pulls_of_gauge[rows])
 
     def _jumps_of(self, numbers: Indices) -> Array:
-        """Jumps at some places as a matrix on those of the base, shape (n, n_base)."""
+        """Jumps as a matrix on those of the base, (n_numbers, n_base)."""
         if self._ties is not None:
             return np.asarray(self._ties[numbers])
         jumps = np.zeros((len(numbers), len(self._base)))
@@ -306,37 +371,42 @@ class Factors:
     """A square matrix, factored.
 
     If `scaled`, rows and columns are brought to one size first, by powers of two, and
-    what is solved is refined once: then every row holds up to the rounding of its own
+    the solution is refined once: then every row holds up to the rounding of its own
     terms (Skeel, Math. Comp. 35, 1980).
 
     Attributes
     ----------
-    turned
-        Whether its determinant is negative.
+    has_negative_determinant
+        Sign of the determinant.
     singular
-        Whether a pivot is too small, or not above `least`.
+        A pivot is too small, or not above the `smallest` one.
     """
 
-    def __init__(self, matrix: Array, least: float, *, scaled: bool) -> None:
+    def __init__(self, matrix: Array, smallest: float, *, scaled: bool) -> None:
         self._scaled = scaled
         if scaled:
             self._rows = _sizes(matrix, 1)
             matrix = self._rows[:, None] * matrix
             self._columns = _sizes(matrix, 0)
             matrix = matrix * self._columns
-        self._matrix = self._factors = matrix
+        self._matrix = matrix
+        self._factors = matrix
         self._pivots = np.zeros(0, dtype=np.intp)
         if len(matrix):
             self._factors, self._pivots, _ = lapack.dgetrf(matrix)
         diagonal = np.diagonal(self._factors)
         swaps = np.count_nonzero(self._pivots != np.arange(len(matrix)))
-        self.turned = bool((np.count_nonzero(diagonal < 0.0) + swaps) % 2)
+        changes_of_sign = np.count_nonzero(diagonal < 0.0) + swaps
+        self.has_negative_determinant = bool(changes_of_sign % 2)
         sizes = np.abs(diagonal)
-        least = max(SINGULAR * float(sizes.max(initial=0.0)), least)
-        self.singular = bool(sizes.min(initial=np.inf) <= least)
+        smallest = max(SINGULAR * float(sizes.max(initial=0.0)), smallest)
+        self.singular = bool(sizes.min(initial=np.inf) <= smallest)
 
     def solve(self, right: Array) -> Array:
-        """Solve A x = b, b of shape (n,); where A is singular, by the least x that fits best."""
+        """Solve A x = b with b and x of shape (n,).
+
+        Where A is singular, x is the smallest of those that fit best.
+        """
         if not len(right):
             return right
         if not self._scaled:
@@ -348,14 +418,14 @@ class Factors:
         return np.asarray(self._columns * solution)
 
     def _solve(self, right: Array) -> Array:
+        """Solve with the matrix as it is factored, (n,)."""
         if self.singular:
             return np.asarray(np.linalg.lstsq(self._matrix, right, rcond=SINGULAR)[0])
-        return np.asarray(lapack.dgetrs(self._factors, self._pivots, right)[0]).reshape(
-            right.shape
-        )
+        solved, _ = lapack.dgetrs(self._factors, self._pivots, right)
+        return np.asarray(solved).reshape(right.shape)
 
 
 def _sizes(matrix: Array, axis: int) -> Array:
-    """Powers of two that bring the largest entries along an axis near 1."""
+    """Powers of two that bring the largest entries along an axis near 1, (n,)."""
     _, exponent = np.frexp(np.abs(matrix).max(axis=axis, initial=0.0))
     return np.asarray(np.ldexp(1.0, -exponent))

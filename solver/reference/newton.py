@@ -1,17 +1,18 @@
 """Newton's method for the states of one instant of frictional contact.
 
-Solve the linear system of the states (`solver.reference.linear_system`, the bound of
-friction coupled to the normal force), and correct the states by what it shows (Alart
-and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991). Exact once they repeat. The
-bound (r + mu f_n) g(s) of a slip s is taken by its tangent, which adds its growth per
-slip to the stiffness where contacts slip (solver/README.md, 14).
+Each step solves the linear system of the states (`solver.reference.linear_system`, the
+friction bound coupled to the normal force), and corrects the states by the jumps and
+forces of its solution (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
+The solution is exact once the states repeat. The bound (r + mu f_n) g(s) of a slip s is
+taken by its tangent, which adds its growth per slip to the stiffness where contacts
+slip (solver/README.md, 14).
 
-From afar the states may cycle, above all where bodies hang loose, as they may go
-anywhere. With springs at all jumps that are relaxed where the last solution came to,
-none is loose: that is the proximal point method (Rockafellar, SIAM J. Control Optim.
-14, 1976). Its steps are short, and where they come to rest the springs carry nothing.
-They are softened from step to step, until the states hold without them
-(solver/README.md, 6).
+From a distant guess the states may cycle, above all where bodies are held by contact
+alone, as they may move without limit. With springs at all jumps, relaxed at the last
+solution, every body is held: that is the proximal point method (Rockafellar, SIAM J.
+Control Optim. 14, 1976). Its steps are short, and where they come to rest the springs
+carry nothing. The springs are softened from step to step, until the states hold without
+them (solver/README.md, 6).
 """
 
 from __future__ import annotations
@@ -37,19 +38,20 @@ cycle."""
 CONVERGED = 1e-9
 """Relative KKT residual up to which an instant counts as solved, where rounding allows
 it."""
-SETTLED = 1e-12
+FRICTION_TOLERANCE = 1e-12
 """Share of the largest force by which friction may differ from its law."""
-FIRST = 1e-2
-SOFTEST = 1e-8
-STIFFEST = 1e2
+FIRST_SPRING = 1e-2
+SOFTEST_SPRING = 1e-8
+STIFFEST_SPRING = 1e2
 """Springs, as shares of the stiffness of each jump alone."""
-SOFTER = 0.5
-STIFFER = 10.0
-"""Factors on them after a step, and where Newton's method cycles in spite of them."""
-STEPS = 60
-"""Steps at most; up to 20 are seen where there is a solution."""
+SOFTENING = 0.5
+STIFFENING = 10.0
+"""Factors on the springs after a step, and where Newton's method cycles in spite of
+them."""
+SPRING_STEPS = 60
+"""Largest number of steps with springs; up to 20 are seen where there is a solution."""
 MOST_JUMPS = 4000
-"""Jumps up to which springs are tried: that keeps two more matrices of their size."""
+"""Jumps up to which springs are tried, which need two more matrices of their size."""
 _HELD = np.int8(HELD)
 _OPEN = np.int8(OPEN)
 
@@ -61,10 +63,10 @@ class Newton:
     ----------
     system
         The linear system of the states.
-    gone, strained
+    accumulated_slip, strained
         Accumulated slip of all jumps, shape (n,), and y of the base, shape (n_base,),
-        at the instant before: whoever marches through time keeps them.
-    largest
+        at the instant before, scaled; the march through time updates both.
+    largest_load
         Largest force of the load on a jump, scaled.
     """
 
@@ -77,21 +79,28 @@ class Newton:
         self._condensed = condensed
         self._rules = condensed.rules
         rules = self._rules
-        self.gone = np.zeros_like(rules.gap)
+        self.accumulated_slip = np.zeros_like(rules.gap)
         self.strained = np.zeros(len(condensed.base))
-        self._smooth: Indices = np.flatnonzero(rules.smooth)
-        self._rubs: Indices = np.union1d(
+        self._frictionless: Indices = np.flatnonzero(rules.is_frictionless)
+        # Jumps whose friction ends where their contact opens, and its normal jumps.
+        self._carried: Indices = np.union1d(
             np.flatnonzero(rules.friction > 0.0), rules.bonds
         )
-        self._carry: Indices = rules.partner[self._rubs]
-        self.largest = float(np.abs(condensed.load).max(initial=0.0))
+        self._carriers: Indices = rules.partner[self._carried]
+        self.largest_load = float(np.abs(condensed.load).max(initial=0.0))
         # Slips that say how far friction has fallen, where it falls no further.
         self._fallen: Array | None = None
 
     def with_friction_left(self, slip: Array) -> Newton:
-        """The same method for friction that has fallen as after slips (n,) >= 0, and falls no more.
+        """The same method, with friction that falls up to given slips and no further.
 
-        Where it rises with slip it goes on to rise.
+        Where friction rises with slip it goes on to rise.
+
+        Parameters
+        ----------
+        slip
+            Slips of the instant up to which friction falls, shape (n,), scaled;
+            non-negative.
         """
         changed = copy(self)
         changed._fallen = slip
@@ -99,22 +108,24 @@ class Newton:
 
     @property
     def _softens(self) -> bool:
-        """Whether friction falls with slip anywhere."""
+        """Friction falls with slip somewhere."""
         return self._fallen is None and self._rules.softens
 
     def _factor(self, slip: Array) -> Array:
-        """Factor that slips (n,) >= 0 make of the friction bound."""
+        """Factor on the friction bound at slips >= 0 of the instant, both (n,)."""
         strength = self._rules.strength
         if self._fallen is None:
-            return strength(self.gone + slip)
-        fallen = self.gone + self._fallen
+            return strength(self.accumulated_slip + slip)
+        fallen = self.accumulated_slip + self._fallen
         return (
-            strength(fallen) - strength.rise(fallen) + strength.rise(self.gone + slip)
+            strength(fallen)
+            - strength.rise(fallen)
+            + strength.rise(self.accumulated_slip + slip)
         )
 
     def _slope(self, slip: Array) -> Array:
-        """Growth of that factor per further slip, shape (n,)."""
-        slope = self._rules.strength.slope(self.gone + slip)
+        """Growth of the factor per further slip at slips >= 0, both (n,)."""
+        slope = self._rules.strength.slope(self.accumulated_slip + slip)
         if self._fallen is None:
             return slope
         return np.maximum(slope, 0.0)
@@ -122,114 +133,132 @@ class Newton:
     def follow(
         self, at: InstantSolution, sides: Sides, guesses: Iterable[InstantSolution]
     ) -> InstantSolution | None:
-        """Go on to other right sides, None where no guess leads there or to another branch."""
+        """Follow a solution to other right sides.
+
+        None where no guess leads to a solution, or only to one of another branch.
+        """
         for guess in guesses:
             reached = self.seek(self.system, guess, sides)
-            if reached and (not self._softens or self._goes_on(at, reached, sides)):
+            if reached is None:
+                continue
+            if not self._softens or self._goes_on(at, reached, sides):
                 return reached
         return None
 
     def approach(self, at: InstantSolution, sides: Sides) -> Iterator[InstantSolution]:
-        """Solutions with softer and softer springs, whose states have come to rest.
+        """Yield solutions with softer and softer springs, whose states repeat.
 
-        The first is sought from a solution. None where there are too many jumps.
+        The first is sought from a solution. Nothing is yielded where there are too many
+        jumps.
         """
         condensed = self._condensed
-        share = FIRST
+        share = FIRST_SPRING
         if len(condensed.stiffness) > MOST_JUMPS:
             return
-        alone = np.diagonal(condensed.stiffness)
-        moved = np.zeros_like(sides.load)
-        for _ in range(STEPS):
-            springs = share * alone
-            held = condensed.elastic + np.diagflat(springs)
-            sprung = LinearSystem(
-                condensed, held, condensed.gauge[:, :0], self.system.stop
-            )
-            pulled = replace(sides, load=sides.load + springs * moved)
-            solved = self.seek(sprung, at, pulled)
+        # Springs are relaxed at the deformation that the step before has come to.
+        relaxed = np.zeros_like(sides.load)
+        for _ in range(SPRING_STEPS):
+            springs = share * np.diagonal(condensed.stiffness)
+            pulled = replace(sides, load=sides.load + springs * relaxed)
+            solved = self.seek(self._with_springs(springs), at, pulled)
             if solved is not None:
                 before = at
                 at = solved
-                moved = solved.step.strained
-                share = max(SOFTER * share, SOFTEST)
+                relaxed = solved.step.strained
+                share = max(SOFTENING * share, SOFTEST_SPRING)
                 if np.array_equal(at.states, before.states):
                     yield at
-            elif share < STIFFEST:
-                share *= STIFFER
+            elif share < STIFFEST_SPRING:
+                share *= STIFFENING
             else:
                 return
 
+    def _with_springs(self, springs: Array) -> LinearSystem:
+        """The linear system with springs at the jumps of the base, (n_base,)."""
+        condensed = self._condensed
+        stiffness = condensed.elastic + np.diagflat(springs)
+        no_motions = condensed.gauge[:, :0]
+        return LinearSystem(condensed, stiffness, no_motions, self.system.stop)
+
     def near(self, at: InstantSolution, sides: Sides) -> InstantSolution | None:
-        """The solution near what is none yet, stable or not; None where none is."""
+        """Seek a solution, stable or not, from fields that need not be one."""
         return self.seek(self.system, at, sides)
 
     def is_stable(self, at: InstantSolution, sides: Sides) -> bool:
-        """Whether no slip of a solution costs less than it gains."""
+        """Check that no further slip of a solution costs less than it gains."""
         return self._goes_on(at, at, sides)
 
     def leave(self, at: InstantSolution, sides: Sides) -> InstantSolution:
-        """What a solution that is not stable begins to go over into, when it is disturbed.
+        """Disturb a solution that is not stable, in the direction that it gives way.
 
-        It slips on along the motion that costs least, until half of what stops a
-        contact.
+        All points that slip go on along the motion that costs least, until half of the
+        slip after which the first of them would stop.
         """
-        rules = self._rules
         growth, free = self._growth(at, at, sides)
-        motion = np.zeros(len(self._condensed.base))
-        if growth is not None:
+        direction = self._weakest_direction(at, growth, free)
+        slip = np.abs(at.slip)
+        # An eigenvector has no sign: it is taken such that some points slip on.
+        turns = direction < 0.0
+        if turns.all() or not (direction > 0.0).any():
+            direction = -direction
+            turns = direction < 0.0
+        length = float((slip[turns] / -direction[turns]).min(initial=np.inf))
+        if not np.isfinite(length):
+            length = float(slip.max() / direction.max())
+        further = np.maximum(slip + 0.5 * length * direction, 0.0)
+        return at._replace(slip=further * at.states)
+
+    def _weakest_direction(
+        self, at: InstantSolution, growth: Array | None, free: Indices
+    ) -> Array:
+        """Slip per jump, along its friction, in the motion that costs least, (n,).
+
+        Growth and places are those of `_growth`.
+        """
+        condensed = self._condensed
+        motion = np.zeros(len(condensed.base))
+        if growth is None:
+            motion[free] = self._rules.compliance[condensed.base[free]] > 0.0
+        else:
             softened = self._softened(growth, free)
             _, vectors = eigh(softened, subset_by_index=[0, 0], check_finite=False)
             motion[free] = vectors[:, 0]
-        else:
-            motion[free] = rules.compliance[self._condensed.base[free]] > 0.0
-        way = self._condensed.ties @ motion * at.states
-        way[np.abs(at.states) != 1] = 0.0
-        slip = np.abs(at.slip)
-        turns = way < 0.0
-        if turns.all() or not (way > 0.0).any():
-            way = -way
-            turns = way < 0.0
-        length = float((slip[turns] / -way[turns]).min(initial=np.inf))
-        if not np.isfinite(length):
-            length = float(slip.max() / way.max())
-        return at._replace(slip=at.states * np.maximum(slip + 0.5 * length * way, 0.0))
+        direction = condensed.ties @ motion * at.states
+        direction[np.abs(at.states) != 1] = 0.0
+        return np.asarray(direction)
 
     def seek(
         self, system: LinearSystem, guess: InstantSolution, sides: Sides
     ) -> InstantSolution | None:
-        """Seek states and slip, from those of a guess; None where they cycle."""
+        """Seek states and slips from those of a guess; None where the states cycle."""
         rules = self._rules
-        states = guess.states
-        slip = guess.slip
-        force = guess.step.force
+        states, step, slip = guess
+        force = step.force
         pieces: list[bytes] = []
         for _ in range(NEWTON_LIMIT):
             tangent = sides
             piece = states.tobytes()
-            if rules.is_curved:
-                slip = np.where(
-                    np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0
-                )
+            if rules.is_nonlinear:
+                slip = _slip_of_states(states, slip)
                 tangent, is_capped = self._linearised(system, slip, force, sides)
-                piece += (
-                    rules.strength.segment(self.gone + slip).tobytes()
-                    + is_capped.tobytes()
-                )
-            if piece in pieces and not (rules.is_curved and piece == pieces[-1]):
+                segments = rules.strength.segment(self.accumulated_slip + slip)
+                piece += segments.tobytes() + is_capped.tobytes()
+            # On one piece of the laws a linear problem comes to rest in one step, and a
+            # nonlinear one may take several.
+            stays = rules.is_nonlinear and pieces[-1:] == [piece]
+            if piece in pieces and not stays:
                 return None
             pieces.append(piece)
             step = system(states, tangent)
-            # Those with springs count, too.
-            self.system.solutions += system is not self.system
+            if system is not self.system:
+                self.system.solutions += 1
             corrected = self._corrected(states, step, tangent, system.friction)
-            if self._condensed.rules.is_curved:
+            if rules.is_nonlinear:
                 slip = np.where(rules.normal, 0.0, step.jump - sides.held)
             force = step.force
             reached = InstantSolution(states, step, slip)
-            if np.array_equal(corrected, states) and self._obeys(
-                system, reached, sides
-            ):
+            repeats = np.array_equal(corrected, states)
+            if repeats and self._obeys(system, reached, sides):
                 return reached
             states = corrected
         return None
@@ -237,49 +266,53 @@ class Newton:
     def _linearised(
         self, system: LinearSystem, slip: Array, force: Array, sides: Sides
     ) -> tuple[Sides, Flags]:
-        """Set the tangent of the friction bound at slips (n,) >= 0; return what is left of it.
+        """Replace the friction bound by its tangent at slips and forces, (n,) each.
 
-        And where it is capped.
+        Returns
+        -------
+        Right sides with the constant part of the tangent, whose other parts `system`
+        gets; and at which jumps the bound is capped, shape (n,).
         """
         rules = self._rules
-        most = self._rules.before_slip(sides.bound, force)
-        is_capped = most >= rules.cap
+        bound = rules.before_slip(sides.bound, force)
+        is_capped = bound >= rules.cap
         factor = self._factor(slip)
-        grows = self._slope(slip) * most
-        system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), grows)
-        bound = np.where(is_capped, rules.cap, sides.bound) * factor - grows * slip
-        return replace(sides, bound=bound), is_capped
+        growth = self._slope(slip) * bound
+        system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), growth)
+        # What of the tangent depends neither on the normal force nor on the slip.
+        constant = np.where(is_capped, rules.cap, sides.bound) * factor - growth * slip
+        return replace(sides, bound=constant), is_capped
 
     def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides) -> bool:
-        """Whether forces balance, and friction is what slip has left, not only by its tangent.
+        """Check that forces balance and friction obeys its law, not only the tangent.
 
-        What sticks carries no more: its cap was that of the step before.
+        Sticking points may not carry more than the cap either, as the cap that the
+        states were corrected by was that of the step before.
         """
         slack, _ = self._rounding(at.states, at.step)
-        if system.unbalanced > max(CONVERGED * self.largest, slack):
+        if system.unbalanced > max(CONVERGED * self.largest_load, slack):
             return False
         rules = self._rules
-        force = at.step.force
-        if not rules.is_curved:
+        if not rules.is_nonlinear:
             return True
-        most = rules.before_slip(sides.bound, force)
-        most = self._factor(np.abs(at.slip)) * most
+        force = at.step.force
+        bound = rules.before_slip(sides.bound, force)
+        bound = self._factor(np.abs(at.slip)) * bound
         sticks = (at.states == HELD) & ~rules.normal
-        excess = np.where(sticks, np.abs(force) - most - slack, 0.0)
-        wrong = np.where(
-            np.abs(at.states) == 1, np.abs(force + at.states * most), excess
-        )
-        largest = max(self.largest, np.abs(force).max())
-        return bool(wrong.max(initial=0.0) <= SETTLED * largest)
+        slips = np.abs(at.states) == 1
+        excess = np.where(sticks, np.abs(force) - bound - slack, 0.0)
+        violation = np.where(slips, np.abs(force + at.states * bound), excess)
+        largest = max(self.largest_load, np.abs(force).max())
+        return bool(violation.max(initial=0.0) <= FRICTION_TOLERANCE * largest)
 
     def _goes_on(
         self, at: InstantSolution, reached: InstantSolution, sides: Sides
     ) -> bool:
-        """Whether a solution is the one that another goes over into.
+        """Check that a solution continues the branch of another.
 
-        So it is if the structure is stable however far the contacts that slip in either
-        have softened on the way, whatever else slips: then no other solution slips
-        there alone.
+        The solution does if the structure is stable however far the contacts that slip
+        in either have softened in between, whatever else slips: then no other solution
+        slips there alone.
         """
         growth, free = self._growth(at, reached, sides)
         if growth is None:
@@ -295,51 +328,72 @@ class Newton:
     def _growth(
         self, at: InstantSolution, reached: InstantSolution, sides: Sides
     ) -> tuple[Array | None, Indices]:
-        """Stiffness of contacts, (n,), as far as they soften between two solutions.
+        """Stiffness of contacts, as far as they soften between two solutions, scaled.
 
-        And the places in the base of what moves, (n_free,); none where nothing softens.
-        None where a spring in series snaps by itself; then the places are those of such
+        Returns
+        -------
+        The stiffness, shape (n,), and the places in the base of the jumps that may
+        move, shape (n_free,); no places where nothing softens. The stiffness is None
+        where a spring in series snaps by itself: the places are then those of such
         springs.
         """
         rules = self._rules
-        condensed = self._condensed
-        begin = np.abs(at.slip)
-        end = np.abs(reached.slip)
-        carried = [
-            rules.before_slip(sides.bound, one.step.force) for one in (at, reached)
-        ]
-        on_way = self.gone + np.minimum(begin, end), self.gone + np.maximum(begin, end)
+        base = self._condensed.base
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        growth = np.where(
-            slips, rules.strength.lowest_slope(*on_way) * np.maximum(*carried), 0.0
-        )
+        slopes = self._lowest_slopes(at, reached, sides)
+        growth = np.where(slips, slopes, 0.0)
         if not np.any(growth < 0.0):
             return growth, np.zeros(0, dtype=np.intp)
+        # A contact and a spring in series with it share the motion.
         sprung = rules.compliance > 0.0
         stiffness = 1.0 + growth * rules.compliance
         if np.any(stiffness <= 0.0):
-            return None, np.flatnonzero(stiffness[condensed.base] <= 0.0)
+            return None, np.flatnonzero(stiffness[base] <= 0.0)
         growth /= stiffness
-        presses = sprung & (at.states == HELD) & (reached.states == HELD)
-        growth[presses] += 1.0 / rules.compliance[presses]
-        is_free = slips | (at.states == OPEN) & (reached.states == OPEN) | sprung
-        return growth, np.flatnonzero(is_free[condensed.base])
+        stays_held = sprung & (at.states == HELD) & (reached.states == HELD)
+        growth[stays_held] += 1.0 / rules.compliance[stays_held]
+        stays_open = (at.states == OPEN) & (reached.states == OPEN)
+        is_free = slips | stays_open | sprung
+        return growth, np.flatnonzero(is_free[base])
+
+    def _lowest_slopes(
+        self, at: InstantSolution, reached: InstantSolution, sides: Sides
+    ) -> Array:
+        """Lowest growth of the friction force per slip between two solutions, (n,)."""
+        rules = self._rules
+        begin = np.abs(at.slip)
+        end = np.abs(reached.slip)
+        slope = rules.strength.lowest_slope(
+            self.accumulated_slip + np.minimum(begin, end),
+            self.accumulated_slip + np.maximum(begin, end),
+        )
+        before = rules.before_slip(sides.bound, at.step.force)
+        after = rules.before_slip(sides.bound, reached.step.force)
+        return np.asarray(slope * np.maximum(before, after))
 
     def _softened(self, growth: Array, free: Indices) -> Array:
-        """Stiffness of the structure and its contacts at some places of the base, (n, n)."""
+        """Stiffness of structure and contacts at places of the base, (n_free, n_free).
+
+        `growth` is the stiffness of the contacts, shape (n,), scaled, and `free` are
+        the places, shape (n_free,).
+        """
         tied = self._condensed.ties[:, free]
         softened = self._condensed.elastic[np.ix_(free, free)]
         softened += tied.T @ sparse.diags_array(growth) @ tied
         return np.asarray(softened)
 
     def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
-        """Force that rounding may make anywhere; and of a jump that is not held, (n,) or (1,).
+        """Forces that rounding may make, scaled.
 
-        A held jump is the deformation less the rigid motion: rounding of that makes
-        forces at all.
+        A held jump is the deformation less the rigid motion, whose rounding makes
+        forces at every jump.
+
+        Returns
+        -------
+        The force at any jump; and at a jump that is not held, shape (n,) or (1,).
         """
         inside = self.system.inside(self.strained + step.strained)
-        slack = ROUNDING * (inside + self.largest)
+        slack = ROUNDING * (inside + self.largest_load)
         blur = self.system.blur(step.motion)
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
         return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
@@ -347,23 +401,45 @@ class Newton:
     def _corrected(
         self, states: States, step: Increment, sides: Sides, friction: Array
     ) -> States:
-        """States that jump and force call for; what is up to rounding calls for none."""
-        rules = self._rules
-        system = self.system
-        force = step.force
-        moved = system.unit * (step.jump - sides.held)
-        slack, blur = self._rounding(states, step)
+        """States that follow from jumps and forces; rounding changes none of them.
+
+        `friction` is the coefficient mu of every jump, shape (n,).
+        """
         held = states == HELD
-        # A contact that closes rubs as its overlap and its slip would have it.
-        carries = np.where(held, force[rules.partner], -moved[rules.partner])
-        most = sides.bound + np.maximum(friction * carries, 0.0) + slack * held
-        pulled = np.where(held, -force, moved)
-        corrected = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
-        corrected = np.where(
-            np.abs(states) == 1, states * (states * moved >= -blur), corrected
-        )
-        corrected[self._smooth] = OPEN
+        force = step.force
+        slack, blur = self._rounding(states, step)
+        # Distance from where the jump would be held, times a stiffness: a force.
+        moved = self.system.unit * (step.jump - sides.held)
+        limit = self._slip_limit(held, force, moved, friction, sides.bound)
+        limit += slack * held
+        # A point slips on until it turns back; others slip where the limit is passed.
+        corrected = _beyond(np.where(held, -force, moved), limit)
+        goes_on = states * (states * moved >= -blur)
+        corrected = np.where(np.abs(states) == 1, goes_on, corrected)
+        corrected[self._frictionless] = OPEN
         closed = np.where(held, force >= -slack, moved < -blur)
-        corrected = np.where(rules.normal, np.where(closed, _HELD, _OPEN), corrected)
-        corrected[self._rubs[corrected[self._carry] == OPEN]] = OPEN
+        normal = np.where(closed, _HELD, _OPEN)
+        corrected = np.where(self._rules.normal, normal, corrected)
+        corrected[self._carried[corrected[self._carriers] == OPEN]] = OPEN
         return corrected
+
+    def _slip_limit(
+        self, held: Flags, force: Array, moved: Array, friction: Array, bound: Array
+    ) -> Array:
+        """Friction force at which a point starts to slip, scaled; all have shape (n,).
+
+        A contact that closes has no force yet: it rubs by its overlap, in `moved`.
+        """
+        partner = self._rules.partner
+        pressing = np.where(held, force[partner], -moved[partner])
+        return np.asarray(bound + np.maximum(friction * pressing, 0.0))
+
+
+def _slip_of_states(states: States, slip: Array) -> Array:
+    """Slips in the directions of their states, without signs, shape (n,), scaled."""
+    return np.where(np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0)
+
+
+def _beyond(pull: Array, limit: Array) -> States:
+    """Signs of pulls where they are beyond their limit, else 0; all of shape (n,)."""
+    return (pull > limit).view(np.int8) - (pull < -limit).view(np.int8)

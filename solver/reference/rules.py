@@ -1,4 +1,4 @@
-"""What jumps of the displacement obey at one instant, and their states.
+"""Rules that jumps of the displacement obey at one instant, and their states.
 
 A normal jump is HELD at the gap, or OPEN without force. A tangential one is HELD where
 it was, slips with s = -1 or +1 against the friction force -s (r + mu f_n), or is OPEN:
@@ -24,37 +24,47 @@ from solver.reference.assembly import NoReferenceError
 
 States = NDArray[np.int8]
 HELD = 0
-EXPECTED = 2.5
-"""Systems that an instant takes from the states of the one before, until it is known:
-the most on charts of the bar, where a guess from a neighbour takes 1 to 7, and one from
-an iterate 1.7."""
-OF_JUMPS = ("normal", "gap", "partner", "friction", "bound", "cap", "compliance")
+EXPECTED_SYSTEMS = 2.5
+"""Systems that an instant is expected to take from the states of the instant before,
+until it is known: the largest number on charts of the bar, where a guess from a
+neighbour takes 1 to 7, and a guess from an iterate 1.7."""
+OF_JUMPS = (
+    "normal",
+    "gap",
+    "partner",
+    "friction",
+    "bound",
+    "cap",
+    "compliance",
+)
 """Fields of rules that have a row for each jump."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rules:
-    """What the jumps obey, stacked as `Problem.sum_of_contact` says; (n,) each but for the bound.
+    """Rules of the jumps, stacked as `Problem.sum_of_contact` says.
 
     Attributes
     ----------
     normal
-        Whether the jump is a normal one.
+        Which jumps are normal ones, shape (n,).
     gap
-        Opening where it vanishes, scaled; 0 of tangential ones.
+        Opening where the jump vanishes, shape (n,), scaled; 0 of tangential jumps.
     partner
-        Place of the normal jump whose force carries the friction; the own place without
-        one.
+        Place of the normal jump whose force carries the friction, shape (n,); the place
+        of the jump itself where there is none.
     friction
-        Coefficient mu, 0 of normal jumps.
+        Coefficient mu, shape (n,); 0 of normal jumps.
     bound
         Friction force r that needs no normal force, scaled, shape (n, n_instants), or
         (n, 1) where it stays the same; 0 of normal jumps.
     cap
-        Largest friction force before slip, scaled; infinite where there is none.
+        Largest friction force before slip, shape (n,), scaled; infinite where there is
+        none.
     compliance
-        Displacement in series with the jump, per force, scaled; 0 where there is none.
-        What is said of the jump is then said of the jump and it together.
+        Displacement in series with the jump, per force, shape (n,), scaled; 0 where
+        there is none. The other rules then hold for the sum of the jump and of this
+        displacement.
     strength
         Factor on all bounds over accumulated slip, scaled.
     """
@@ -69,77 +79,95 @@ class Rules:
     strength: Strength = PLAIN
 
     @property
-    def smooth(self) -> Flags:
-        """Tangential jumps without friction."""
+    def is_frictionless(self) -> Flags:
+        """Tangential jumps without friction, shape (n,)."""
         return np.asarray(~self.normal & (self.friction == 0.0) & ~self.bounded)
 
     @cached_property
     def bounded(self) -> Flags:
-        """Jumps whose friction ever needs no normal force."""
+        """Jumps with friction that at some instant needs no normal force, (n,)."""
         return np.asarray(self.bound.any(axis=1))
 
     @cached_property
     def bonds(self) -> Indices:
-        """Places of those among them whose contact may open, which ends that."""
+        """Places of jumps whose bound ends where their contact opens, (n_bonds,)."""
         return np.flatnonzero(self.bounded & self.normal[self.partner])
 
     def kept(self, moving: Indices) -> Rules:
-        """Rules of the unknown jumps; friction needs its normal force among them."""
-        place = np.full(len(self.gap), -1)
-        place[moving] = np.arange(len(moving))
-        partner = place[self.partner[moving]]
+        """Rules of the unknown jumps, by their places, shape (n_moving,).
+
+        Friction whose normal force is not among theirs has no coefficient.
+        """
+        places = np.full(len(self.gap), -1)
+        places[moving] = np.arange(len(moving))
+        partner = places[self.partner[moving]]
         alone = partner < 0
         partner[alone] = np.flatnonzero(alone)
-        own = {name: getattr(self, name)[moving] for name in OF_JUMPS}
-        return replace(
-            self, **own | {"partner": partner, "friction": own["friction"] * ~alone}
-        )
+        fields = {name: getattr(self, name)[moving] for name in OF_JUMPS}
+        fields["partner"] = partner
+        fields["friction"] = fields["friction"] * ~alone
+        return replace(self, **fields)
 
     @cached_property
-    def ages(self) -> bool:
-        """Whether friction changes with slip anywhere."""
+    def changes_with_slip(self) -> bool:
+        """Friction changes with slip somewhere."""
         return set(self.strength.factors) != {1.0}
 
     @cached_property
     def softens(self) -> bool:
-        """Whether friction falls with slip anywhere."""
+        """Friction falls with slip somewhere."""
         return bool(self.strength.slopes.min() < 0.0)
 
     @cached_property
-    def is_curved(self) -> bool:
-        """Whether friction is not linear in pressing force and slip: it changes, or has a cap."""
-        return self.ages or bool(np.isfinite(self.cap).any())
+    def is_nonlinear(self) -> bool:
+        """Friction is not linear in pressing force and slip."""
+        return self.changes_with_slip or bool(np.isfinite(self.cap).any())
 
     def bound_at(self, instant: int) -> Array:
-        """Friction force at an instant that needs no normal force, (n,)."""
-        return np.asarray(self.bound[:, 0 if self.bound.shape[1] == 1 else instant])
+        """Friction force at an instant that needs no normal force, (n,), scaled."""
+        if self.bound.shape[1] == 1:
+            return np.asarray(self.bound[:, 0])
+        return np.asarray(self.bound[:, instant])
 
     def states_at(self, jumps: Array) -> States:
-        """States of a body that is where it would be if it were rigid, (n, n_instants)."""
+        """States of contacts whose jumps are those of rigid bodies.
+
+        Jumps and states have the shape (n, n_instants); jumps are scaled.
+        """
         closed = (jumps + self.gap[:, None] <= 0.0)[self.partner]
         slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
         slip[self.normal] = HELD
         return np.where(closed, slip, OPEN).astype(np.int8)
 
     def before_slip(self, bound: Array, force: Array) -> Array:
-        """Friction force r + mu f_n up to its cap, before slip changes it, (n, ...) all."""
+        """Friction force r + mu f_n up to its cap, before slip changes it.
+
+        The bound r, the forces of all jumps and the result have the shape (n,) or
+        (n, n_instants), scaled.
+        """
         carried = self.friction * force[self.partner].T
         return np.asarray(np.minimum(bound.T + np.maximum(carried, 0.0), self.cap).T)
 
     def bounds(self, force: Array, slip: Array, opening: Array | None = None) -> Array:
-        """Largest friction force, (n, n_instants), by force and slip per instant of all jumps.
+        """Largest friction force at all instants, shape (n, n_instants), scaled.
 
-        With their opening, where contact that opens breaks bonds.
+        Parameters
+        ----------
+        force, slip
+            Force of every jump, and its slip in every instant, shape (n, n_instants),
+            scaled.
+        opening
+            Opening of every jump, same shape, where contact that opens breaks bonds.
         """
         bound = self.bound
         if opening is not None and self.bonds.size:
             bound = np.broadcast_to(bound, force.shape).copy()
             under = self.partner[self.bonds]
             bound[self.bonds] *= is_intact(opening[under], force[under])
-        most = self.before_slip(bound, force)
-        if self.ages:
-            return most * self.strength(np.cumsum(np.abs(slip), axis=1))
-        return most
+        bound = self.before_slip(bound, force)
+        if self.changes_with_slip:
+            return bound * self.strength(np.cumsum(np.abs(slip), axis=1))
+        return bound
 
 
 def rules_of(problem: Problem) -> Rules:
@@ -156,7 +184,7 @@ def rules_of(problem: Problem) -> Rules:
     for law in problem.rubbing.values():
         parts += _components(law, first)
         first += len(law.components) * len(law.positions)
-        if not parts[-1].smooth.all():
+        if not parts[-1].is_frictionless.all():
             strengths.add(law.tangential.strength or PLAIN)
     if len(strengths) > 1:
         raise NoReferenceError(problem.no_reference)
@@ -167,34 +195,52 @@ def rules_of(problem: Problem) -> Rules:
 
 
 def _components(law: Contact, first: int) -> list[Rules]:
-    """Rules of one interface, component by component, from a place in the stack on."""
+    """Rules of the components of one interface, whose stack starts at a place."""
     size = len(law.positions)
     along = law.tangential
-    none = np.zeros(size)
-    no = np.zeros(size, dtype=bool)
-    places = first + np.arange(size)
+    zeros = np.zeros(size)
     endless = np.full(size, np.inf)
-    soft = law.in_parallel(along.softness)
+    is_normal = np.ones(size, dtype=bool)
+    # The normal component is the first: its places are those of the partners.
+    places = first + np.arange(size)
     bound = law.by_point(along.bound)
     friction = law.mean_by_point(along.friction)
-    normal = []
+    compliance = law.in_parallel(along.softness)
+    cap = endless
+    if along.cap is not None:
+        cap = law.by_point(along.cap)
+    rules = []
     if law.normal is not None:
-        across = law.in_parallel(law.normal.softness)
-        gap = law.mean_by_point(law.normal.gap)
-        normal = [Rules(~no, gap, places, none, none[:, None], endless, across)]
+        normal = Rules(
+            normal=is_normal,
+            gap=law.mean_by_point(law.normal.gap),
+            partner=places,
+            friction=zeros,
+            bound=zeros[:, None],
+            cap=endless,
+            compliance=law.in_parallel(law.normal.softness),
+        )
+        rules.append(normal)
         # Without friction what is in series along changes nothing, and tells the jump
         # from others.
-        soft = soft if bound.any() or friction.any() else across
-    if along.cap is None:
-        cap = endless
-    else:
-        cap = law.by_point(along.cap)
-    return [*normal, Rules(no, none, places, friction, bound, cap, soft)]
+        if not bound.any() and not friction.any():
+            compliance = normal.compliance
+    tangential = Rules(
+        normal=~is_normal,
+        gap=zeros,
+        partner=places,
+        friction=friction,
+        bound=bound,
+        cap=cap,
+        compliance=compliance,
+    )
+    rules.append(tangential)
+    return rules
 
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """Right sides of one instant.
+    """Right sides of one instant, scaled.
 
     Attributes
     ----------
@@ -203,8 +249,8 @@ class Sides:
     bound
         Friction force r that needs no normal force, shape (n,).
     held
-        What held jumps come to in the step, shape (n,): minus the opening, or nothing;
-        on top of the length before of what is in series.
+        Increment of a jump that is held, shape (n,): minus the opening of a normal
+        jump, 0 of a tangential one; with what is in series, its length before is added.
     """
 
     load: Array
@@ -212,7 +258,7 @@ class Sides:
     held: Array
 
     def towards(self, end: Sides, share: float) -> Sides:
-        """Right sides at a share of the way to others."""
+        """Right sides interpolated to others: a share of 0 is these, 1 the others."""
         if share == 1.0:
             return end
         return Sides(
@@ -223,11 +269,19 @@ class Sides:
 
 
 class Increment(NamedTuple):
-    """What an instant adds to the one before, and the forces at its end, scaled.
+    """Increments of an instant over the instant before, and the forces at its end.
 
-    Jumps and forces are of all jumps, (n,), with the new length of what is in series,
-    as `Sides.held`; then follow y of the base, (n_base,), and the rigid motions,
-    (n_motions,).
+    Attributes
+    ----------
+    jump
+        Increments of all jumps, with the new length of what is in series, as
+        `Sides.held`, shape (n,), scaled.
+    force
+        Forces of all jumps at the end, shape (n,), scaled.
+    strained
+        Increment of y of the base, shape (n_base,), scaled.
+    motion
+        Increments of the rigid motions, shape (n_motions,), scaled.
     """
 
     jump: Array
@@ -237,37 +291,52 @@ class Increment(NamedTuple):
 
 
 class InstantSolution(NamedTuple):
-    """States of an instant, what it adds, and slips (n,) of the jumps where friction changes."""
+    """States of an instant, its increments and its slips.
+
+    Attributes
+    ----------
+    states
+        States of all jumps, shape (n,).
+    step
+        Increments over the instant before.
+    slip
+        Slips of the instant, shape (n,), scaled; read where friction is not linear.
+    """
 
     states: States
     step: Increment
     slip: Array
 
     def guesses(self, known: Iterable[States]) -> list[InstantSolution]:
-        """The solution, and the same with other states."""
-        return [self, *(self._replace(states=states) for states in known)]
+        """The solution itself, and copies of it with other states, (n,) each."""
+        copies = [self._replace(states=states) for states in known]
+        return [self, *copies]
 
 
 class Starts:
-    """Where an instant begins: from a guess, or from the states of the instant before.
+    """Choice of the states that an instant starts from: a guess, or the instant before.
 
-    From whichever has taken fewer linear systems an instant so far.
+    The choice is the start that has taken fewer linear systems an instant so far.
     """
 
     def __init__(self) -> None:
-        # Systems and instants, from the guess and from the instant before.
-        self._guess = [0.0, 0]
-        self._before = [EXPECTED, 1]
+        self._systems_from_guess = 0.0
+        self._instants_from_guess = 0
+        self._systems_from_before = EXPECTED_SYSTEMS
+        self._instants_from_before = 1
 
     @property
     def from_guess(self) -> bool:
-        """Whether to begin from the guess."""
-        (guess, guessed) = self._guess
-        (before, times) = self._before
-        return guess * times <= before * guessed
+        """Start from the guess rather than from the instant before."""
+        guess = self._systems_from_guess * self._instants_from_before
+        before = self._systems_from_before * self._instants_from_guess
+        return guess <= before
 
     def took(self, systems: int, *, from_guess: bool) -> None:
-        """Count what an instant took, and from where."""
-        account = self._guess if from_guess else self._before
-        account[0] += systems
-        account[1] += 1
+        """Count the systems that an instant took from one of the two starts."""
+        if from_guess:
+            self._systems_from_guess += systems
+            self._instants_from_guess += 1
+        else:
+            self._systems_from_before += systems
+            self._instants_from_before += 1

@@ -1,7 +1,7 @@
-"""The minimum over one instant of rods on supports with a known bound (solver/README.md, 6 and 14).
+"""The minimum over one instant of rods on supports with a known bound.
 
 With the stiffness K of rods one after the other, which is tridiagonal, and the bounds
-r,
+r, the increment v minimises (solver/README.md, 6 and 14)
 
     phi(v) = 1/2 v' K v - g' v + sum r |v|.
 
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.linalg import LinAlgError
@@ -27,19 +27,23 @@ COARSEST = 64
 """Degrees of freedom of a rod below which no coarser mesh is asked for a guess
 (measured)."""
 HELD = 1e-13
-"""Force that moves a rod as one by a unit, over the largest row of the stiffness, which
-is none."""
+"""Force per unit of a rigid motion of a rod, over the largest row of the stiffness, up
+to which nothing holds the rod."""
 LEASH = 1e-10
-"""Stiffness over the same that holds a loose rod for a step: it goes far, and keeps its
-digits."""
+"""Stiffness that holds a loose rod for a step, over the same: the rod goes far, and
+keeps its digits."""
 
 
 class Tridiagonal:
-    """A symmetric tridiagonal matrix, solved again and again with other degrees of freedom held.
+    """A symmetric tridiagonal matrix, solved with different degrees of freedom held.
 
-    It has a diagonal (n,), entries (n - 1,) beside it, and what is added to the
-    diagonal where degrees of freedom are not held, (n,). `largest_row` is the largest
-    sum of the sizes of a row, without that.
+    Attributes
+    ----------
+    diagonal, beside
+        Diagonal, shape (n,), and entries beside it, shape (n - 1,), scaled.
+    largest_row
+        Largest sum of the sizes of a row, without what is added where degrees of
+        freedom are not held.
     """
 
     def __init__(
@@ -47,6 +51,7 @@ class Tridiagonal:
     ) -> None:
         self.diagonal = diagonal
         self.beside = beside
+        # Added to the diagonal where degrees of freedom are not held.
         self._slipping = slipping
         self._upper = np.asfortranarray([np.append(0.0, beside), diagonal])
         sums = np.abs(diagonal)
@@ -55,24 +60,39 @@ class Tridiagonal:
         self.largest_row = float(sums.max())
 
     def stiffened(self, slipping: Array) -> Self:
-        """The matrix with more on its diagonal, or less, where degrees of freedom are not held."""
-        if self._slipping is None:
-            slipping = slipping
-        else:
+        """The matrix with stiffness (n,) added where degrees of freedom are not held.
+
+        Where friction softens, the stiffness is negative.
+        """
+        if self._slipping is not None:
             slipping = self._slipping + slipping
         return type(self)(self.diagonal, self.beside, slipping)
 
     def product(self, field: Array) -> Array:
-        """K v."""
+        """Product K v with a field v; both have the shape (n,)."""
         force: Array = blas.dsbmv(1, 1.0, self._upper, field)
         if self._slipping is None:
             return force
         return force + self._slipping * field
 
     def solve_kept(self, keep: Array, force: Array) -> Array:
-        """Solve on the degrees of freedom where `keep` is 1; where it is 0, the force must be 0.
+        """Solve on the degrees of freedom where `keep` is 1, and give 0 elsewhere.
 
-        LinAlgError is raised if these can move without force.
+        Parameters
+        ----------
+        keep
+            1 or 0 for each degree of freedom, shape (n,).
+        force
+            Right side, shape (n,), scaled; 0 where `keep` is 0.
+
+        Returns
+        -------
+        The solution, shape (n,), scaled.
+
+        Raises
+        ------
+        LinAlgError
+            If the kept degrees of freedom can move without force.
         """
         diagonal = self.diagonal
         if self._slipping is not None:
@@ -93,7 +113,7 @@ class Tridiagonal:
         return part.stiffened(self._slipping[kept])
 
     def tied(self, group: Indices) -> Self:
-        """Stiffness of neighbours that are tied together, by the number of their group, (n,)."""
+        """The matrix of groups of neighbours tied together, by their numbers, (n,)."""
         diagonal = summed(group, self.diagonal)
         is_inside = group[1:] == group[:-1]
         # What ties two of one group counts on both sides of the diagonal.
@@ -105,13 +125,23 @@ class Tridiagonal:
 
 
 def summed(group: Indices, values: Array) -> Array:
-    """Sum of the values of every group, by their numbers from 0, shape (n_groups,)."""
+    """Sum of the values (n,) of every group, by their numbers from 0, (n_groups,)."""
     return np.asarray(np.bincount(group, values), dtype=float)
 
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """Fields of shape (n_dofs,) at the minimum of phi, and its KKT residual, also relative."""
+    """Fields at the minimum of phi, and its KKT residual.
+
+    Attributes
+    ----------
+    increment, pull
+        Increment v, and minus the friction force, shape (n_dofs,), scaled.
+    status
+        Direction of slip, 0 where a point sticks, shape (n_dofs,).
+    violation, residual
+        KKT residual, scaled, and divided by the sum of the forces.
+    """
 
     increment: Array
     pull: Array
@@ -120,8 +150,26 @@ class Minimum:
     residual: float
 
 
+class _Fields(NamedTuple):
+    """Fields that belong to statuses.
+
+    Attributes
+    ----------
+    increment
+        Increment, exactly zero where statuses are, shape (n_dofs,), scaled.
+    pull
+        Force that friction would have to hold, shape (n_dofs,), scaled.
+    limit
+        Largest pull at which a point sticks, rounding included, shape (n_dofs,).
+    """
+
+    increment: Array
+    pull: Array
+    limit: Array
+
+
 class Search:
-    """Minimise phi where some degrees of freedom are held at zero.
+    """Search for the minimum of phi, with some degrees of freedom held at zero.
 
     In Newton's method for the statuses a front advances by one point a step, and it may
     cycle. So it gives up early, and each rod starts again from the statuses of a mesh
@@ -133,7 +181,7 @@ class Search:
     rubs
         1 where a bound is above zero and nothing held, else 0, shape (n_dofs,).
     solutions
-        Systems of full size that were solved.
+        Number of systems of full size that were solved.
     """
 
     def __init__(self, stiffness: Tridiagonal, bound: Array, movable: Array) -> None:
@@ -143,7 +191,8 @@ class Search:
         self.solutions = 0
         self._parts: dict[int, tuple[slice, Search]] = {}
         self.rubs = (bound > 0.0) * movable
-        self._free = movable - self.rubs  # neither held nor rubbing
+        # Neither held nor rubbing.
+        self._free = movable - self.rubs
         self._limit = np.where(self.rubs > 0.0, bound, np.inf)
         is_tied = stiffness.beside * movable[1:] * movable[:-1] != 0.0
         self._starts = np.flatnonzero(np.append(True, ~is_tied))
@@ -158,36 +207,43 @@ class Search:
             self._loose &= pulled <= HELD * stiffness.largest_row
 
     def __call__(self, force: Array, status: Array) -> Minimum:
-        """Minimum, sought from a guess of the statuses; no force where nothing moves."""
+        """Minimum, sought from a guess of the statuses.
+
+        Parameters
+        ----------
+        force, status
+            Load g, scaled, and guess of the statuses, shape (n_dofs,) each; the load is
+            0 where nothing moves.
+        """
         status, changing, fields = self._newton(force, status)
         if fields is None:
             for rod in np.unique(self._rod[changing]):
-                own, search = self._of_rod(rod)
-                done = search.solutions
-                status[own] = search._mended(force[own], status[own])
-                self.solutions += -(
-                    -(search.solutions - done) * len(search.rubs) // len(force)
-                )
+                self._mend_rod(rod, force, status)
             fields = self._fields(force, status)
-        increment, pull, _ = fields
+        pull = fields.pull
         bound = self._bound
-        held = np.where(
-            status != 0.0, bound * status, np.minimum(np.maximum(pull, -bound), bound)
-        )
+        clipped = np.minimum(np.maximum(pull, -bound), bound)
+        held = np.where(status != 0.0, bound * status, clipped)
         violation = float((np.abs(pull - held) * self._movable).max())
+        relative = 0.0
         if violation:
             relative = violation / float(np.abs(force).sum())
-        else:
-            relative = 0.0
-        return Minimum(increment, held, status, violation, relative)
+        return Minimum(fields.increment, held, status, violation, relative)
 
     def _newton(
         self, force: Array, status: Array
-    ) -> tuple[Array, Flags, tuple[Array, Array, Array] | None]:
-        """Correct statuses by what they show; which change; the fields once none does."""
+    ) -> tuple[Array, Flags, _Fields | None]:
+        """Correct statuses by increments and pulls, from a guess; (n_dofs,) each.
+
+        Returns
+        -------
+        The statuses; which of them change in the last step; and their fields, None
+        while some change.
+        """
         changing = np.ones(len(status), dtype=bool)
         for _ in range(NEWTON_LIMIT):
-            increment, pull, limit = fields = self._fields(force, status)
+            fields = self._fields(force, status)
+            increment, pull, limit = fields
             corrected = np.where(
                 status != 0.0,
                 status * (status * increment > 0.0),
@@ -199,19 +255,34 @@ class Search:
             status = corrected
         return status, changing, None
 
+    def _mend_rod(self, rod: int, force: Array, status: Array) -> None:
+        """Replace the statuses of a rod, in those of all, by those of its minimum.
+
+        Forces and statuses have the shape (n_dofs,).
+        """
+        dofs, search = self._of_rod(rod)
+        done = search.solutions
+        status[dofs] = search._mended(force[dofs], status[dofs])
+        # Systems of the rod count by its share of the size, rounded up.
+        added = (search.solutions - done) * len(search.rubs)
+        self.solutions += -(-added // len(force))
+
     def _of_rod(self, rod: int) -> tuple[slice, Search]:
         """Degrees of freedom of a rod, and the search on it alone."""
         if rod not in self._parts:
             first, last = np.searchsorted(self._rod, [rod, rod + 1])
-            own = slice(first, last)
+            dofs = slice(first, last)
             part = Search(
-                self._stiffness.part(own), self._bound[own], self._movable[own]
+                self._stiffness.part(dofs), self._bound[dofs], self._movable[dofs]
             )
-            self._parts[rod] = own, part
+            self._parts[rod] = dofs, part
         return self._parts[rod]
 
     def _mended(self, force: Array, status: Array) -> Array:
-        """Statuses of a rod where those of Newton's method do not come to rest."""
+        """Statuses of a rod, (n_dofs,), where Newton's method does not find them.
+
+        The guess of the statuses, and the load, have the same shape.
+        """
         if len(force) >= COARSEST:
             coarser, group = self._coarser
             forces = summed(group, force)
@@ -224,41 +295,57 @@ class Search:
         return self._descend(force, status)
 
     def _descend(self, force: Array, status: Array) -> Array:
-        """Minimise phi of a rod by an active-set method, every step of which lowers phi.
+        """Minimise phi of a rod by an active-set method; every step of it lowers phi.
 
-        A step ends where a first point stops, which then sticks; at a minimum over the
-        slipping points that pulled most beyond its bound is released, and moves the way
-        it is pulled.
+        A step ends where a first point stops, which then sticks. At a minimum over the
+        slipping points the point that is pulled farthest beyond its bound is released,
+        and moves in the direction of its pull.
+
+        Parameters
+        ----------
+        force, status
+            Load g, scaled, and guess of the statuses, shape (n_dofs,) each.
+
+        Returns
+        -------
+        The statuses at the minimum, shape (n_dofs,).
         """
-        increment, _, _ = self._fields(force, status)
-        status = status * (status * increment > 0.0)
-        increment *= self._free + np.abs(status)
+        increment = self._fields(force, status).increment
+        status, increment = self._moving(status, increment)
         released = -1
         while True:
-            target, pull, limit = self._fields(force, status)
+            fields = self._fields(force, status)
+            target = fields.increment
             turns = np.flatnonzero(status * target < 0.0)
             if not len(turns):
                 increment = target
-                excess = np.where(status == 0.0, np.abs(pull) - limit, -np.inf)
+                excess = np.abs(fields.pull) - fields.limit
+                excess = np.where(status == 0.0, excess, -np.inf)
                 released = int(excess.argmax())
                 if excess[released] <= 0.0:
                     return status
-                status[released] = np.sign(pull[released])
+                status[released] = np.sign(fields.pull[released])
                 continue
             shares = increment[turns] / (increment[turns] - target[turns])
             first = turns[shares.argmin()]
-            # One that goes back before it has moved was released within rounding of its
-            # bound; but one that was slipping may have stood still all the while.
+            # A point that goes back before it has moved was released within rounding of
+            # its bound; but a point that was slipping may have stood still all the
+            # while.
             is_done = first == released and increment[first] == 0.0
             increment += shares.min() * (target - increment)
             increment[first] = 0.0
-            status = status * (status * increment > 0.0)
-            increment *= self._free + np.abs(status)
+            status, increment = self._moving(status, increment)
             if is_done:
                 return status
 
-    def _fields(self, force: Array, status: Array) -> tuple[Array, Array, Array]:
-        """Increment, exactly zero where statuses are; pull; and its limit, rounding included.
+    def _moving(self, status: Array, increment: Array) -> tuple[Array, Array]:
+        """Statuses and increments (n_dofs,) where points that do not slip on stick."""
+        status = status * (status * increment > 0.0)
+        increment *= self._free + np.abs(status)
+        return status, increment
+
+    def _fields(self, force: Array, status: Array) -> _Fields:
+        """Solve for the fields of statuses under a load, shape (n_dofs,) each.
 
         A loose rod of which all points slip goes as far as it has to for some of them
         to turn back.
@@ -272,15 +359,17 @@ class Search:
                 stiffness = stiffness.stiffened(np.where(flies[self._rod], leash, 0.0))
         self.solutions += 1
         increment = stiffness.solve_kept(keep, keep * (force - self._bound * status))
-        largest = (
-            self._stiffness.largest_row * np.abs(increment).max() + np.abs(force).max()
-        )
+        inside = self._stiffness.largest_row * np.abs(increment).max()
+        largest = inside + np.abs(force).max()
         pull = force - self._stiffness.product(increment)
-        return increment, pull, self._limit + ROUNDING * float(largest)
+        return _Fields(increment, pull, self._limit + ROUNDING * float(largest))
 
     @cached_property
     def _coarser(self) -> tuple[Search, Indices]:
-        """The same rod, all of it movable, with its points tied in pairs; and the pair of each."""
+        """The search on the rod with its points tied in pairs, all of them movable.
+
+        With the number of the pair of each point, shape (n_dofs,).
+        """
         group = np.arange(len(self.rubs)) // 2
         bound = summed(group, self._bound)
         return Search(self._stiffness.tied(group), bound, np.ones_like(bound)), group

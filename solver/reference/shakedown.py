@@ -1,4 +1,4 @@
-"""The load up to which slip may cease: Melan's theorem for friction, and its like in the plane.
+"""Shakedown: the load up to which slip may cease (Melan's theorem for friction).
 
 **Known bounds** (A. Klarbring, M. Ciavarella, J. R. Barber, Shakedown in elastic
 contact problems with Coulomb friction, Int. J. Solids Struct. 44, 2007): slip that
@@ -36,8 +36,8 @@ from solver.reference.assembly import NoReferenceError
 from solver.reference.condensation import Condensation
 
 MOST_KNOWN = 1000
-"""Points of known bound above which matrices, which are full, take more than some
-seconds."""
+"""Largest number of points of known bound whose matrices, which are full, take no more
+than some seconds."""
 FELT = 1e-9
 """Share of the largest bound up to which a force that changes is rounding, as for
 HiGHS."""
@@ -48,7 +48,7 @@ MOST_POINTS = 500
 seconds: 423 of ten layers 3.6, 769 of a block 26, 893 of twenty layers 145
 (measured)."""
 UNBOUNDED = 3
-"""Status of `linprog` where the factor may grow without end."""
+"""Status of `linprog` where the factor may grow without limit."""
 
 
 def shakedown_limit(problem: Problem, cycle: slice) -> float:
@@ -70,31 +70,19 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     # y = s - c f. A point whose bound is nothing at all times has f = 0.
     condensed = Condensation(problem)
     rules = condensed.rules
-    if rules.ages:
+    if rules.changes_with_slip:
         raise NoReferenceError(
             "Where friction changes with slip the theorem says nothing."
         )
-    residual = condensed.stiffness
-    elastic = -condensed.load[:, cycle]
-    rings = condensed.stresses
-    if rules.compliance.any():
-        rings = np.zeros(
-            (len(rules.compliance), 0)
-        )  # what gives way tells its own force
-        stiff = 1.0 / rules.compliance[:, None]
-        tied = stiff * condensed.ties.toarray()
-        gives = np.linalg.solve(residual + condensed.ties.T @ tied, tied.T)
-        residual = np.diagflat(stiff) - tied @ gives
-        elastic = gives.T @ elastic - residual @ condensed.shift[:, cycle]
+    residual, elastic, rings = _forces_of_slips(condensed, cycle)
     rubs = np.flatnonzero(rules.bounded)
     free = np.flatnonzero(~rules.bounded)
     carried = np.linalg.solve(
         residual[np.ix_(free, free)], residual[np.ix_(free, rubs)]
     ).T
     elastic = elastic[rubs] - carried @ elastic[free]
-    bound = np.broadcast_to(rules.bound[rubs], (len(rubs), problem.n_instants))[
-        :, cycle
-    ]
+    shape = (len(rubs), problem.n_instants)
+    bound = np.broadcast_to(rules.bound[rubs], shape)[:, cycle]
     scale = float(bound.max(initial=0.0)) or 1.0
     elastic = elastic / scale
     bound = bound / scale
@@ -103,23 +91,56 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     return _limit_of_points(elastic, bound)
 
 
+def _forces_of_slips(
+    condensed: Condensation, cycle: slice
+) -> tuple[Array, Array, Array]:
+    """Forces of points by their slips, by the loads, and without any; scaled.
+
+    Returns
+    -------
+    Stiffness from slips to forces, shape (n, n); forces of the loads where nothing
+    slips, shape (n, n_instants of the cycle); and forces that move nothing, shape (n,
+    n_stresses).
+    """
+    rules = condensed.rules
+    stiffness = condensed.stiffness
+    elastic = -condensed.load[:, cycle]
+    if not rules.compliance.any():
+        return stiffness, elastic, condensed.stresses
+    springs = 1.0 / rules.compliance[:, None]
+    tied = springs * condensed.ties.toarray()
+    gives = np.linalg.solve(stiffness + condensed.ties.T @ tied, tied.T)
+    residual = np.diagflat(springs) - tied @ gives
+    elastic = gives.T @ elastic - residual @ condensed.shift[:, cycle]
+    # The force of a spring in series is determinate.
+    return residual, elastic, np.zeros((len(rules.compliance), 0))
+
+
 def _count(problem: Problem) -> int:
+    """Number of points that rub."""
     return sum(len(law.positions) for law in problem.rubbing.values())
 
 
 def _limit_of_points(elastic: Array, bound: Array) -> float:
-    """Lambda where the worst point decides: two instants pull it both ways beyond its bounds."""
+    """Limit where the worst point decides: two instants pull it both ways too far.
+
+    Forces of the loads and bounds have the shape (n_points, n_instants), scaled.
+    """
     factor = np.inf
-    for force, most in zip(elastic.T, bound.T, strict=True):
+    for force, limit in zip(elastic.T, bound.T, strict=True):
         swing = np.abs(elastic - force[:, None])
         is_felt = swing > FELT
-        room = (bound + most[:, None])[is_felt] / swing[is_felt]
+        room = (bound + limit[:, None])[is_felt] / swing[is_felt]
         factor = min(factor, float(room.min(initial=np.inf)))
     return factor
 
 
 def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
-    """Lambda where forces go round rings without moving anything, at each instant on their own."""
+    """Limit where forces round rings move nothing, and differ at each instant.
+
+    Forces of the loads and bounds have the shape (n_points, n_instants), scaled; forces
+    round rings (n_points, n_stresses).
+    """
     size, count = elastic.shape
     within = sparse.hstack(
         [
@@ -139,7 +160,10 @@ def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
 def _largest(
     place: int, matrix: Array | sparse.sparray, limit: Array
 ) -> OptimizeResult:
-    """Largest value of one of the unknowns x, not below zero, with matrix x <= limit."""
+    """Largest value, at least zero, of the unknown at a place, with matrix x <= limit.
+
+    With a matrix of shape (n_rows, n_unknowns), and limits of shape (n_rows,).
+    """
     bounds = np.tile([-np.inf, np.inf], (matrix.shape[1], 1))
     bounds[place, 0] = 0.0
     aim = np.zeros(matrix.shape[1])
@@ -157,8 +181,9 @@ class SlipSpace:
     Attributes
     ----------
     matrix
-        A, shape (n_planes, n_points), N/m: where each point slips to negative w, where
-        to positive, and where one opens whose friction does not say so.
+        A, shape (n_planes, n_points), N/m: one plane for slip of each point to negative
+        w, one for slip to positive w, and one for the opening of each point whose
+        friction does not need the normal force.
     limit
         b, shape (n_planes, n_instants), N.
     """
@@ -181,31 +206,22 @@ def slip_space(problem: Problem) -> SlipSpace:
     if _count(problem) > MOST_POINTS:
         raise NoReferenceError(f"The planes are those of at most {MOST_POINTS} points.")
     condensed = Condensation(problem)
-    rules = condensed.rules
-    is_whole = (
-        len(condensed.base) == len(condensed.moving) and not condensed.stresses.size
-    )
-    if (
-        not is_whole
-        or rules.compliance.any()
-        or rules.is_curved
-        or rules.bonds.size
-        or rules.smooth.any()
-    ):
+    if not _is_of_coulomb(condensed):
         raise NoReferenceError(
             "The planes are those of Coulomb's friction, where forces follow from slips."
         )
+    rules = condensed.rules
     stiffness = condensed.elastic
     rubs = np.flatnonzero(~rules.normal)
+    pressing = rules.partner[rubs]
+    # Forces where nothing slips.
     closed = np.where(rules.normal, -rules.gap, 0.0)
     still = (stiffness @ closed)[:, None] - condensed.load
     friction = rules.friction[rubs, None]
-    pressing = rules.partner[rubs]
     carried = friction * stiffness[np.ix_(pressing, rubs)]
-    bound = rules.bound[rubs]
     tangential = stiffness[np.ix_(rubs, rubs)]
-    held = friction * still[pressing] + bound
-    # Friction that takes pressing says so by itself.
+    held = friction * still[pressing] + rules.bound[rubs]
+    # Friction that needs the normal force ends where the contact opens.
     alone = np.setdiff1d(np.flatnonzero(rules.normal), pressing[~rules.bounded[rubs]])
     matrix = np.concatenate(
         [tangential - carried, -tangential - carried, -stiffness[np.ix_(alone, rubs)]]
@@ -215,13 +231,25 @@ def slip_space(problem: Problem) -> SlipSpace:
     return SlipSpace(matrix * force / problem.scales.displacement, limit * force)
 
 
+def _is_of_coulomb(condensed: Condensation) -> bool:
+    """Check that friction is Coulomb's, and that forces follow from jumps."""
+    rules = condensed.rules
+    is_whole = len(condensed.base) == len(condensed.moving)
+    if not is_whole or condensed.stresses.size:
+        return False
+    if rules.compliance.any() or rules.is_nonlinear:
+        return False
+    return not rules.bonds.size and not bool(rules.is_frictionless.any())
+
+
 def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
-    """How much a load may swing about its mean until no slip could stay, or a contact opens.
+    """Largest swing of a load about its mean under which some slip can stay.
 
     Returns
     -------
-    The factor on the load's distance from its mean over the instants of whole cycles, equally far
-    apart, infinite where it stands still; and a slip that stays under it, shape (n_points,), m.
+    The factor on the load's distance from its mean over the instants of whole cycles,
+    equally far apart, infinite where the load stands still; and a slip that stays under
+    it, shape (n_points,), m.
 
     Raises
     ------
@@ -230,11 +258,11 @@ def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     """
     limit = space.limit[:, cycle]
     mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)
-    least = (limit - mean[:, None]).min(axis=1)
+    lowest = (limit - mean[:, None]).min(axis=1)
     unit = float(np.abs(space.matrix).max())
     scale = float(np.abs(limit).max()) or 1.0
     size = space.matrix.shape[1]
-    matrix = np.column_stack([space.matrix / unit, -least / scale])
+    matrix = np.column_stack([space.matrix / unit, -lowest / scale])
     solution = _largest(size, matrix, mean / scale)
     if solution.status == UNBOUNDED:
         return np.inf, np.zeros(size)
@@ -242,11 +270,11 @@ def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
 
 
 def room_of_two(space: SlipSpace, cycle: slice) -> Array:
-    """Where two points may stay at all instants, between the lines that come farthest.
+    """Slips of two points that may stay at all instants, between the innermost lines.
 
     Returns
     -------
-    Corners in their order, shape (n_corners, 2), m; none where nothing is left.
+    Corners in their order, shape (n_corners, 2), m; no corner where no slip may stay.
     """
     matrix = space.matrix
     limit = space.limit[:, cycle].min(axis=1)

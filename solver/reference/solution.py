@@ -1,4 +1,4 @@
-"""The solution of a problem on its own mesh and instants, and what it depends on."""
+"""The solution of a problem on its own mesh and instants; a digest of a problem."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Reference:
     Attributes
     ----------
     problem
-        What it solves.
+        The problem that is solved.
     displacement
         Shape (n_dofs, n_instants), m.
     deformation
-        The same but for rigid motions of bodies that contact alone holds, which would
-        hide it.
+        Displacement without the rigid motions of bodies that contact alone holds, whose
+        digits would hide it, same shape, m.
     contact_force
         Nodal forces on the bodies above, stacked as `Problem.sum_of_contact` says,
         shape (n_forces, n_instants), N.
@@ -41,7 +41,7 @@ class Reference:
         from the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided
         by the sum of |g|.
     unbalanced
-        The same before it is divided, N.
+        The residual before it is divided, N.
     converged
         Whether the instants are solved, shape (n_instants,).
     ambiguous
@@ -50,7 +50,7 @@ class Reference:
     steps
         Newton steps, which are linear systems of full size, in all.
     rounding
-        What rounding alone may leave of `unbalanced`, N.
+        Largest part of `unbalanced` that rounding alone may leave, N.
     jumps_at
         First instant that has no solution that goes on from the instant before, as
         friction falls with slip faster than the structure unloads: what follows is
@@ -82,7 +82,7 @@ class Reference:
 
     @property
     def friction_force(self) -> Array:
-        """Nodal friction force on the body, (n_points, n_instants), N, where its bound is known."""
+        """Nodal friction force where its bound is known, (n_points, n_instants), N."""
         return self.contact_force
 
     def contact(self, name: str) -> ContactFields:
@@ -94,7 +94,7 @@ class Reference:
 
 
 def fingerprint(problem: Problem) -> bytes:
-    """Digest all that the incremental solvers read of a problem, and nothing that they do not.
+    """Digest of exactly the data of a problem that the incremental solvers read.
 
     So cuts count where degrees of freedom depend on them, as in the plane, and do not
     along a rod; the method never does. Problems that differ by rounding count as two.

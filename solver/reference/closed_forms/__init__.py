@@ -1,4 +1,4 @@
-"""What is known without a mesh: closed forms, and the curves that plots draw of them."""
+"""Closed forms, which need no mesh, and the curves that plots draw of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Of = Literal["friction", "pressure", "axial force", "front", "loop"]
 
 @dataclass(frozen=True, eq=False)
 class ExactCurve:
-    """What is known of one quantity, without a mesh along the body.
+    """The closed form of one quantity, without a mesh along the body.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Closed form: the moment of a strand of helical wires, and of one wire, under uniform curvature.
+"""Closed form: moments of a strand and of a helical wire under uniform curvature.
 
 Slip of a wire starts at the neutral axis and spreads to an angle phi on both sides of
 it, with kappa / kappa_0 = phi / sin(phi), until all slips at (pi / 2) kappa_0. It

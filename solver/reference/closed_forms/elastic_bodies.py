@@ -1,4 +1,4 @@
-"""Closed forms of elastic bodies: a cylinder on a half-plane, and a cantilever, per length."""
+"""Closed forms of elastic bodies: a cylinder on a half-plane, and a cantilever."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class HalfPlane:
         return np.asarray(friction * np.diff(grown, axis=0).T @ share)
 
     def energy(self, friction: float, share: float) -> float:
-        """What friction takes in a cycle between plus and minus a share of mu P, J/m."""
+        """Energy that friction takes in a cycle between plus and minus a share of mu P, J/m."""
         bracket = (
             4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
         )

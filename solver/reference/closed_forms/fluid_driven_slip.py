@@ -1,4 +1,4 @@
-"""Slip on a straight interface that a fluid drives: its pressure, and how far slip spreads.
+"""Closed forms of slip that a fluid drives: its pressure, and the front of slip.
 
 The excess of its pressure over what was there before obeys the diffusion equation on a
 half-line whose end has a pressure that is given. A steady one spreads as erfc(x /
@@ -63,7 +63,7 @@ def spread(place: Array, instants: Array, given: Array, diffusivity: float) -> A
 
 
 def _risen(place: Array, later: Array, diffusivity: float) -> Array:
-    """What a pressure that rises by 1 Pa/s has done, shape (n_places, n_times)."""
+    """Pressure where that at the end rises by 1 Pa/s, shape (n_places, n_times)."""
     far = _far(place, later, diffusivity)
     steady = erfc(far)
     return np.asarray(
@@ -111,7 +111,7 @@ def fronts(place: Array, lack: Array) -> Array:
 
 
 def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -> Array:
-    """How much such a zone adds to the stress ahead of it, at distances from the middle, Pa.
+    """Stress that such a zone adds ahead of it, at distances from the middle, Pa.
 
     `place` and `lack` are as of `fronts`, at one instant.
     """

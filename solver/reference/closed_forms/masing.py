@@ -1,4 +1,4 @@
-"""Masing's rule: how what rubs answers a load that turns, from how it answers one that grows.
+"""Masing's rule: the answer to a load that turns from that to a load that grows.
 
 From a turning point on the answer is the first curve, doubled in both directions; a
 loop that closes is forgotten, and what went on before goes on (G. Masing, 1926, with
@@ -37,7 +37,7 @@ def masing(load: Array, grown: Callable[[float], float]) -> Array:
 
 
 def _closes(value: float, turns: list[tuple[float, float]]) -> bool:
-    """Whether a load has come back to where the turn before the last one was, or beyond.
+    """Check that a load is back at the turn before the last one, or beyond.
 
     Where that is rest, the first curve goes on at the opposite of the last one.
     """
