@@ -233,7 +233,7 @@ class ComparedRuns:
         step
             Step in z. Steps go both ways within bounds; the smallest one goes one way.
         directions
-            Directions in z, shape (q, p); those of the settings alone if there are none.
+            Directions in z, shape (q, p); by default those of the settings.
         """
         if directions is None:
             directions = np.eye(len(z))
@@ -241,7 +241,7 @@ class ComparedRuns:
         return np.array(columns).reshape(len(directions), -1).T
 
     def _derivative(self, z: Array, step: float, along: Array) -> Array:
-        """Derivative of the differences at z along a direction, both (p,): (n_rows,)."""
+        """Derivative of differences, (n_rows,), at z, (p,), along a direction, (p,)."""
         moves = [move for move in (step, -step) if self.holds(z + move * along)]
         if step == STEP:
             moves = moves[:1]
@@ -267,7 +267,7 @@ class ComparedRuns:
         return math.inf
 
     def of_mesh(self, z: Array) -> float:
-        """Norm of the change of the differences at z, (p,), with elements of half the size.
+        """Norm of the change of differences at z, (p,), on elements of half the size.
 
         0 where no such run converges.
         """
@@ -285,7 +285,7 @@ class ComparedRuns:
         return 0.0
 
     def coarse(self) -> Array:
-        """Place to begin at, shape (p,): by large steps in one setting after another."""
+        """First place, shape (p,): by large steps in one setting after another."""
         best = np.zeros(len(self.names))
         for setting in range(len(best)):
             middle = best

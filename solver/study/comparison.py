@@ -300,7 +300,7 @@ def _covers(grid: Array, places: Array) -> Flags:
 
 
 def _interpolated(field: Array, at: Array) -> Array:
-    """Field, (n_points, n_instants), at fractional numbers of both, (2, n): shape (n,)."""
+    """Field, (n_points, n_instants), at fractional numbers of both, (2, n): (n,)."""
     return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
 
 

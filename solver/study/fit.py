@@ -74,7 +74,7 @@ class Combination:
 
     @property
     def error(self) -> float:
-        """Standard error as a share of the value: half the distance to the farther end."""
+        """Standard error as a share of the value: half the way to the farther end."""
         farther = max(self.upper - self.value, self.value - self.lower)
         return farther / (2.0 * self.value)
 
@@ -191,7 +191,7 @@ def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
 
 
 def _explored(runs: ComparedRuns) -> tuple[Valley, list[Profile]]:
-    """Valley of the nearest run that is found, and the profiles of all settings there."""
+    """Valley of the nearest run that is found, and the profiles of all settings."""
     settings = np.eye(len(runs.names))
     z = runs.solve(runs.coarse(), LOOSE * settings)
     for rest in reversed(range(ROUNDS)):
@@ -237,7 +237,7 @@ def _near_start(valley: Valley, blind: Array) -> Array:
 
 
 def _margins(valley: Valley, profiles: list[Profile]) -> tuple[Array, Array]:
-    """Lower and upper ends of settings by their profiles, (p,) each, in SI, as in `Fit`."""
+    """Lower and upper ends of settings by their profiles, (p,) each, in SI."""
     below, above = np.array([profile.ends() for profile in profiles]).T
     with np.errstate(invalid="ignore"):
         lower = valley.runs.values(valley.z - below)

@@ -48,7 +48,7 @@ def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
 
 
 def messages(fit: Fit) -> list[str]:
-    """Sentences on settings that the loop does not determine, and on the nearest run."""
+    """Sentences on settings that are not determined, and on the nearest run."""
     sentences = [_known(combination) for combination in fit.together]
     sentences += _lost(fit)
     sentences += _bounds(fit)
@@ -187,7 +187,7 @@ def _end(value: float) -> str:
 
 
 def _entries(fit: Fit) -> list[list[Any]]:
-    """Setting, unit, start, value, standard error, ends and correlations, a row for each."""
+    """Rows of setting, unit, start, value, standard error, ends and correlations."""
     units = [about(fit.settings.definitions()[name]).unit for name in fit.names]
     columns = (
         fit.names,

@@ -86,7 +86,7 @@ def loop(answer: Answer) -> Iterator[Number]:
 def _values_of_loop(
     title: str, unit: str, known: Array, found: Array
 ) -> Iterator[Number]:
-    """Largest and last value of a quantity, known and found, shape (n_instants,) each."""
+    """Largest and last value of a quantity, known and found, (n_instants,) each."""
     name = title.lower()
     sizes = np.abs(known)
     largest = int(sizes.argmax())
@@ -153,7 +153,7 @@ def sheared_parabola(answer: Answer) -> Iterator[Number]:
 
 
 def _peak_of_shear(answer: Answer, first: int) -> Iterator[Number]:
-    """Half-width of stick, and traction in the middle, at the first peak of the shear."""
+    """Half-width of stick, and traction in the middle, at a peak of the shear."""
     pressing, shear = answer.support
     friction = answer.settings.friction
     pressed = np.abs(pressing[:, first])
@@ -223,8 +223,9 @@ def driven_by_fluid(answer: Answer) -> Iterator[Number]:
 
 
 def _known_front(settings: Any) -> float:
-    """Front of slip over sqrt(4 alpha t) under the pressure DP erfc(x / sqrt(4 alpha t)).
+    """Front of slip over sqrt(4 alpha t).
 
+    The pressure is DP erfc(x / sqrt(4 alpha t)).
     R. C. Viesca, J. Fluid Mech. 928, A29, 2021.
     """
     reserve = settings.normal_stress - settings.shear_stress / settings.friction

@@ -97,11 +97,11 @@ def _written(value: float, unit: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Lesson:
-    """A lesson by its file, whose name it has (app/lessons/README.md explains the keys).
+    """A lesson by its file, whose name it has.
 
-    `right` is the index of the right choice; text and explanation are in paragraphs.
-    `instant` and `until` are shares of the interval. An empty `interface` means the
-    first one.
+    `app/lessons/README.md` explains the keys. `right` is the index of the right choice;
+    text and explanation are in paragraphs. `instant` and `until` are shares of the
+    interval. An empty `interface` means the first one.
     """
 
     name: str

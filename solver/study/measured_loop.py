@@ -35,7 +35,10 @@ from solver.settings.definitions import SettingError
 from solver.study.comparison import FEWEST, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
 
-CAN = "CSV whose head names displacement and force of every row, and their time if it is known"
+CAN = (
+    "CSV whose head names displacement and force of every row, "
+    "and their time if it is known"
+)
 ALIKE = 0.02
 """Share of the range up to which misfits of the ends of branches count as equal."""
 
@@ -268,7 +271,7 @@ class LoopComparison:
         }
 
     def differences(self, displacement: Array, force: Array) -> tuple[Array, Array]:
-        """Differences of a run from the rows that are compared, shape (n_counted,) each.
+        """Differences of a run from the rows that are compared, (n_counted,) each.
 
         The first are those of the compared quantity, the second those of the prescribed
         one, as shares of the measured range. A table is refused whose branches are none
@@ -347,7 +350,7 @@ class LoopComparison:
 
 
 def branches(path: Array) -> Indices:
-    """Ends of the branches of a path, shape (n,): its start, its reversals and its end."""
+    """Start, reversals and end of a path, (n_instants,): the ends of its branches."""
     last = len(path) - 1
     turns = [turn for turn in turning_points(path) if 0 < turn < last]
     # A last swing that is too small is no branch of its own.

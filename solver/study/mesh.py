@@ -73,7 +73,7 @@ class Refinement:
 
     @property
     def limit(self) -> float:
-        """Limit of the quantity; its value on the finest mesh where none is in sight."""
+        """Limit of the quantity; its value on the finest mesh if none is in sight."""
         order = self.order
         fine = self.values[-1]
         if order is None or not LEAST_ORDER <= order <= LARGEST_ORDER:

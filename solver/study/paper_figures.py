@@ -186,8 +186,8 @@ def _balance(forces: Array) -> Finding:
 def _distance(words: str, solutions: Array) -> Finding:
     """Finding on the distances of both versions to the reference at t = 0.5 s.
 
-    The fields of the reference and both versions, (3, n_points), have the weights of L2
-    along the bar.
+    The fields of the reference and both versions, shape (3, n_points), have the weights
+    of L2 along the bar.
     """
     apart = np.linalg.norm(solutions - solutions[0], axis=1)
     multi, mono = apart[1:] / np.linalg.norm(solutions[0])

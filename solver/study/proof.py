@@ -105,9 +105,10 @@ class KnownCase:
 
 
 def rows_of(case: KnownCase) -> Iterator[Row]:
-    """Solve a case by LATIN and, unless it is of the trade, by the incremental solver too.
+    """Solve a case by LATIN and by the incremental solver.
 
-    A number of a run that has not converged does not hold.
+    A case of the trade is solved by LATIN alone. A number of a run that has not
+    converged does not hold.
     """
     settings = case.settings
     problem = discretise(settings)

@@ -73,9 +73,10 @@ def conditions(settings: Settings, repeats: int) -> list[str]:
 
 
 def table(curves: Sequence[ErrorCurve]) -> list[Row]:
-    """Time to each level, with the iterations in brackets and a star at the first method.
+    """Time of each method to each level, and its iterations in brackets.
 
-    The last row is of the best form of LATIN over the incremental solver.
+    A star marks the first method. The last row is of the best form of LATIN over the
+    incremental solver.
     """
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
     times = np.array([_times_to_levels(curve) for curve in curves])
@@ -163,7 +164,7 @@ def _titles(settings: Settings) -> list[str]:
 
 
 def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
-    """Errors of displacement and of friction force over time, a curve for each method."""
+    """Errors of displacement and of friction force over time, a curve per method."""
     displacements = [curve.error_displacement for curve in curves]
     forces = [curve.error_force for curve in curves]
     return [
@@ -175,7 +176,7 @@ def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
 def _error_panel(
     title: str, curves: Sequence[ErrorCurve], errors: Sequence[Array]
 ) -> Panel:
-    """Panel of the errors of all methods, (n,) each, of which the last is incremental."""
+    """Panel of the errors of all methods, (n,) each; the last one is incremental."""
     *latin, incremental = curves
     lines = []
     for hue, curve in enumerate(latin, start=1):

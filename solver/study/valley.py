@@ -51,7 +51,7 @@ TWO = float(2.0 * norm.cdf(2.0) - 1.0)
 BROAD = 1e-2
 """Step, in z, of the finite differences that tell the direction of a valley."""
 SILENT = 1e-6
-"""Smallest noise, as a share of the measured range: the runs' own errors are as large."""
+"""Smallest noise, as a share of the measured range: runs have errors as large."""
 LOWER = 0.1
 """Share of F s^2 by which the misfit of another place has to be lower to count."""
 GROWTH = (0.5, 2.0)
@@ -65,7 +65,7 @@ PLACES = 16
 
 
 class LowerPlace(Exception):  # noqa: N818
-    """A place z, shape (p,), whose misfit is lower than that of the nearest run so far."""
+    """A place z, shape (p,), with a lower misfit than the nearest run so far."""
 
     def __init__(self, z: Array) -> None:
         super().__init__("there is a lower place")
@@ -293,7 +293,7 @@ class Valley:
         return Side(np.array(distances), np.array(rises), np.array(places), is_at_bound)
 
     def _rise(self, place: Array) -> float:
-        """Misfit of a place, (p,), less the least one; the place is kept if within doubt.
+        """Misfit of a place, (p,), less the least one; places within doubt are kept.
 
         Raises
         ------
@@ -308,7 +308,7 @@ class Valley:
         return rise
 
     def _growth(self, rise: float) -> float:
-        """Next step over the distance so far: it passes a level if the rise is square."""
+        """Next step over the distance so far: past a level, if the rise is square."""
         if rise <= self.noise:
             level = self.noise
         else:
@@ -340,9 +340,9 @@ class Valley:
         ahead
             Place to search from, as the course so far leads there, shape (p,).
         last
-            Place before, shape (p,). Where the search from `ahead` ends out of the noise
-            and two or more settings are left free, the search starts from there, too: a
-            floor that bends leads astray.
+            Place before, shape (p,). Where the search from `ahead` ends out of the
+            noise and two or more settings are left free, the search starts from there,
+            too: a floor that bends leads astray.
         """
         found = self._lowest(along, distance, ahead)
         is_within = self.runs.misfit(found) - self.least <= self.noise
@@ -352,7 +352,7 @@ class Valley:
         return min(found, other, key=self.runs.misfit)
 
     def _lowest(self, along: Array, distance: float, start: Array) -> Array:
-        """Lowest place, (p,), at a distance along a direction, (p,), from a start, (p,)."""
+        """Lowest place at a distance along a direction; all have shape (p,)."""
         start = np.clip(start, *self._bounds)
         pivot = int(np.abs(along).argmax())
         # The setting that counts most brings the start to the distance.

@@ -134,7 +134,7 @@ def _instant_at(run: FinishedRun, share: float) -> int:
     when=_axial_force_instant,
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
-    """Largest axial force along rods at an instant, ends included, N, tension positive."""
+    """Largest axial force along rods at an instant, with ends, N, tension positive."""
     force = _axial_force(run)[:, instant]
     return float(force[first_largest(force)])
 
@@ -165,7 +165,7 @@ def _force_at(side: str) -> Quantity:
 
 
 def holding_sides(settings: Settings) -> Collection[str]:
-    """Sides with a holding force: ends of a rod, or sides of prescribed displacement."""
+    """Sides with a holding force: rod ends, or sides of prescribed displacement."""
     if settings.kind == "rod":
         return "left", "right"
     structure = settings.structure()
@@ -255,7 +255,7 @@ def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
 
 
 def _peak_stress(name: str, title: str, unit: str, component: int) -> Quantity:
-    """Component of `FinishedRun.peak_stress`: the largest von Mises stress, its x or y."""
+    """Largest von Mises stress, its x or its y: 0, 1 or 2 of `peak_stress`."""
 
     def of(run: FinishedRun) -> float:
         return run.peak_stress[component]
@@ -297,7 +297,7 @@ class _Hold:
 
     @property
     def needed(self) -> Array:
-        """Coefficient of friction in use, shape (n_instants,); 0 where nothing presses."""
+        """Coefficient of friction in use, (n_instants,); 0 where nothing presses."""
         nothing = np.zeros_like(self.pressing)
         return np.divide(
             np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0
@@ -360,7 +360,10 @@ def _holds(run: FinishedRun) -> list[_Hold]:
 
 
 def _hold(run: FinishedRun, name: str, determinate: Flags) -> _Hold:
-    """Forces of an interface; `determinate`, (n_points, n_instants), says where one is."""
+    """Forces of an interface as a whole.
+
+    `determinate` says where the friction is determinate, shape (n_points, n_instants).
+    """
     contact = run.iterate.contact(name)
     pressing = _pressing_by_friction(run, name)
     status = contact.status
@@ -439,7 +442,7 @@ def holding_force(run: FinishedRun) -> float:
     when=largest_load,
 )
 def end_displacement(run: FinishedRun, instant: int) -> float:
-    """Displacement of the loop at the largest load, m; the largest while the load stands."""
+    """Displacement of the loop at the largest load, m; the largest while it stands."""
     return float(run.displacement[instant])
 
 

@@ -54,7 +54,7 @@ def has_a_limit(settings: Settings) -> bool:
     applies=lambda settings: cycles_in(settings) > 1,
 )
 def cycle_energy_ratio(run: FinishedRun) -> float:
-    """Energy of the last cycle over that of the second; NaN where the second is zero."""
+    """Energy of the last cycle over that of the second; NaN if the second is zero."""
     energy = run.cycles.energy
     if energy[1] > NO_ENERGY * np.abs(run.dissipated).sum():
         return float(energy[-1] / energy[1])
@@ -92,7 +92,7 @@ def sliding_share(run: FinishedRun) -> float:
 
 
 def _free_lengths(run: FinishedRun) -> Array:
-    """Tributary lengths of the points of surfaces, (n_points,), m; 0 of clamped ones."""
+    """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
     held = run.problem.is_held
     lengths = []
     for law in run.problem.surfaces.values():

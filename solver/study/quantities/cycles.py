@@ -23,7 +23,7 @@ from solver.laws import Contact
 from solver.settings.scene import Settings
 
 SMALLEST_SWING = 0.05
-"""Share of its whole range by which a path must turn back to begin another half cycle."""
+"""Share of its range by which a path must turn back to begin another half cycle."""
 NO_SWING = 1e-9
 """Share of its size by which a constant path may swing from rounding."""
 LAST = 3
@@ -208,7 +208,10 @@ def _is_repeated(settings: Settings, ends: list[int]) -> bool:
 
 
 def _summed(values: Array, ends: list[int]) -> Array:
-    """Sums over the instants of each cycle, (..., n_instants) to (..., n_cycles)."""
+    """Sums over the instants of each cycle, shape (..., n_cycles).
+
+    The values have shape (..., n_instants).
+    """
     parts = [values[..., a + 1 : b + 1].sum(axis=-1) for a, b in pairwise(ends)]
     if parts:
         return np.stack(parts, axis=-1)

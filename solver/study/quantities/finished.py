@@ -91,7 +91,7 @@ class FinishedRun:
 
     @property
     def lost_from(self) -> int | None:
-        """First instant that is known to have no solution; None without such an instant.
+        """First instant that is known to have no solution; None without any.
 
         A run with such an instant has no quantities: all instants are iterated
         together, and those without a solution keep the others from converging. A
@@ -165,7 +165,7 @@ class FinishedRun:
 
 
 def first_largest(values: Array) -> int:
-    """First instant at which values, (n_instants,), are largest in size, up to rounding."""
+    """First instant at which values, (n_instants,), are largest but for rounding."""
     size = np.abs(values)
     return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
 
@@ -319,7 +319,7 @@ class Known(NamedTuple):
 
 
 def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) -> Known:
-    """Find the reference without a run; `stop` is asked repeatedly whether to give up."""
+    """Find the reference without a run; `stop` is asked again and again to give up."""
     try:
         reference = reference_of(problem, stop)
     except Interrupted:

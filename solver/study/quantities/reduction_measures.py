@@ -47,7 +47,7 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
 
 
 def _friction_bounds(problem: Problem) -> Array:
-    """Friction bounds of all points, (n_points, n_instants), N; (n_points, 1) if fixed."""
+    """Friction bounds of all points, (n_points, n_instants) or (n_points, 1), N."""
     bounds = []
     for law in problem.rubbing.values():
         bounds.append(law.by_point(law.tangential.highest) * problem.scales.force)
@@ -58,7 +58,7 @@ def _friction_bounds(problem: Problem) -> Array:
 
 
 def _driving_load(settings: Settings, iterate: Iterate) -> Array:
-    """Load at the loaded side, or else the sum of the friction, shape (n_instants,), N."""
+    """Load at the loaded side, or else the sum of the friction, (n_instants,), N."""
     for act in settings.structure().described().acts:
         if act.where == LOADED:
             return act.values

@@ -105,7 +105,7 @@ class Processes(Executor):
         return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Begin no other call; if futures are to be cancelled, end the processes at once."""
+        """Begin no other call; with `cancel_futures` end the processes at once."""
         self._is_shut_down = True
         if cancel_futures:
             self._pool.stop()

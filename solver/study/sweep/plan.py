@@ -72,7 +72,7 @@ class Varied:
 
     @property
     def places(self) -> Array:
-        """Positions of the values on an axis, shape (n_values,): numbers, or 0, 1, ..."""
+        """Positions of the values on an axis, (n_values,): numbers, or 0, 1, ..."""
         if self.is_numeric:
             return np.array(self.values, dtype=float)
         return np.arange(len(self.values), dtype=float)

@@ -1,4 +1,4 @@
-"""Reports of a sweep: charts as plain data, a page, and the CSV file that it resumes."""
+"""Reports of a sweep: charts as plain data, a page, and the CSV file to resume."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from solver.study.quantities.quantity import Quantity
 from solver.study.sweep.plan import Plan, Row, Varied
 
 MOST_CURVES = 6
-"""Largest number of values of a second setting that have a curve each; more make a map."""
+"""Largest number of curves, one for each value of a second setting; more are a map."""
 DECADES = 30.0
 """Ratio of the largest to the smallest value from which a chart is logarithmic."""
 MARGIN = 0.06
@@ -167,7 +167,7 @@ def is_map(plan: Plan) -> bool:
 
 
 def grid(plan: Plan, rows: Sequence[Row], place: int) -> Array:
-    """Finite values of a reading of converged runs, of the plan's shape; NaN of others."""
+    """Finite values of a reading of converged runs, of the plan's shape, else NaN."""
     good = np.full(plan.size, np.nan)
     for row in rows:
         if row.holds and math.isfinite(row.values[place]):
@@ -176,7 +176,7 @@ def grid(plan: Plan, rows: Sequence[Row], place: int) -> Array:
 
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
-    """Ends of an axis: all values, (n,), with a margin, from zero where that is near."""
+    """Ends of an axis: all values, (n,), with a margin, from zero if that is near."""
     known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
         return (0.0, 1.0)
@@ -275,7 +275,7 @@ def counts(plan: Plan, rows: Sequence[Row]) -> str:
 
 
 def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
-    """Power of a logarithmic setting with which each reading grows, a line per curve."""
+    """Power of a logarithmic setting with which readings grow, a line per curve."""
     along, *others = plan.axes
     if not along.logarithmic or any(axis.is_numeric for axis in others):
         return []
@@ -370,7 +370,7 @@ def lines_of(plan: Plan, rows: Sequence[Row]) -> str:
 
 
 def head(plan: Plan) -> list[str]:
-    """Lines on the columns, all values of the axes, and the fixed settings, in SI units."""
+    """Lines on the columns, the values of the axes, and the fixed settings, in SI."""
     columns = []
     for axis in plan.axes:
         values = ", ".join(map(str, axis.values))
