@@ -120,24 +120,44 @@ def error_against_time(settings: Settings, repeats: int) -> list[ErrorCurve]:
     distance = distance_to(reference, problem)
     forms = forms_of(settings)
     errors = {method: _errors(form, distance) for method, form in forms.items()}
-    times: dict[str, list[list[float]]] = {method: [] for method in forms}
-    of_incremental = []
-    for _ in range(repeats):
-        for method, form in forms.items():
-            work = partial(_append_times, times[method], form, len(errors[method]))
-            seconds_of(work)
-        increments = partial(incremental, settings)
-        of_incremental.append([seconds_of(increments, time.perf_counter)])
+    counts = {method: len(values) for method, values in errors.items()}
+    times = _times(settings, forms, counts, repeats)
     curves = []
     for method in forms:
-        steps = np.arange(1.0, len(errors[method]) + 1.0)
-        seconds = np.median(times[method], axis=0)
-        curves.append(ErrorCurve(method, steps, seconds, *errors[method].T))
+        steps = np.arange(1.0, counts[method] + 1.0)
+        curves.append(ErrorCurve(method, steps, times[method], *errors[method].T))
     steps = np.array([float(reference.steps)])
-    seconds = np.median(of_incremental, axis=0)
     exact = np.zeros(1)
-    curves.append(ErrorCurve(INCREMENTAL, steps, seconds, exact, exact))
+    curves.append(ErrorCurve(INCREMENTAL, steps, times[INCREMENTAL], exact, exact))
     return curves
+
+
+def _times(
+    settings: Settings,
+    forms: dict[str, Settings],
+    counts: dict[str, int],
+    repeats: int,
+) -> dict[str, Array]:
+    """Median times of all methods by name, shape (n,) each, s.
+
+    Parameters
+    ----------
+    settings
+        Settings of the incremental solver.
+    forms, counts
+        Settings and numbers of iterations of the forms of LATIN, by name.
+    repeats
+        Number of passes.
+    """
+    passes: dict[str, list[list[float]]] = {method: [] for method in forms}
+    passes[INCREMENTAL] = []
+    for _ in range(repeats):
+        for method, form in forms.items():
+            # The times come from the run; `seconds_of` only keeps garbage uncollected.
+            seconds_of(partial(_append_times, passes[method], form, counts[method]))
+        work = partial(incremental, settings)
+        passes[INCREMENTAL].append([seconds_of(work, time.perf_counter)])
+    return {method: np.median(each, axis=0) for method, each in passes.items()}
 
 
 def forms_of(settings: Settings) -> dict[str, Settings]:

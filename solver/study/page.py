@@ -302,7 +302,9 @@ def write_csv(
 
 def aligned(rows: Sequence[Sequence[str]]) -> str:
     """Table in columns for a console."""
-    widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
+    widths = []
+    for column in zip(*rows, strict=True):
+        widths.append(max(len(cell) for cell in column))
     lines = []
     for row in rows:
         cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]

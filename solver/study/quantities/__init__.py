@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import solver.study.quantities.contact_measures as contacts
 import solver.study.quantities.cycle_measures as cyclic
+import solver.study.quantities.holding_measures as holding
 import solver.study.quantities.reduction_measures as reductions
 import solver.study.quantities.run_measures as runs
 from solver.settings.definitions import SettingError
@@ -52,8 +53,8 @@ QUANTITIES = by_name(
     contacts.peak_stress_x,
     contacts.peak_stress_y,
     contacts.spring_force,
-    contacts.holding_friction,
-    contacts.holding_force,
+    holding.holding_friction,
+    holding.holding_force,
     contacts.end_displacement,
     contacts.residual_displacement,
     contacts.stiffness,
