@@ -318,10 +318,10 @@ class ComparedRuns:
                 break
             moved = np.where(np.arange(len(best)) == setting, at, moved)
             misfit = np.sum(self.differences(moved) ** 2)
-            least = np.sum(self.differences(best) ** 2)
-            if misfit < (1.0 - SAME) * least:
+            lowest = np.sum(self.differences(best) ** 2)
+            if misfit < (1.0 - SAME) * lowest:
                 best = moved
-            elif not misfit <= (1.0 + SAME) * least:
+            elif not misfit <= (1.0 + SAME) * lowest:
                 break
         return best
 

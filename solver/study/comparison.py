@@ -95,12 +95,12 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
     if quantity == DISPLACEMENT and kind != "rod":
         remedy = "give the friction force here"
         raise table.refuse(f"displacements are compared along a single rod: {remedy}")
-    place, time, column = columns
+    position, time, column = columns
     unit = "m"
     if quantity == FRICTION:
         unit = PER[kind]
         _refuse_nodal_forces(table, column, unit)
-    used = {"x": (place, "m"), "t": (time, "s"), quantity: (column, unit)}
+    used = {"x": (position, "m"), "t": (time, "s"), quantity: (column, unit)}
     reading = in_si(table, used)
     x, t, values = reading.numbers
     _check_places(x, t, reading.lines, settings, table.refuse)

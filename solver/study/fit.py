@@ -230,7 +230,7 @@ def _near_start(valley: Valley, blind: Array) -> Array:
     pull = max(float(np.linalg.norm(valley.jacobian, 2)), 1.0) * blind
     for _ in range(PULLS):
         z = runs.solve(valley.z, pull)
-        if not len(blind) or runs.misfit(z) - valley.least <= valley.doubt / 4.0:
+        if not len(blind) or runs.misfit(z) - valley.minimum <= valley.doubt / 4.0:
             return z
         pull = WEAKER * pull
     return valley.z

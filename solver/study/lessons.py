@@ -227,9 +227,9 @@ def _check(lesson: Lesson) -> None:
 def _check_curve(lesson: Lesson) -> None:
     """Refuse a curve to draw that has too few points."""
     points = []
-    for place, value in lesson.curve:
-        if place > 0.0 and math.isfinite(value):
-            points.append(place)
+    for position, value in lesson.curve:
+        if position > 0.0 and math.isfinite(value):
+            points.append(position)
     is_drawn = not lesson.draw or len(points) >= FEWEST_POINTS
     can = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
     remedy = "write more checkpoints, or leave it out"
@@ -238,15 +238,15 @@ def _check_curve(lesson: Lesson) -> None:
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
     """Paragraphs between empty lines; unknown placeholders are refused."""
-    for place in re.findall(r"\{(.*?)\}", text):
-        kind, _, name = place.partition(":")
+    for placeholder in re.findall(r"\{(.*?)\}", text):
+        kind, _, name = placeholder.partition(":")
         if kind == "value":
             reading(name)
         elif kind != "control" or name not in controls:
             known = ", ".join(f"{{control:{control}}}" for control in controls)
             can = f"{known}, {{value:QUANTITY}}"
             remedy = "correct what stands in braces"
-            raise SettingError("placeholder", place, can, remedy)
+            raise SettingError("placeholder", placeholder, can, remedy)
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
 
 

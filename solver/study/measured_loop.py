@@ -80,12 +80,12 @@ class MeasuredLoop:
         measured = (self.displacement, self.force)
         of_run = (displacement, force)
         doubts = []
-        for place, name in enumerate(self.bare):
+        for column, name in enumerate(self.bare):
             if not name:
                 continue
-            size = float(np.ptp(measured[place]))
-            expected = float(np.ptp(of_run[place]))
-            unit = self.units[place]
+            size = float(np.ptp(measured[column]))
+            expected = float(np.ptp(of_run[column]))
+            unit = self.units[column]
             doubts.append(unit_doubt(name, unit, size, expected, "the run"))
         return [doubt for doubt in doubts if doubt]
 

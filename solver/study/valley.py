@@ -175,7 +175,7 @@ class Valley:
     ----------
     z
         Centre from which the valley is explored, shape (p,).
-    least
+    minimum
         Misfit of the centre.
     noise, doubt
         Rises of the misfit that are within two standard errors: of the noise, and of
@@ -192,12 +192,12 @@ class Valley:
     def __init__(self, runs: ComparedRuns, z: Array, *, seeks: bool) -> None:
         self.runs = runs
         self.z = z
-        self.least = runs.misfit(z)
+        self.minimum = runs.misfit(z)
         self._seeks = seeks
         self._bounds = runs.bounds
         rows = len(runs.first.differences)
         free = rows - len(z)
-        self.deviation = max(math.sqrt(self.least / free), SILENT)
+        self.deviation = max(math.sqrt(self.minimum / free), SILENT)
         quantile = float(f_distribution.ppf(TWO, 1, free))
         change = runs.of_mesh(z)
         self.mesh = change / math.sqrt(rows)
@@ -212,7 +212,7 @@ class Valley:
         """
         moved = copy(self)
         moved.z = z
-        moved.least = self.runs.misfit(z)
+        moved.minimum = self.runs.misfit(z)
         moved._seeks = False
         box = z + distance * np.array([[-1.0], [1.0]])
         moved._bounds = np.clip(box, *self._bounds)
@@ -257,7 +257,7 @@ class Valley:
         if distances[farthest] < limit:
             return None
         places = [self.z, self._inside[farthest]]
-        rises = [self.runs.misfit(place) - self.least for place in places]
+        rises = [self.runs.misfit(place) - self.minimum for place in places]
         return Side(np.array([0.0, limit]), np.array(rises), np.array(places), False)
 
     def _side(self, along: Array, limit: float) -> Side:
@@ -271,7 +271,7 @@ class Valley:
         # Settings move so far by a distance of 1, if the valley is straight.
         course = self._covariance @ along / variance
         distances = [0.0]
-        rises = [self.runs.misfit(self.z) - self.least]
+        rises = [self.runs.misfit(self.z) - self.minimum]
         places = [self.z]
         step = min(2.0 * math.sqrt(variance), limit)
         while distances[-1] < limit and rises[-1] <= self.doubt and len(rises) < PLACES:
@@ -300,7 +300,7 @@ class Valley:
         LowerPlace
             If the misfit is lower than the least one, and a lower place is sought.
         """
-        rise = self.runs.misfit(place) - self.least
+        rise = self.runs.misfit(place) - self.minimum
         if rise <= self.doubt:
             self._inside.append(place)
         if self._seeks and rise < -LOWER * self.noise:
@@ -345,7 +345,7 @@ class Valley:
             too: a floor that bends leads astray.
         """
         found = self._lowest(along, distance, ahead)
-        is_within = self.runs.misfit(found) - self.least <= self.noise
+        is_within = self.runs.misfit(found) - self.minimum <= self.noise
         if is_within or len(self.z) < 3:
             return found
         other = self._lowest(along, distance, last)

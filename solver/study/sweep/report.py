@@ -63,7 +63,7 @@ def plainly(value: float, unit: str) -> str:
 def chart_of(
     plan: Plan,
     rows: Sequence[Row],
-    place: int = 0,
+    index: int = 0,
     text: Text = plainly,
     *,
     logarithmic: bool | None = None,
@@ -74,7 +74,7 @@ def chart_of(
     ----------
     plan, rows
         The plan, and the rows of the runs so far.
-    place
+    index
         Index of the reading.
     text
         Text of a value with its unit.
@@ -82,14 +82,14 @@ def chart_of(
         Whether the values stand on a logarithmic scale; by default if they go over
         several decades.
     """
-    runs = _runs(plan, rows, place, text)
+    runs = _runs(plan, rows, index, text)
     if is_map(plan):
-        return _map(plan, rows, place, runs, logarithmic)
-    return _panel(plan, place, text, runs, logarithmic)
+        return _map(plan, rows, index, runs, logarithmic)
+    return _panel(plan, index, text, runs, logarithmic)
 
 
 def _scale(
-    plan: Plan, place: int, values: Array, logarithmic: bool | None
+    plan: Plan, index: int, values: Array, logarithmic: bool | None
 ) -> PanelAxis:
     """Axis of a reading with these values, of any shape, NaN where there is none."""
     known = values[np.isfinite(values)]
@@ -98,8 +98,8 @@ def _scale(
     else:
         # Nothing that is zero or less stands on a logarithmic axis.
         wide = logarithmic and bool((known > 0.0).any())
-    _, unit = _measure(plan, place)
-    return PanelAxis(plan.readings[place].title, unit, wide)
+    _, unit = _measure(plan, index)
+    return PanelAxis(plan.readings[index].title, unit, wide)
 
 
 def _axis(varied: Varied) -> PanelAxis:
@@ -108,17 +108,17 @@ def _axis(varied: Varied) -> PanelAxis:
 
 
 def _map(
-    plan: Plan, rows: Sequence[Row], place: int, runs: Runs, logarithmic: bool | None
+    plan: Plan, rows: Sequence[Row], index: int, runs: Runs, logarithmic: bool | None
 ) -> Map:
     """Map of a reading over two settings."""
     across, up = plan.axes
-    factor, _ = _measure(plan, place)
-    z = factor * grid(plan, rows, place).T
-    scale = _scale(plan, place, z, logarithmic)
+    factor, _ = _measure(plan, index)
+    z = factor * grid(plan, rows, index).T
+    scale = _scale(plan, index, z, logarithmic)
     if scale.logarithmic:
         z = np.where(z > 0.0, z, np.nan)
     return Map(
-        title=plan.readings[place].title,
+        title=plan.readings[index].title,
         x=_axis(across),
         y=_axis(up),
         x_values=across.places,
@@ -130,7 +130,7 @@ def _map(
 
 
 def _panel(
-    plan: Plan, place: int, text: Text, runs: Runs, logarithmic: bool | None
+    plan: Plan, index: int, text: Text, runs: Runs, logarithmic: bool | None
 ) -> Panel:
     """Curves of a reading over the first setting, one for each value of the second."""
     across, *up = plan.axes
@@ -148,9 +148,9 @@ def _panel(
         y = np.where(runs.holds[members], runs.y[members], np.nan)
         curves.append(PanelCurve(label, runs.x[members], y, hue))
     x_axis = _axis(across)
-    y_axis = _scale(plan, place, runs.y, logarithmic)
+    y_axis = _scale(plan, index, runs.y, logarithmic)
     return Panel(
-        plan.readings[place].title,
+        plan.readings[index].title,
         replace(x_axis, limits=_limits(across.places, x_axis)),
         replace(y_axis, limits=_limits(runs.y, y_axis)),
         tuple(curves),
@@ -166,12 +166,12 @@ def is_map(plan: Plan) -> bool:
     return up[0].is_numeric and len(up[0].values) > MOST_CURVES
 
 
-def grid(plan: Plan, rows: Sequence[Row], place: int) -> Array:
+def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
     """Finite values of a reading of converged runs, of the plan's shape, else NaN."""
     good = np.full(plan.size, np.nan)
     for row in rows:
-        if row.holds and math.isfinite(row.values[place]):
-            good[row.number] = row.values[place]
+        if row.holds and math.isfinite(row.values[index]):
+            good[row.number] = row.values[index]
     return good.reshape(plan.shape)
 
 
@@ -193,13 +193,13 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
     return (low - margin, high + margin)
 
 
-def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
+def _runs(plan: Plan, rows: Sequence[Row], index: int, text: Text) -> Runs:
     """Points of the runs on the chart of a reading, with their messages."""
     numbers = np.array([row.number for row in rows], dtype=int)
     levels = np.unravel_index(numbers, plan.shape)
-    factor, _ = _measure(plan, place)
-    values = factor * np.array([row.values[place] for row in rows], dtype=float)
-    messages = _messages(plan, rows, place, values, text)
+    factor, _ = _measure(plan, index)
+    values = factor * np.array([row.values[index] for row in rows], dtype=float)
+    messages = _messages(plan, rows, index, values, text)
     is_finite = np.isfinite(values)
     values[~is_finite] = np.nan
     y = values
@@ -219,13 +219,13 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
 
 
 def _messages(
-    plan: Plan, rows: Sequence[Row], place: int, values: Array, text: Text
+    plan: Plan, rows: Sequence[Row], index: int, values: Array, text: Text
 ) -> list[str]:
     """Messages on runs: their settings, the value of a reading, and how they ended.
 
     The values are those of the reading, shape (n_rows,), in its unit.
     """
-    _, unit = _measure(plan, place)
+    _, unit = _measure(plan, index)
     texts = [_texts(axis, text) for axis in plan.axes]
     numbers = np.array([row.number for row in rows], dtype=int)
     points = np.transpose(np.unravel_index(numbers, plan.shape))
@@ -259,9 +259,9 @@ def _texts(axis: Varied, text: Text) -> list[str]:
     return [f"{axis.title} {value}" for value in values]
 
 
-def _measure(plan: Plan, place: int) -> tuple[float, str]:
+def _measure(plan: Plan, index: int) -> tuple[float, str]:
     """Factor and unit of a reading: shares are in per cent."""
-    quantity = plan.readings[place]
+    quantity = plan.readings[index]
     if quantity.is_share:
         return (100.0, "%")
     return (1.0, quantity.unit)
@@ -284,8 +284,8 @@ def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
         names = others[0]
         labels = [f", {names.name}={value}" for value in names.values]
     lines = []
-    for place, name in enumerate(plan.of):
-        curves = grid(plan, rows, place).T.reshape(len(labels), -1)
+    for index, name in enumerate(plan.of):
+        curves = grid(plan, rows, index).T.reshape(len(labels), -1)
         for label, curve in zip(labels, curves, strict=True):
             count = int((curve > 0.0).sum())
             if count > 1:
@@ -316,7 +316,7 @@ def _uncapitalised(title: str) -> str:
 
 def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
     """Sections of the page of a sweep, of rows in the order of their points."""
-    charts = [chart_of(plan, rows, place) for place in range(len(plan.of))]
+    charts = [chart_of(plan, rows, index) for index in range(len(plan.of))]
     report: list[Section] = [
         f"<p><b>{escape(counts(plan, rows))}</b></p>",
         PlotSection(f"Charts of {len(rows)} runs", charts),

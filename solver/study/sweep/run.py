@@ -121,10 +121,10 @@ def _from_nearest(
     if sweep not in _kept:
         _kept.clear()
     kept = _kept.setdefault(sweep, deque(maxlen=KEPT))
-    place = tuple(np.unravel_index(number, plan.shape) / np.array(plan.shape))
+    point = tuple(np.unravel_index(number, plan.shape) / np.array(plan.shape))
     before = None
     if kept:
-        _, before = min(list(kept), key=lambda other: math.dist(place, other[0]))
+        _, before = min(list(kept), key=lambda other: math.dist(point, other[0]))
     reads = {reading.reads for reading in plan.readings}
     finished = finished_run(
         plan.settings_at(number),
@@ -134,7 +134,7 @@ def _from_nearest(
         before=before,
     )
     if warm and finished.solution.status.ending is Ending.CONVERGED:
-        kept.append((place, states_of(finished.iterate)))
+        kept.append((point, states_of(finished.iterate)))
     return finished
 
 
