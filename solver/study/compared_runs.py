@@ -153,6 +153,7 @@ class ComparedRuns:
         self.in_decades = self._size == 0.0
         ends = [self._on_scale(end) for end in self._ends]
         self.bounds = np.clip(ends, -FARTHEST, FARTHEST)
+        # Differences of runs must not be those of their stop rules.
         accuracy = min(settings.accuracy, ACCURACY)
         self._settings = settings.replace(finish="at-once", accuracy=accuracy)
         self._measured = measured
@@ -200,6 +201,7 @@ class ComparedRuns:
         if status.ending is not Ending.CONVERGED:
             text = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
             raise RefusedError("the run", text, "one that converges", status.advice)
+        # The next run is near: it may start from these states.
         self._before = states_of(finished.iterate)
         beside = LoopComparison(self._measured, finished.loop, finished.problem)
         differences, _ = beside.differences(finished.displacement, finished.force)
@@ -213,6 +215,7 @@ class ComparedRuns:
         """
         key = z.tobytes()
         if key not in self._known:
+            # Places without a run are remembered, too.
             self._known[key] = np.full(len(self.first.differences), np.nan)
             with contextlib.suppress(RefusedError):
                 run = self.run(z)
@@ -245,6 +248,7 @@ class ComparedRuns:
         moves = [move for move in (step, -step) if self.holds(z + move * along)]
         if step == STEP:
             moves = moves[:1]
+        # A difference across z where there are runs on both sides, else from z.
         known = {0.0: self.differences(z)}
         for move in moves:
             tried = self.differences(z + move * along)

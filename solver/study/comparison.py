@@ -218,6 +218,7 @@ class Comparison:
         positions = problem.positions
         self._places = None
         self._sizes = np.ones((1, 1))
+        # Friction is per length of the points of one interface.
         if results.quantity == FRICTION:
             law = problem.rubbing[self.interface]
             self._places = problem.contact_places[self.interface][-1]
@@ -231,6 +232,7 @@ class Comparison:
         over_time = np.interp(t, instants, np.arange(len(instants)))
         at = np.array([along, over_time])
         counts = _covers(points, x) & _covers(instants, t)
+        # Where a support shares a force, friction at a point is arbitrary.
         if self._places is not None:
             unknown = ~determinate_forces(problem)[self._places][self._order]
             counts &= _interpolated(unknown.astype(float), at) == 0.0
@@ -275,6 +277,7 @@ def weights_of(positions: Array, times: Array) -> Array:
 
     Positions, m, and times, s, have the same shape.
     """
+    # Rows by time, and by position within an instant.
     order = np.lexsort((positions, times))
     instants, number = np.unique(times[order], return_inverse=True)
     halves = _halves(positions[order], np.diff(number) == 0)

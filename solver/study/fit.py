@@ -194,6 +194,7 @@ def _explored(runs: ComparedRuns) -> tuple[Valley, list[Profile]]:
     """Valley of the nearest run that is found, and the profiles of all settings."""
     settings = np.eye(len(runs.names))
     z = runs.solve(runs.coarse(), LOOSE * settings)
+    # The last round seeks no lower place, so that it ends.
     for rest in reversed(range(ROUNDS)):
         valley = Valley(runs, z, seeks=rest > 0)
         try:
@@ -227,6 +228,7 @@ def _near_start(valley: Valley, blind: Array) -> Array:
     The place moves along the directions `blind`, (n, p), in which the valley goes on.
     """
     runs = valley.runs
+    # The pull is as strong as the loop is, so that it decides where the loop does not.
     pull = max(float(np.linalg.norm(valley.jacobian, 2)), 1.0) * blind
     for _ in range(PULLS):
         z = runs.solve(valley.z, pull)
@@ -266,6 +268,7 @@ def _known_combinations(
     """
     if not 0 < len(blind) < (~is_known).sum():
         return []
+    # A wide box shows more; where the floor bends in it, a smaller one may not.
     for distance in (WALK, LIMIT):
         around = valley.around(z, distance)
         combinations = _combinations(around, distance, blind, is_known)
@@ -359,6 +362,7 @@ def _echelon(rows: Array) -> Array:
 
     Each row has 1 in a column in which all other rows have 0.
     """
+    # Pivoting finds the columns in which the rows differ most.
     pivots = np.sort(qr(rows, mode="r", pivoting=True)[1][: len(rows)])
     reduced = np.linalg.solve(rows[:, pivots], rows)
     tenths = np.round(reduced, 1)

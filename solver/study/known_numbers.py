@@ -109,6 +109,7 @@ def opening(answer: Answer) -> Iterator[Number]:
     assert exact is not None
     assert strand.broken is not None
     wire, node = strand.broken
+    # Both nodes of the break stand one after the other.
     before = (wire - 1) * (strand.elements + 1) + node
     displacement = answer.fields.displacement[before : before + 2, -1]
     slip = exact.slip[node:, -1]
@@ -351,6 +352,7 @@ def pushed_block(answer: Answer) -> Iterator[Number]:
     pressing = answer.support[0][:, -1]
     push = reaction(problem, "left", 0).of(fields)
     moment = reaction_moment(problem, "left").of(fields)
+    # The foot is at the origin, at the left end of the support.
     around_foot = float(moment[-1] + problem.rubbing["support"].positions @ pressing)
     held = settings.friction * load
     yield "force at the pushed side", "N/m", held, float(push[-1])

@@ -153,6 +153,7 @@ def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     reads = {claim.quantity.reads for claim in lesson.checkpoints}
     errors = "errors" in reads
     indicators = "indicators" in reads
+    # Claims often test several quantities of one run.
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
         key = dump(claim.settings)

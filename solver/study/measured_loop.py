@@ -335,6 +335,7 @@ class LoopComparison:
         count = len(directions)
         of_run = np.sign(np.diff(given[instants]))
         misfits = {}
+        # Only branches of the same directions can be laid on each other.
         for first in range(len(of_run) - count + 1):
             if np.array_equal(of_run[first : first + count], directions):
                 ends_of_run = given[instants[first : first + len(rows)]]
@@ -345,6 +346,7 @@ class LoopComparison:
             can = "rows along a path that the run goes, too"
             text = f"{self.given} of the run goes one way {counts}: {remedy}"
             raise self._refusal(can, text)
+        # Of equal fits the last is that of a steady loop.
         enough = min(misfits.values()) + ALIKE * self._given_range * len(rows)
         return max(first for first, misfit in misfits.items() if misfit <= enough)
 

@@ -119,6 +119,7 @@ def error_against_time(settings: Settings, repeats: int) -> list[ErrorCurve]:
     reference = reference_of(problem)
     distance = distance_to(reference, problem)
     forms = forms_of(settings)
+    # This pass finds the errors, and warms up.
     errors = {method: _errors(form, distance) for method, form in forms.items()}
     counts = {method: len(values) for method, values in errors.items()}
     times = _times(settings, forms, counts, repeats)
@@ -292,6 +293,7 @@ def _measured(
     except SettingError:
         return TimesAtSize(*at, message="there is no such size")
     limit = form.max_iterations
+    # An estimate decides before anything is run.
     cost = run_cost(discretise(form), method_of(form), limit, with_reference=True)
     if cost.seconds > longest:
         return TimesAtSize(*at, message=f"left out: it would take about {cost}")

@@ -145,6 +145,7 @@ def decides(settings: Settings, asked: Quantity) -> bool:
 
 def value_on(settings: Settings, asked: Quantity) -> float:
     """A quantity of the certified solution on a mesh; NaN without such a solution."""
+    # Certified runs differ by the mesh, not by their stop rules.
     certified = settings.replace(finish="at-once")
     run = finished_run(certified, errors=False, indicators=False)
     if run.solution.is_certified:

@@ -204,6 +204,7 @@ def write_page(file: Path, title: str, report: Sequence[Section]) -> None:
     plots = [part for part in report if isinstance(part, PlotSection)]
     head, drawn = _drawn(plots)
     parts = []
+    # Charts stand in the report where their sections do.
     charts = iter(drawn)
     for part in report:
         if isinstance(part, str):

@@ -253,6 +253,7 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     """The friction force's space modes 1, 3 and 5 in substructures 4 and 5."""
     fourth, fifth = runs.friction_forces[3:]
     alike = fourth.correlations(fifth.space_modes)
+    # The sign of a mode is arbitrary.
     turned = fifth.space_modes * np.sign(alike)
     inside = fourth.positions - fourth.positions[0]
     panels = []
@@ -332,6 +333,7 @@ def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
 
     The modes are normalised, with the signs of the SVD modes.
     """
+    # The sign of a mode is arbitrary.
     signs = np.sign(exact.correlations(modes))
     turned = modes * signs / np.sqrt(exact.space_weights @ modes**2)
     positions = exact.positions

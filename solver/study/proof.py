@@ -206,6 +206,7 @@ def _table(rows: Sequence[Row]) -> list[list[str]]:
     digits = {"known": 6, "ours": 6}
     lines = [list(NUMBERS)]
     case_of = itemgetter("address", "case", "mesh", "source")
+    # Rows of a case follow each other.
     for case, of_case in groupby(rows, case_of):
         address, title, mesh, source = map(escape, case)
         link = f'<a class="run" href="{escape(PAGE)}{address}"><b>{title}</b></a>'

@@ -83,6 +83,7 @@ def table(curves: Sequence[ErrorCurve]) -> list[Row]:
     for curve, is_first in zip(curves, times == times.min(axis=0), strict=True):
         rows.append(_row(curve, is_first))
     is_latin = np.array([curve.is_latin for curve in curves])
+    # The best form of LATIN at each level, whichever it is.
     ratios = times[is_latin].min(axis=0) / times[~is_latin].min(axis=0)
     texts = []
     for ratio in ratios:

@@ -36,6 +36,7 @@ def use_of(table: Table, axes: Axes) -> Use:
     has_friction = any(FRICTION in kinds and "force" not in kinds for kinds in named)
     has_displacement = any(DISPLACEMENT in kinds for kinds in named)
     is_loop = False
+    # The same reading decides as later reads the loop.
     with suppress(RefusedError):
         columns_of(table, axes)
         is_loop = True

@@ -195,6 +195,7 @@ class Valley:
         self.minimum = runs.misfit(z)
         self._seeks = seeks
         self._bounds = runs.bounds
+        # The noise is what the fit leaves of the differences.
         rows = len(runs.first.differences)
         free = rows - len(z)
         self.deviation = max(math.sqrt(self.minimum / free), SILENT)
@@ -235,6 +236,7 @@ class Valley:
 
     def walk(self) -> None:
         """Search for a lower place along the weakest direction, both ways."""
+        # A single setting has its profile, and no other direction.
         if len(self.z) > 1:
             weakest = np.linalg.svd(self.jacobian)[2][-1]
             for along in (-weakest, weakest):
@@ -344,6 +346,7 @@ class Valley:
             noise and two or more settings are left free, the search starts from there,
             too: a floor that bends leads astray.
         """
+        # The course so far is the better guess, and one search is enough within noise.
         found = self._lowest(along, distance, ahead)
         is_within = self.runs.misfit(found) - self.minimum <= self.noise
         if is_within or len(self.z) < 3:

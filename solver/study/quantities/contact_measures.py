@@ -325,6 +325,7 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
 
     Points that are held and never move are left out. NaN if nothing is in contact.
     """
+    # Clamped points would count as sticking.
     length, statuses = _touching(run)
     still = _stand_still(run)
     length = length * ~np.concatenate([still[name] for name in _lengths(run)])

@@ -87,6 +87,7 @@ def sliding_share(run: FinishedRun) -> float:
     status = status[:, instants_of(run.settings, cycles_in(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
+    # At an instant without contact nothing slips.
     shares = slipping[touching > 0.0] / touching[touching > 0.0]
     return float(shares.max(initial=0.0))
 
@@ -226,6 +227,7 @@ def recovery_length(run: FinishedRun, instant: int) -> float:
     wire, position = described.broken
     axial = AxialForce(run.problem, slice(instant, instant + 1))
     forces = axial(run.iterate.displacement[:, instant : instant + 1])
+    # The tension far from the break is that of the loop.
     share = forces[axial.wires == wire, 0] / run.force[instant]
     size = described.length / len(share)
     node = round(position / size)

@@ -54,6 +54,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
     displacement = iterate.local_displacement
     force = iterate.boundary_local_force
     for law in iterate.problem.surfaces.values():
+        # Slip is the motion of the slider, without the elastic part.
         slider = law.tangential.slider(displacement, force)
         slip = np.diff(slider, axis=1, prepend=0.0)
         slip *= law.slip_ratio * scales.displacement
@@ -111,6 +112,7 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     slip = np.concatenate(slips)
     work = np.concatenate(works)
     status = iterate.status[iterate.problem.on_surfaces]
+    # An open point moves without friction.
     rubbed = np.where(np.abs(status) == 1, np.abs(slip), 0.0)
     if ends:
         first = ends[0]
@@ -169,6 +171,7 @@ def turning_points(path: Array) -> list[int]:
     extreme = 0
     direction = 0.0
     for instant, value in enumerate(path):
+        # The first direction counts once the path has left its start.
         if direction == 0.0:
             extreme = instant
             if abs(value - path[0]) > swing:
@@ -179,6 +182,7 @@ def turning_points(path: Array) -> list[int]:
             turns.append(extreme)
             extreme = instant
             direction = -direction
+    # A path that ends on a last extreme ends with a whole cycle.
     if len(turns) > 1 and direction * (path[turns[-2]] - path[extreme]) <= swing:
         turns.append(extreme)
     return turns

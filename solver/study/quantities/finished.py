@@ -158,6 +158,7 @@ class FinishedRun:
             components = inside.stress(vectors)
             stress = von_mises(components, values["poisson"], values["plane"])
             element = first_largest(stress)
+            # Rounding must not move the largest stress to a later instant.
             if stress[element] > (1.0 + EQUAL) * largest:
                 largest = float(stress[element])
                 centre = inside.nodes[inside.elements[element]].mean(axis=0)
@@ -179,6 +180,7 @@ def largest_load(run: FinishedRun) -> int:
     force = run.force
     largest = force[first_largest(force)]
     is_held = np.abs(force - largest) <= EQUAL * np.abs(largest)
+    # Of the instants at which the load is held, the displacement decides.
     held = np.flatnonzero(is_held)
     return int(held[first_largest(run.displacement[held])])
 
@@ -275,6 +277,7 @@ def finished_run(
         States (stick, slip, open) of a run of similar settings, which the run starts
         from if the solution of these settings is found from there.
     """
+    # The time of a run includes its discretisation.
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
@@ -367,6 +370,7 @@ def neighbour(
     its bases are part of its result.
     """
     began = time.perf_counter()
+    # States of another mesh, or of other instants, are no start.
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
     if settings.finish != "at-once" or settings.linear_stage == "pgd" or not fits:
         return None

@@ -112,6 +112,7 @@ def _hold(run: FinishedRun, name: str, determinate: Flags) -> _Hold:
     contact = run.iterate.contact(name)
     pressing = _pressing_by_friction(run, name)
     status = contact.status
+    # Points that carry no friction cannot keep the others from sliding.
     is_free = (status == OPEN) | ~determinate | (pressing <= 0.0)
     forward = ((status == 1) | is_free).all(axis=0)
     backward = ((status == -1) | is_free).all(axis=0)
@@ -173,6 +174,7 @@ def holding_force(run: FinishedRun) -> float:
         return 0.0
     holds = _holds(run)
     instants = run.problem.instants
+    # Where an interface slides, its friction is the largest it can hold.
     forces = [hold.sliding(friction, instants) for hold in holds if hold.slides.any()]
     if not forces:
         enough = (1.0 - EQUAL) * _largest_needed(holds)

@@ -162,6 +162,7 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
         For a text that names none, or a cluster that cannot be reached.
     """
     kind, colon, rest = on.partition(":")
+    # A colon without a number gives 0, which is refused below.
     if rest.isdecimal():
         count = int(rest)
     elif colon:

@@ -206,6 +206,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
     axes = [axis_of(settings, text) for text in vary]
     if len({axis.name for axis in axes}) < len(axes):
         raise SettingError("--vary", given, "two settings", "vary each of them once")
+    # Numbers stand across, names are curves.
     axes.sort(key=lambda axis: not axis.is_numeric)
     names = dict.fromkeys(reading(name).name for name in of)
     plan = Plan(settings, tuple(axes), tuple(names))

@@ -205,6 +205,7 @@ def _runs(plan: Plan, rows: Sequence[Row], index: int, text: Text) -> Runs:
     y = values
     if is_map(plan):
         y = plan.axes[1].places[levels[1]]
+    # Each value of the second setting has a hue, from 1 on.
     hues = np.ones_like(numbers)
     if len(plan.axes) > 1:
         hues = levels[1] + 1
@@ -406,6 +407,7 @@ def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
     if not text.startswith(empty):
         folder = "a folder of the same sweep, or a new one"
         raise SettingError("--out", str(file.parent), folder, "name another")
+    # A line without an end was cut off as the sweep was ended.
     whole = text[len(empty) : text.rfind("\n") + 1]
     rows = [_row_of(plan, each) for each in csv.reader(io.StringIO(whole))]
     return {row.number: row for row in rows}

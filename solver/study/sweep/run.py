@@ -118,6 +118,7 @@ def _from_nearest(
     plan: Plan, sweep: str, number: int, warm: bool, end: float
 ) -> FinishedRun:
     """Run a point, from the nearest run of this process in a sweep; keep its states."""
+    # States of an earlier sweep are no start for this one.
     if sweep not in _kept:
         _kept.clear()
     kept = _kept.setdefault(sweep, deque(maxlen=KEPT))
@@ -188,6 +189,7 @@ def sweep(
     under_way: dict[Future[Row], int] = {}
     try:
         while not cancelled():
+            # Calls are submitted as others end, so that a sweep can end soon.
             for number in islice(path, AHEAD - len(under_way)):
                 under_way[executor.submit(call, number)] = number
             if not under_way:
