@@ -96,8 +96,11 @@ def table(curves: Sequence[ErrorCurve]) -> list[Row]:
 
 def _times_to_levels(curve: ErrorCurve) -> list[float]:
     """Time to each level, s; infinite where a method does not reach it."""
-    reached = [curve.reached(level) for level in LEVELS.values()]
-    return [math.inf if point is None else point[0] for point in reached]
+    times = []
+    for level in LEVELS.values():
+        seconds, _ = curve.reached(level) or (math.inf, 0.0)
+        times.append(seconds)
+    return times
 
 
 def _row(curve: ErrorCurve, is_first: Flags) -> Row:

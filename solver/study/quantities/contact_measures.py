@@ -162,8 +162,11 @@ def holding_sides(settings: Settings) -> Collection[str]:
     structure = settings.structure()
     if not isinstance(structure, Stack):
         return []
-    sides = structure.sides.items()
-    return [side for side, given in sides if any(each.prescribed for each in given)]
+    held = []
+    for side, components in structure.sides.items():
+        if any(component.prescribed for component in components):
+            held.append(side)
+    return held
 
 
 left_force = _force_at("left")
@@ -214,10 +217,10 @@ def peak_pressure(run: FinishedRun) -> float:
     The pressure is the force of a point over its tributary length, one metre thick. A
     spring has a force and no pressure.
     """
-    peaks = [
-        float((_pressing(run, name) / lengths[:, None]).max())
-        for name, lengths in _lengths(run).items()
-    ]
+    peaks = []
+    for name, lengths in _lengths(run).items():
+        pressure = _pressing(run, name) / lengths[:, None]
+        peaks.append(float(pressure.max()))
     return max(peaks, default=math.nan)
 
 
