@@ -1,4 +1,4 @@
-"""Runs beside a measured loop, over the settings that are fitted to it, on their scales z."""
+"""Runs beside a measured loop, over the fitted settings on their scales z."""
 
 from __future__ import annotations
 
@@ -22,33 +22,36 @@ from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
 from solver.study.quantities.finished import FinishedRun, finished_run
 
 NOT_FITTED = "Method", "Stop", "Decomposition"
-"""Groups of settings that do not change the answer."""
+"""Groups of settings that do not change the solution."""
 FARTHEST = math.log(1e6)
-"""How far from its start, in z, a setting may go."""
+"""Largest distance in z of a setting from its start."""
 COARSE = math.log(3.0)
+"""Step in z by which each setting is first tried alone."""
 FAR = math.log(1e3)
-"""Steps from the start by which each setting is tried alone, and how far they go."""
+"""Largest distance in z of these steps from the start."""
 SAME = 1e-6
-"""Share of the misfit up to which two are the same."""
+"""Relative difference up to which two misfits count as equal."""
 ACCURACY = 1e-4
-"""Of runs that are not certified."""
+"""Accuracy of runs that are not certified."""
 FINE = 1e-7
+"""Tolerance of the least squares in z and in the misfit."""
 MOST_STEPS = 40
-"""Tolerance, and steps, of each."""
+"""Largest number of evaluations of the least squares."""
 ROUGH = 1e-3
+"""Tolerance of the misfit where only the misfit is asked for."""
 FEW_STEPS = 10
-"""Tolerance of the misfit, and steps, where only the misfit is asked for."""
+"""Largest number of evaluations where only the misfit is asked for."""
 STEP = 1e-4
-"""Of differences, in z, of the method."""
+"""Step in z of the finite differences of the method."""
 
 
 def fittable(settings: Settings) -> list[str]:
-    """Settings that a loop may be asked for: numbers that change the answer."""
+    """Names of the settings that may be fitted: numbers that change the solution."""
     return [name for name in settings.definitions() if not _why_not(settings, name)]
 
 
 def _why_not(settings: Settings, name: str) -> str:
-    """Why a setting cannot be fitted; empty where it can."""
+    """Reason why a setting cannot be fitted; empty where it can."""
     definition = settings.definitions().get(name)
     if definition is None:
         return "there is no such setting"
@@ -58,16 +61,16 @@ def _why_not(settings: Settings, name: str) -> str:
         return "it counts, and has no values in between"
     if not settings.applies(name):
         return "it does nothing with the other settings as they are"
-    is_answered = about(definition).group in NOT_FITTED or name == "duration"
-    if is_answered:
+    if about(definition).group in NOT_FITTED or name == "duration":
         return "it does not change what a run finds"
     return ""
 
 
 def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]:
-    """Start and size of the scale on which a setting is fitted, and its bounds; size 0 of decades.
+    """Start and size of the scale on which a setting is fitted, and its bounds, in SI.
 
-    What is no number, or does nothing to the answer, is refused.
+    The size is 0 of a logarithmic scale. A setting that is no number, or does not
+    change the solution, is refused.
     """
     if reason := _why_not(settings, name):
         can = ", ".join(fittable(settings))
@@ -85,9 +88,19 @@ def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class ComparedRun:
-    """A run beside a measured loop, with the values of the settings that are fitted, (p,), in SI.
+    """A run beside a measured loop.
 
-    Differences are of what it finds to every row, as shares of the measured range.
+    Attributes
+    ----------
+    values
+        Values of the fitted settings, shape (p,), in SI.
+    run
+        The finished run.
+    beside
+        Comparison of the run with the measured loop.
+    differences
+        Quantity that the run finds less the measured one, for every row that is
+        compared, shape (n_rows,), as shares of the measured range.
     """
 
     values: Array
@@ -102,9 +115,29 @@ class ComparedRun:
 
 
 class ComparedRuns:
-    """Runs over z, each beside the measured loop and from the statuses of the one before.
+    """Runs over z beside a measured loop, each from the states of the run before.
 
-    `watch` is called after each with how many there were, and the nearest one.
+    Parameters
+    ----------
+    settings
+        Settings of the first run, at z = 0.
+    measured
+        The measured loop.
+    names
+        Names of the p settings that are fitted.
+    watch
+        Called after each run with the number of runs so far, and the nearest one.
+
+    Attributes
+    ----------
+    in_decades
+        Whether the scale of a setting is logarithmic, shape (p,).
+    bounds
+        Smallest and largest z of the settings, shape (2, p).
+    first, nearest
+        First run, and the nearest one so far.
+    count
+        Number of runs so far.
     """
 
     def __init__(
@@ -118,16 +151,9 @@ class ComparedRuns:
         scales = np.array([scale_of(settings, name) for name in names])
         self._start, self._size, *self._ends = scales.T
         self.in_decades = self._size == 0.0
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ends = [
-                np.where(
-                    self.in_decades,
-                    np.log(end / self._start),
-                    (end - self._start) / self._size,
-                )
-                for end in self._ends
-            ]
+        ends = [self._on_scale(end) for end in self._ends]
         self.bounds = np.clip(ends, -FARTHEST, FARTHEST)
+        # Differences of runs must not be those of their stop rules.
         accuracy = min(settings.accuracy, ACCURACY)
         self._settings = settings.replace(finish="at-once", accuracy=accuracy)
         self._measured = measured
@@ -137,24 +163,34 @@ class ComparedRuns:
         self.count = 0
         self.first = self.nearest = self.run(np.zeros(len(names)))
 
+    def _on_scale(self, values: Array) -> Array:
+        """The z of values of the settings in SI, shape (p,)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            in_logarithm = np.log(values / self._start)
+            in_size = (values - self._start) / self._size
+        return np.asarray(np.where(self.in_decades, in_logarithm, in_size))
+
     def values(self, z: Array) -> Array:
-        """Values of the settings, shape (p,), in SI."""
+        """Values of the settings at a place z, shape (p,), in SI."""
         with np.errstate(over="ignore"):
-            values = np.where(
-                self.in_decades, self._start * np.exp(z), self._start + self._size * z
-            )
+            in_logarithm = self._start * np.exp(z)
+            in_size = self._start + self._size * z
+        values = np.where(self.in_decades, in_logarithm, in_size)
         return np.asarray(np.clip(values, *self._ends))
 
     def changes(self, z: Array) -> dict[str, float]:
-        """Values of the settings by name, with as many digits as anybody writes."""
-        values = self.values(z)
-        return {
-            name: float(f"{at:.12g}")
-            for name, at in zip(self.names, values, strict=True)
-        }
+        """Values of the settings at z, (p,), by name, in SI, rounded to 12 digits."""
+        values = [float(f"{value:.12g}") for value in self.values(z)]
+        return dict(zip(self.names, values, strict=True))
 
     def run(self, z: Array) -> ComparedRun:
-        """Run at a place; `RefusedError` where settings do not fit or it does not converge."""
+        """Run at a place z, shape (p,).
+
+        Raises
+        ------
+        RefusedError
+            Where the settings do not fit together, or the run does not converge.
+        """
         changes = self.changes(z)
         settings = self._settings.replace(**changes)
         finished = finished_run(
@@ -163,19 +199,23 @@ class ComparedRuns:
         self.count += 1
         status = finished.solution.status
         if status.ending is not Ending.CONVERGED:
-            values = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
-            raise RefusedError("the run", values, "one that converges", status.advice)
+            text = ", ".join(f"{name}={value:.6g}" for name, value in changes.items())
+            raise RefusedError("the run", text, "one that converges", status.advice)
+        # The next run is near: it may start from these states.
         self._before = states_of(finished.iterate)
         beside = LoopComparison(self._measured, finished.loop, finished.problem)
         differences, _ = beside.differences(finished.displacement, finished.force)
-        return ComparedRun(
-            np.array(list(changes.values())), finished, beside, differences
-        )
+        values = np.array(list(changes.values()))
+        return ComparedRun(values, finished, beside, differences)
 
     def differences(self, z: Array) -> Array:
-        """Of a run, shape (n_rows,); NaN where there is none, so that no step goes there."""
+        """Differences of the run at z, (p,): shape (n_rows,), shares of the range.
+
+        NaN where there is no run, so that no step goes there.
+        """
         key = z.tobytes()
         if key not in self._known:
+            # Places without a run are remembered, too.
             self._known[key] = np.full(len(self.first.differences), np.nan)
             with contextlib.suppress(RefusedError):
                 run = self.run(z)
@@ -185,44 +225,55 @@ class ComparedRuns:
         return self._known[key]
 
     def jacobian(
-        self, z: Array, step: float = STEP, ways: Array | None = None
+        self, z: Array, step: float = STEP, directions: Array | None = None
     ) -> Array:
-        """Derivatives of the differences along directions of z, by steps both ways in bounds.
+        """Derivatives of the differences along directions, shape (n_rows, q).
 
-        Directions have shape (q, p), those of the settings by themselves if there are
-        none; the derivatives (n_rows, q). The smallest step is taken one way only.
+        Parameters
+        ----------
+        z
+            Place, shape (p,).
+        step
+            Step in z. Steps go both ways within bounds; the smallest one goes one way.
+        directions
+            Directions in z, shape (q, p); by default those of the settings.
         """
-        if ways is None:
-            ways = np.eye(len(z))
-        columns = []
-        for way in ways:
-            moves = [move for move in (step, -step) if self.holds(z + move * way)]
-            if step == STEP:
-                moves = moves[:1]
-            known = {0.0: self.differences(z)}
-            for move in moves:
-                tried = self.differences(z + move * way)
-                if np.isfinite(tried).all():
-                    known[move] = tried
-            first = min(known)
-            last = max(known)
-            columns.append((known[last] - known[first]) / ((last - first) or 1.0))
-        return np.array(columns).reshape(len(ways), -1).T
+        if directions is None:
+            directions = np.eye(len(z))
+        columns = [self._derivative(z, step, along) for along in directions]
+        return np.array(columns).reshape(len(directions), -1).T
+
+    def _derivative(self, z: Array, step: float, along: Array) -> Array:
+        """Derivative of differences, (n_rows,), at z, (p,), along a direction, (p,)."""
+        moves = [move for move in (step, -step) if self.holds(z + move * along)]
+        if step == STEP:
+            moves = moves[:1]
+        # A difference across z where there are runs on both sides, else from z.
+        known = {0.0: self.differences(z)}
+        for move in moves:
+            tried = self.differences(z + move * along)
+            if np.isfinite(tried).all():
+                known[move] = tried
+        first = min(known)
+        last = max(known)
+        return (known[last] - known[first]) / ((last - first) or 1.0)
 
     def holds(self, z: Array) -> bool:
-        """Whether a place lies within the bounds of all settings."""
+        """Check whether a place, (p,), lies within the bounds of all settings."""
         low, high = self.bounds
         return bool(((low <= z) & (z <= high)).all())
 
     def misfit(self, z: Array) -> float:
-        """Sum of the squared differences at a place; infinite where there is no run."""
+        """Sum of the squared differences at z, (p,); infinite where there is no run."""
         found = float(np.sum(self.differences(z) ** 2))
-        return found if math.isfinite(found) else math.inf
+        if math.isfinite(found):
+            return found
+        return math.inf
 
     def of_mesh(self, z: Array) -> float:
-        """Root of the sum of the squared changes of the differences with elements of half the size.
+        """Norm of the change of differences at z, (p,), on elements of half the size.
 
-        0 where no such run is to be had.
+        0 where no such run converges.
         """
         settings = self._settings.replace(**self.changes(z))
         with contextlib.suppress(RefusedError):
@@ -238,31 +289,56 @@ class ComparedRuns:
         return 0.0
 
     def coarse(self) -> Array:
-        """Place to begin at: by large steps in one setting after the other, while they help.
-
-        They go on where nothing changes, as where a start lets nothing slip.
-        """
+        """First place, shape (p,): by large steps in one setting after another."""
         best = np.zeros(len(self.names))
-        for place, (low, high) in enumerate(self.bounds.T):
+        for setting in range(len(best)):
             middle = best
-            for way in (-COARSE, COARSE):
-                moved = middle
-                while best is middle or moved is best:
-                    at = moved[place] + way
-                    if abs(at) > FAR or not low <= at <= high:
-                        break
-                    moved = np.where(np.arange(len(best)) == place, at, moved)
-                    misfit, least = (
-                        np.sum(self.differences(z) ** 2) for z in (moved, best)
-                    )
-                    if misfit < (1.0 - SAME) * least:
-                        best = moved
-                    elif not misfit <= (1.0 + SAME) * least:
-                        break
+            for step in (-COARSE, COARSE):
+                best = self._stepped(best, middle, setting, step)
+        return best
+
+    def _stepped(self, best: Array, middle: Array, setting: int, step: float) -> Array:
+        """Best place found by equal steps of a setting from the middle, shape (p,).
+
+        Steps go on while the misfit falls, and at first where it does not change, as
+        where the start lets nothing slip.
+
+        Parameters
+        ----------
+        best
+            Best place so far, shape (p,).
+        middle
+            Place before any step of this setting, shape (p,).
+        setting
+            Index of the setting.
+        step
+            Step in z.
+        """
+        low, high = self.bounds[:, setting]
+        moved = middle
+        while best is middle or moved is best:
+            at = moved[setting] + step
+            if abs(at) > FAR or not low <= at <= high:
+                break
+            moved = np.where(np.arange(len(best)) == setting, at, moved)
+            misfit = np.sum(self.differences(moved) ** 2)
+            lowest = np.sum(self.differences(best) ** 2)
+            if misfit < (1.0 - SAME) * lowest:
+                best = moved
+            elif not misfit <= (1.0 + SAME) * lowest:
+                break
         return best
 
     def solve(self, z: Array, pull: Array) -> Array:
-        """Place of the least squares from a place on, with so much pull (n, p) to the start."""
+        """Place of the least squares, shape (p,), with a pull to the start.
+
+        Parameters
+        ----------
+        z
+            Place to search from, shape (p,).
+        pull
+            Matrix whose product with z is added to the differences, shape (n, p).
+        """
         found = least_squares(
             lambda at: np.concatenate([self.differences(at), pull @ at]),
             z,
@@ -276,33 +352,42 @@ class ComparedRuns:
         return np.asarray(found.x)
 
     def across(self, z: Array, along: Array, bounds: Array) -> Array:
-        """Place of the least squares among those that are as far along a direction, (p,), as z.
+        """Place of the least squares across a direction, shape (p,).
 
-        It lies within bounds, (2, p). The setting that counts most in the direction
-        follows from the others.
+        Parameters
+        ----------
+        z
+            Place to search from, shape (p,); all places are as far along the direction.
+        along
+            Direction, shape (p,). The setting that counts most in it follows from the
+            others.
+        bounds
+            Smallest and largest z, shape (2, p).
         """
         pivot = int(np.abs(along).argmax())
         free = np.delete(np.arange(len(z)), pivot)
         if not len(free):
             return z
-        ways = np.eye(len(z))[free]
-        ways[:, pivot] = -along[free] / along[pivot]
+        directions = np.eye(len(z))[free]
+        directions[:, pivot] = -along[free] / along[pivot]
 
         def place(moves: Array) -> Array:
-            return z + moves @ ways
+            """Place, shape (p,), after moves of the free settings, (p - 1,)."""
+            return z + moves @ directions
 
-        def left(moves: Array) -> Array:
+        def differences(moves: Array) -> Array:
+            """Differences, (n_rows,), after moves, (p - 1,); NaN beyond a bound."""
             at = place(moves)
             if not self.holds(at):
                 return np.full(len(self.first.differences), np.nan)
             return self.differences(at)
 
-        if not np.isfinite(left(np.zeros(len(free)))).all():
+        if not np.isfinite(differences(np.zeros(len(free)))).all():
             return z
         found = least_squares(
-            left,
+            differences,
             np.zeros(len(free)),
-            jac=lambda moves: self.jacobian(place(moves), ways=ways),
+            jac=lambda moves: self.jacobian(place(moves), directions=directions),
             bounds=bounds[:, free] - z[free],
             ftol=ROUGH,
             xtol=ROUGH * STEP,

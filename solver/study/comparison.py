@@ -7,13 +7,14 @@ interface, on the body above.
 Our field is linear between its points and between its instants; so it has a value w(x,
 t) at every row of the table, which has v. With d = w - v,
 
-    distance = |d| / |v|,    |d|^2 = sum over instants of their weight times the mean of d^2 there.
+    distance = |d| / |v|,
+    |d|^2 = sum over instants of their weight times the mean of d^2 there.
 
-The mean is over the points of that instant, each of which counts as half of the
-distance to its neighbours does; an instant has the trapezoidal weight of the table's
-own instants. So rows may lie anywhere, in any order, and a place that is sampled
-densely counts no more for that. What only one of both covers is left out: rows beside
-the body or the run, or where our force is an arbitrary share of what a support holds.
+The mean is over the points of that instant, with half of the distance to their
+neighbours as weights; an instant has the trapezoidal weight of the table's instants. So
+rows may lie anywhere, in any order, and a position that is sampled densely counts no
+more for that. Rows that only one of both covers are left out: rows beside the body or
+the run, or where our force is an arbitrary share of the force that a support holds.
 Where v vanishes everywhere, |w| stands in its place.
 """
 
@@ -37,24 +38,33 @@ from solver.settings.scene import Settings
 FRICTION = "friction force"
 DISPLACEMENT = "displacement"
 FEWEST = 4
-"""Rows from which on a distance says anything."""
+"""Smallest number of rows of a comparison."""
 MOST = 20_000
-"""Rows at most, which take a fifth of a second to read: a page's server does nothing
-else then."""
+"""Largest number of rows: reading them takes a fifth of a second of a page's server."""
 EDGE = 1e-6
-"""Share of the body's length by which a point may lie beyond it: of rounded numbers."""
+"""Share of the body's length by which rounding may put a point beyond its end."""
 CAN = "CSV whose head names x, t, and friction force or displacement"
 PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
-"""Unit of friction, by what there is to see of a scene."""
+"""Unit of friction by the kind of a scene."""
 
 
 @dataclass(frozen=True, eq=False)
 class OtherResults:
-    """Results of another program for a scene, in SI, and what was understood of the file.
+    """Results of another program for a scene, in SI.
 
-    The quantity is `FRICTION`, on the body above, N/m of rods and Pa of bodies in the
-    plane, or `DISPLACEMENT`, m. Positions, m, times, s, and values are of every row,
-    shape (n_rows,).
+    Attributes
+    ----------
+    quantity
+        `FRICTION`, on the body above, N/m of rods and Pa of bodies in the plane, or
+        `DISPLACEMENT`, m.
+    positions, times
+        Position, m, and time, s, of every row, shape (n_rows,).
+    values
+        Values of the quantity, same shape.
+    source, message
+        Name of the file, and how its columns were understood.
+    scene
+        Name of the scene.
     """
 
     quantity: str
@@ -67,11 +77,10 @@ class OtherResults:
 
 
 def results_in(table: Table, settings: Settings) -> OtherResults:
-    """The results of another program for a scene in a table.
+    """Read the results of another program for a scene in a table.
 
-    Its head names the columns x (m), t (s), and friction force or displacement, with
-    units if they are others; further columns are passed over, and rows may have any
-    order.
+    The head names the columns x (m), t (s), and friction force or displacement, with
+    units if they are others; further columns are ignored, and rows may have any order.
 
     Raises
     ------
@@ -84,25 +93,37 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
     kind = settings.kind
     quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
-        raise table.refuse(
-            "displacements are compared along a single rod: give the friction force here"
-        )
-    units = "m", "s", PER[kind] if quantity == FRICTION else "m"
-    if quantity == FRICTION and size_in(columns[2].unit, "N") is not None:
-        nodal = "divide nodal forces by what a node stands for"
-        columns[2].size(units[2], lambda remedy: table.refuse(f"{remedy}; {nodal}"))
-    pairs = zip(columns, units, strict=True)
-    reading = in_si(table, dict(zip(("x", "t", quantity), pairs, strict=True)))
+        remedy = "give the friction force here"
+        raise table.refuse(f"displacements are compared along a single rod: {remedy}")
+    position, time, column = columns
+    unit = "m"
+    if quantity == FRICTION:
+        unit = PER[kind]
+        _refuse_nodal_forces(table, column, unit)
+    used = {"x": (position, "m"), "t": (time, "s"), quantity: (column, unit)}
+    reading = in_si(table, used)
     x, t, values = reading.numbers
     _check_places(x, t, reading.lines, settings, table.refuse)
-    x = np.clip(x, 0.0, settings.length)
     return OtherResults(
-        quantity, x, t, values, table.source, settings.scene, reading.message
+        quantity=quantity,
+        positions=np.clip(x, 0.0, settings.length),
+        times=t,
+        values=values,
+        source=table.source,
+        scene=settings.scene,
+        message=reading.message,
     )
 
 
+def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:
+    """Refuse a column of friction in newtons: nodal forces depend on the mesh."""
+    if size_in(column.unit, "N") is not None:
+        nodal = "divide nodal forces by what a node stands for"
+        column.size(unit, lambda remedy: table.refuse(f"{remedy}; {nodal}"))
+
+
 def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
-    """Numbers of columns with their units by name, and what was understood."""
+    """Read columns, given with their units by name, as numbers in SI."""
     count = len(table.lines)
     if count > MOST:
         raise table.refuse(f"it has {count} rows, and may have {MOST}: leave some out")
@@ -111,51 +132,75 @@ def in_si(table: Table, used: Mapping[str, tuple[TableColumn, str]]) -> Reading:
 
 
 def _columns(table: Table) -> tuple[str, list[TableColumn]]:
-    """The quantity that is named, and the columns of x, t, and of it."""
+    """Quantity that the head names, and the columns of x, of t and of the quantity."""
     if not any(column.quantities[0] for column in table.columns):
         raise table.refuse(
             "name its columns in the first line, as in x,t,friction force"
         )
-    x, t = (table.find(table.columns, {kind}) for kind in ("position", "time"))
-    if x is None or t is None:
-        raise table.refuse(f"its head names no column {'t' if x else 'x'}: add it")
-    fields = {
-        kind: table.find(table.columns, {kind}) for kind in (FRICTION, DISPLACEMENT)
-    }
-    named = [(kind, column) for kind, column in fields.items() if column]
-    if len(named) != 1:
-        if named:
-            which = "both friction force and"
-        else:
-            which = "neither friction force nor"
-        raise table.refuse(f"its head names {which} displacement: give one of them")
-    quantity, column = named[0]
-    return quantity, [x, t, column]
+    x = table.find(table.columns, {"position"})
+    t = table.find(table.columns, {"time"})
+    if x is None:
+        raise table.refuse("its head names no column x: add it")
+    if t is None:
+        raise table.refuse("its head names no column t: add it")
+    friction = table.find(table.columns, {FRICTION})
+    displacement = table.find(table.columns, {DISPLACEMENT})
+    if friction and displacement:
+        named = "both friction force and displacement"
+        raise table.refuse(f"its head names {named}: give one of them")
+    if friction:
+        return FRICTION, [x, t, friction]
+    if displacement:
+        return DISPLACEMENT, [x, t, displacement]
+    named = "neither friction force nor displacement"
+    raise table.refuse(f"its head names {named}: give one of them")
 
 
 def _check_places(
     x: Array, t: Array, lines: Indices, settings: Settings, refuse: Refuse
 ) -> None:
+    """Refuse positions outside of the body, and too few rows during the run.
+
+    Parameters
+    ----------
+    x, t
+        Positions, m, and times, s, shape (n_rows,).
+    lines
+        Lines of the rows in the file, shape (n_rows,).
+    settings
+        Settings of the scene.
+    refuse
+        Makes the refusal of the table.
+    """
     length = settings.length
     duration = settings.duration
     beyond = np.flatnonzero((x < -EDGE * length) | (x > (1.0 + EDGE) * length))
     if len(beyond):
+        first = beyond[0]
         raise refuse(
-            f"line {lines[beyond[0]]} has x = {x[beyond[0]]:g} m, outside of the body, which goes "
-            f"from 0 to {length:g} m: name its unit (x [mm]), or shift or scale x"
+            f"line {lines[first]} has x = {x[first]:g} m, outside of the body, which "
+            f"goes from 0 to {length:g} m: name its unit (x [mm]), or shift or scale x"
         )
     during = int(((t >= 0.0) & (t <= duration)).sum())
     if during < FEWEST:
         raise refuse(
-            f"{during or 'none'} of its {len(t)} rows lie in the run, which goes from 0 to "
-            f"{duration:g} s: give at least {FEWEST}"
+            f"{during or 'none'} of its {len(t)} rows lie in the run, which goes from "
+            f"0 to {duration:g} s: give at least {FEWEST}"
         )
 
 
 class Comparison:
-    """Results of another program beside the runs of one problem; both cover `counted` rows.
+    """Comparison of the results of another program with the runs of one problem.
 
-    Friction is that of the interface, or of the first one if there is none of its name.
+    Attributes
+    ----------
+    results
+        Results of the other program.
+    interface
+        Name of the interface whose friction is compared: the one that is asked for, or
+        else the first one.
+    counted
+        Number of rows that are compared.
     """
 
     def __init__(
@@ -173,21 +218,21 @@ class Comparison:
         positions = problem.positions
         self._places = None
         self._sizes = np.ones((1, 1))
+        # Friction is per length of the points of one interface.
         if results.quantity == FRICTION:
             law = problem.rubbing[self.interface]
             self._places = problem.contact_places[self.interface][-1]
             self._sizes = law.by_point(law.weights)[:, None]
             positions = law.positions
         self._order = np.argsort(positions, kind="stable")
-        grids = positions[self._order], problem.instants
+        points = positions[self._order]
+        instants = problem.instants
         # Rows as fractional numbers of points and instants
-        at = np.array(
-            [
-                np.interp(r, g, np.arange(len(g)))
-                for r, g in zip((x, t), grids, strict=True)
-            ]
-        )
-        counts = _covers(grids[0], x) & _covers(grids[1], t)
+        along = np.interp(x, points, np.arange(len(points)))
+        over_time = np.interp(t, instants, np.arange(len(instants)))
+        at = np.array([along, over_time])
+        counts = _covers(points, x) & _covers(instants, t)
+        # Where a support shares a force, friction at a point is arbitrary.
         if self._places is not None:
             unknown = ~determinate_forces(problem)[self._places][self._order]
             counts &= _interpolated(unknown.astype(float), at) == 0.0
@@ -198,51 +243,59 @@ class Comparison:
             self._weights = weights_of(x[counts], t[counts])
 
     def of(self, fields: Fields) -> float:
-        """Distance to an iterate, or to a reference; NaN of fewer than `FEWEST` rows."""
+        """Distance to an iterate or to a reference; NaN of fewer than `FEWEST` rows."""
         if self.counted < FEWEST:
             return float("nan")
         if self._places is None:
             field = self._problem.at_rest(fields.displacement)
         else:
             field = fields.contact_force[self._places] / self._sizes
-        own = _interpolated(field[self._order], self._at)
-        size = self._norm(self._values) or self._norm(own) or 1.0
-        return self._norm(own - self._values) / size
+        ours = _interpolated(field[self._order], self._at)
+        size = self._norm(self._values) or self._norm(ours) or 1.0
+        return self._norm(ours - self._values) / size
 
     def figures(self, fields: Fields) -> dict[str, Any]:
-        """What is compared, the distance, and numbers of rows, by the names of scripts."""
+        """Quantity, interface, distance, and numbers of rows, for scripts."""
+        interface = None
+        if self._places is not None:
+            interface = self.interface
         return {
             "quantity": self.results.quantity,
-            "interface": None if self._places is None else self.interface,
+            "interface": interface,
             "distance": self.of(fields),
             "rows": len(self.results.times),
             "rows_compared": self.counted,
         }
 
     def _norm(self, values: Array) -> float:
+        """Norm of values of the rows that are compared, shape (n_counted,)."""
         return float(np.sqrt(self._weights @ values**2))
 
 
 def weights_of(positions: Array, times: Array) -> Array:
-    """What every row counts, as above, shape (n_rows,)."""
+    """Weight of every row, as the module defines it, shape (n_rows,).
+
+    Positions, m, and times, s, have the same shape.
+    """
+    # Rows by time, and by position within an instant.
     order = np.lexsort((positions, times))
     instants, number = np.unique(times[order], return_inverse=True)
-    own = _halves(positions[order], np.diff(number) == 0)
-    lengths = np.bincount(number, own, len(instants))
+    halves = _halves(positions[order], np.diff(number) == 0)
+    lengths = np.bincount(number, halves, len(instants))
     # All points of an instant may be one.
-    own[lengths[number] == 0.0] = 1.0
-    lengths = np.bincount(number, own, len(instants))
+    halves[lengths[number] == 0.0] = 1.0
+    lengths = np.bincount(number, halves, len(instants))
     if len(instants) > 1:
         over_time = _halves(instants)
     else:
         over_time = np.ones(len(instants))
     weights = np.empty(len(times))
-    weights[order] = over_time[number] * own / lengths[number]
+    weights[order] = over_time[number] * halves / lengths[number]
     return weights
 
 
 def _covers(grid: Array, places: Array) -> Flags:
-    """Which places lie between the ends of a grid."""
+    """Check which places, (n,), lie between the ends of a grid, (n_grid,)."""
     low = float(grid.min())
     high = float(grid.max())
     edge = EDGE * (high - low)
@@ -250,10 +303,18 @@ def _covers(grid: Array, places: Array) -> Flags:
 
 
 def _interpolated(field: Array, at: Array) -> Array:
-    """Field, shape (n_points, n_instants), at fractional numbers of both, shape (2, n)."""
+    """Field, (n_points, n_instants), at fractional numbers of both, (2, n): (n,)."""
     return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
 
 
 def _halves(places: Array, joined: Flags | bool = True) -> Array:
-    """Half of the distances to the neighbours, of places that rise where they are joined."""
+    """Half of the distances to both neighbours, shape (n,).
+
+    Parameters
+    ----------
+    places
+        Places, shape (n,), which rise where they are joined.
+    joined
+        Whether a place and the next one are neighbours, shape (n - 1,).
+    """
     return np.convolve(np.diff(places) * joined, [0.5, 0.5])

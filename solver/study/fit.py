@@ -1,21 +1,21 @@
-"""Settings under which a run comes nearest to a measured loop, and what the loop cannot tell.
+"""Fit of settings to a measured loop, and the margins that the loop leaves.
 
     fitted = fit(settings, measured, ["friction", "contact_stiffness"])
 
 The differences of `solver.study.measured_loop` are minimised in the sum of their
-squares, over z: the logarithm of a setting over its start, where it is positive and
-spans decades, else its change over its size. From the best of some values of each
-setting alone a trust-region method (SciPy's `least_squares`) goes on within their
-bounds; every run starts from what stuck and slipped in the one before. Then the valley
-is followed along its weakest direction, both ways, and along each setting: where a run
-is nearer, the method goes on from there.
+squares, over z: the logarithm of a setting over its start, where the setting is
+positive and spans decades, else its change over its size. From the best of some values
+of each setting alone a trust-region method (SciPy's `least_squares`) goes on within
+their bounds; every run starts from the states of the run before. Then the valley is
+followed along its weakest direction, both ways, and along each setting: where a run is
+nearer, the method goes on from there.
 
-What is known of a setting is what its profile says (`solver.study.valley`): the values
-beyond which no run is as near, whatever the others are, by two standard errors of the
-noise. A setting is not determined if that goes farther than a factor of 1.5. It stays
-as near to where it began as the loop allows. What may still be known is a combination
-of such settings: a product of powers, across the direction in which the valley goes,
-with the margin that its own profile has.
+The profile of a setting tells how well it is known (`solver.study.valley`): the values
+beyond which no run is as near, whatever the other settings are, by two standard errors
+of the noise. A setting is not determined if those values are farther away than a factor
+of 1.5. It stays as near to its start as the loop allows. A combination of such settings
+may still be known: a product of powers, across the direction of the valley, with the
+margin of its own profile.
 """
 
 from __future__ import annotations
@@ -35,35 +35,35 @@ from solver.study.measured_loop import MeasuredLoop
 from solver.study.valley import BROAD, LIMIT, SILENT, WALK, LowerPlace, Profile, Valley
 
 MOST = 4
-"""Settings that are fitted at once."""
+"""Largest number of settings that are fitted at once."""
 LOOSE = 1e-4
-"""Pull towards the start at first, so that what is not determined does not drift."""
+"""First pull towards the start: settings that are not determined do not drift."""
 SHARE = 0.1
-"""Power in a combination below which a setting has no part in it."""
+"""Power below which a setting has no part in a combination."""
 NEAR = 0.02
-"""Difference to a tenth below which a power is that."""
+"""Difference from a tenth below which a power is rounded to it."""
 ROUNDS = 8
-"""How often the method goes on from a lower place, at most."""
+"""Largest number of searches, each from a lower place than the one before."""
 WEAKER = 0.1
-"""Factor on the pull to the start, as often as it pulls a run too far from the loop."""
+"""Factor on the pull to the start after it has pulled a run too far from the loop."""
 PULLS = 4
-"""How many pulls are tried."""
+"""Number of pulls that are tried."""
 
 
 @dataclass(frozen=True)
 class Combination:
-    """A product of powers of settings that is known where they are not.
+    """A product of powers of settings that is known while each of them is not.
 
     Attributes
     ----------
     powers
-        Of the settings by name.
+        Powers of the settings by name.
     value, lower, upper
-        The product in SI, and the ends of what is within two standard errors; NaN where
-        some setting has no logarithm.
+        The product in SI, and its values at two standard errors; NaN where some setting
+        has no logarithm.
     factor
-        So far from its value each setting is looked at: a product of powers may not be
-        what is known farther away.
+        Factor on each setting within which the combination holds: farther away the
+        valley may bend.
     """
 
     powers: dict[str, float]
@@ -74,30 +74,37 @@ class Combination:
 
     @property
     def error(self) -> float:
-        """Standard error, as a share of the value: half of the distance to the farther end."""
-        return max(self.upper - self.value, self.value - self.lower) / (
-            2.0 * self.value
-        )
+        """Standard error as a share of the value: half the way to the farther end."""
+        farther = max(self.upper - self.value, self.value - self.lower)
+        return farther / (2.0 * self.value)
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What a loop tells of some settings: those of the nearest run, and the runs at start and end.
+    """Settings fitted to a loop, with their margins, and the runs at start and end.
 
     Attributes
     ----------
+    settings
+        Settings of the nearest run.
+    names
+        Names of the p settings that were fitted.
     lower, upper
-        Ends of what is within two standard errors of the p settings that were fitted,
-        shape (p,), in SI; infinite where the loop gives none.
+        Values of the fitted settings at two standard errors, shape (p,), in SI;
+        infinite where the loop sets no limit.
     correlation
-        Of the values, shape (p, p); NaN where there is none.
+        Correlation of the values, shape (p, p); NaN where it is not known.
     together
-        Combinations that are known of settings that are not.
+        Known combinations of settings that are not known by themselves.
     for_the_mesh
-        Whether a setting would be known if it were not for the mesh, shape (p,).
+        Whether a setting would be known if the mesh were exact, shape (p,).
     mesh
         Change of the loop on elements of half the size, as a share of the measured
         range.
+    first, nearest
+        Run at the start, and the nearest run.
+    runs
+        Number of runs.
     """
 
     settings: Settings
@@ -114,9 +121,13 @@ class Fit:
 
     @property
     def errors(self) -> Array:
-        """Standard errors, (p,): half of the distance to the farther end, infinite if open."""
+        """Standard errors, shape (p,), in SI: half the distance to the farther end.
+
+        Infinite where an end is open.
+        """
         values = self.nearest.values
-        return np.asarray(np.maximum(self.upper - values, values - self.lower) / 2.0)
+        farther = np.maximum(self.upper - values, values - self.lower)
+        return np.asarray(farther / 2.0)
 
 
 def fit(
@@ -127,8 +138,16 @@ def fit(
 ) -> Fit:
     """Find the settings under which a run comes nearest to a measured loop.
 
-    It begins at the settings; of these one to four are fitted. `watch` is called after
-    each run with how many there were, and the nearest one.
+    Parameters
+    ----------
+    settings
+        Settings at which the fit begins.
+    measured
+        The measured loop.
+    names
+        Names of one to four settings that are fitted.
+    watch
+        Called after each run with the number of runs so far, and the nearest one.
 
     Raises
     ------
@@ -140,29 +159,19 @@ def fit(
         can = f"one to {MOST} settings, each once, of {', '.join(fittable(settings))}"
         raise SettingError("fitted settings", ",".join(names), can, "name these")
     runs = ComparedRuns(settings, measured, names, watch)
-    rows = len(runs.first.differences)
-    count = len(names)
-    if rows <= count + 1:
-        can = f"at least {count + 2} rows for {count} settings"
-        raise SettingError(
-            "the measured loop", measured.source, can, f"{rows} are in the run"
-        )
+    _check_rows(runs, measured)
     valley, profiles = _explored(runs)
     is_known = np.array([profile.is_known for profile in profiles])
     blind = _blind(valley, is_known)
     z = _near_start(valley, blind)
-    combinations: list[Combination] = []
-    for reach in (WALK, LIMIT):
-        if not combinations and 0 < len(blind) < (~is_known).sum():
-            combinations = _combinations(
-                valley.around(z, reach), reach, blind, is_known
-            )
+    lower, upper = _margins(valley, profiles)
     return Fit(
         settings=settings.replace(**runs.changes(z)),
         names=runs.names,
-        **_margins(valley, profiles),
+        lower=lower,
+        upper=upper,
         correlation=_correlation(runs.jacobian(z, BROAD), blind, is_known),
-        together=combinations,
+        together=_known_combinations(valley, z, blind, is_known),
         for_the_mesh=~is_known & [profile.is_known_to_noise for profile in profiles],
         mesh=valley.mesh,
         first=runs.first,
@@ -171,10 +180,21 @@ def fit(
     )
 
 
+def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
+    """Refuse a loop with too few rows in the run for the number of settings."""
+    rows = len(runs.first.differences)
+    count = len(runs.names)
+    if rows <= count + 1:
+        can = f"at least {count + 2} rows for {count} settings"
+        remedy = f"{rows} are in the run"
+        raise SettingError("the measured loop", measured.source, can, remedy)
+
+
 def _explored(runs: ComparedRuns) -> tuple[Valley, list[Profile]]:
-    """The valley of the nearest run that is found, and the profiles of all settings there."""
+    """Valley of the nearest run that is found, and the profiles of all settings."""
     settings = np.eye(len(runs.names))
     z = runs.solve(runs.coarse(), LOOSE * settings)
+    # The last round seeks no lower place, so that it ends.
     for rest in reversed(range(ROUNDS)):
         valley = Valley(runs, z, seeks=rest > 0)
         try:
@@ -186,72 +206,111 @@ def _explored(runs: ComparedRuns) -> tuple[Valley, list[Profile]]:
 
 
 def _blind(valley: Valley, is_known: Flags) -> Array:
-    """Directions in which a valley goes on, orthonormal, shape (n, p)."""
+    """Directions in which a valley goes on, orthonormal, shape (n, p).
+
+    `is_known`, (p,), says which settings are known.
+    """
     if is_known.all():
         return np.empty((0, len(is_known)))
     moves = valley.moves
     # Farther away a valley may bend, which makes it no wider.
     moves = moves[np.abs(moves).max(axis=1) <= LIMIT * (1.0 + SILENT)]
-    # What is known moves a little with the rest, which makes it no part of a direction.
+    # A known setting moves a little with the rest, but is no part of a direction.
     moves[:, is_known] = 0.0
-    ways = np.linalg.svd(moves)[2]
-    reaches = np.abs(moves @ ways.T).max(axis=0)
-    return np.asarray(ways[reaches > LIMIT / 2.0])
+    directions = np.linalg.svd(moves)[2]
+    distances = np.abs(moves @ directions.T).max(axis=0)
+    return np.asarray(directions[distances > LIMIT / 2.0])
 
 
 def _near_start(valley: Valley, blind: Array) -> Array:
-    """Place on the floor of a valley that is nearest to the start, along directions, (n, p)."""
+    """Place, (p,), on the floor of a valley nearest to the start in z = 0.
+
+    The place moves along the directions `blind`, (n, p), in which the valley goes on.
+    """
     runs = valley.runs
+    # The pull is as strong as the loop is, so that it decides where the loop does not.
     pull = max(float(np.linalg.norm(valley.jacobian, 2)), 1.0) * blind
     for _ in range(PULLS):
         z = runs.solve(valley.z, pull)
-        if not len(blind) or runs.misfit(z) - valley.least <= valley.doubt / 4.0:
+        if not len(blind) or runs.misfit(z) - valley.minimum <= valley.doubt / 4.0:
             return z
         pull = WEAKER * pull
     return valley.z
 
 
-def _margins(valley: Valley, profiles: list[Profile]) -> dict[str, Array]:
-    """Lower and upper ends of settings by their profiles, as `Fit` has them."""
+def _margins(valley: Valley, profiles: list[Profile]) -> tuple[Array, Array]:
+    """Lower and upper ends of settings by their profiles, (p,) each, in SI."""
     below, above = np.array([profile.ends() for profile in profiles]).T
     with np.errstate(invalid="ignore"):
         lower = valley.runs.values(valley.z - below)
         upper = valley.runs.values(valley.z + above)
-    return {
-        "lower": np.where(np.isfinite(below), lower, -np.inf),
-        "upper": np.where(np.isfinite(above), upper, np.inf),
-    }
+    return (
+        np.where(np.isfinite(below), lower, -np.inf),
+        np.where(np.isfinite(above), upper, np.inf),
+    )
+
+
+def _known_combinations(
+    valley: Valley, z: Array, blind: Array, is_known: Flags
+) -> list[Combination]:
+    """Known combinations around a place, in a wide box or else in a smaller one.
+
+    Parameters
+    ----------
+    valley
+        Valley of the nearest run.
+    z
+        Place on its floor, shape (p,).
+    blind
+        Directions in which the valley goes on, shape (n, p).
+    is_known
+        Whether a setting is known by itself, shape (p,).
+    """
+    if not 0 < len(blind) < (~is_known).sum():
+        return []
+    # A wide box shows more; where the floor bends in it, a smaller one may not.
+    for distance in (WALK, LIMIT):
+        around = valley.around(z, distance)
+        combinations = _combinations(around, distance, blind, is_known)
+        if combinations:
+            return combinations
+    return []
 
 
 def _combinations(
-    valley: Valley, reach: float, blind: Array, is_known: Flags
+    valley: Valley, distance: float, blind: Array, is_known: Flags
 ) -> list[Combination]:
-    """Combinations that are determined of settings that are not, so far around a place."""
+    """Combinations that are known of settings that are not, up to a distance in z.
+
+    `blind`, (n, p), are the directions in which the valley goes on, and `is_known`,
+    (p,), says which settings are known.
+    """
     is_open = np.flatnonzero(~is_known)
     floor = [*blind]
     if len(blind) > 1:
         floor += [*np.eye(len(is_known))[is_open]]
+    # Each profile adds to the moves of the valley.
     for along in floor:
-        valley.profile(along, reach)
+        valley.profile(along, distance)
     moves = valley.moves
-    ways = np.linalg.svd(moves[:, is_open])[2]
+    directions = np.linalg.svd(moves[:, is_open])[2]
     combinations = []
-    for row in _echelon(ways[len(blind) :]):
+    for row in _echelon(directions[len(blind) :]):
         powers = np.zeros(len(is_known))
         powers[is_open] = row
         if np.count_nonzero(powers) == 1:
-            # A setting by itself has been asked for, and is not known.
+            # The profile of that setting alone has shown that it is not known.
             continue
-        combination = _combination(valley, reach, moves, powers)
+        combination = _combination(valley, distance, moves, powers)
         if combination is not None:
             combinations.append(combination)
     return combinations
 
 
 def _combination(
-    valley: Valley, reach: float, moves: Array, powers: Array
+    valley: Valley, distance: float, moves: Array, powers: Array
 ) -> Combination | None:
-    """A combination, of powers (p,), if it is known along the moves of a floor, (n, p)."""
+    """A combination of powers, (p,), if it is known along moves on a floor, (n, p)."""
     profile = valley.profile(powers)
     # A floor is bent, and no product of powers is the same all along it.
     along = moves @ powers
@@ -261,36 +320,49 @@ def _combination(
     if max(below, above) >= LIMIT:
         return None
     runs = valley.runs
-    places = np.flatnonzero(powers)
+    parts = np.flatnonzero(powers)
     value = math.nan
-    if runs.in_decades[places].all():
+    if runs.in_decades[parts].all():
         value = float(np.prod(runs.values(valley.z) ** powers))
     return Combination(
-        powers={runs.names[place]: float(powers[place]) for place in places},
+        powers={runs.names[part]: float(powers[part]) for part in parts},
         value=value,
         lower=value * math.exp(-below),
         upper=value * math.exp(above),
-        factor=math.exp(reach),
+        factor=math.exp(distance),
     )
 
 
 def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
-    """Correlation of settings that are known, (p, p), of the derivatives, (n_rows, p)."""
+    """Correlation of the settings that are known, shape (p, p); NaN of others.
+
+    Parameters
+    ----------
+    jacobian
+        Derivatives of the differences, shape (n_rows, p).
+    blind
+        Directions in which the valley goes on, shape (n, p): they have no variance.
+    is_known
+        Whether a setting is known, shape (p,).
+    """
     known = np.eye(len(is_known))
     if len(blind):
         known = null_space(blind)
-    covariance = (
-        known @ np.linalg.pinv(known.T @ jacobian.T @ jacobian @ known) @ known.T
-    )
+    precision = known.T @ jacobian.T @ jacobian @ known
+    covariance = known @ np.linalg.pinv(precision) @ known.T
     deviations = np.sqrt(np.diag(covariance))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(deviations, deviations)
-    is_told = np.outer(is_known, is_known)
-    return np.asarray(np.where(is_told, correlation, np.nan))
+    are_both_known = np.outer(is_known, is_known)
+    return np.asarray(np.where(are_both_known, correlation, np.nan))
 
 
 def _echelon(rows: Array) -> Array:
-    """The same space by rows of which each has 1 where no other has anything, rounded."""
+    """Reduced echelon form of rows, shape (n, p): the same space, rounded.
+
+    Each row has 1 in a column in which all other rows have 0.
+    """
+    # Pivoting finds the columns in which the rows differ most.
     pivots = np.sort(qr(rows, mode="r", pivoting=True)[1][: len(rows)])
     reduced = np.linalg.solve(rows[:, pivots], rows)
     tenths = np.round(reduced, 1)

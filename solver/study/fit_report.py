@@ -1,4 +1,4 @@
-"""What a fit found, for people and scripts: lines, a CSV file, a page, settings, the loop."""
+"""Reports of a fit for people and scripts: lines, CSV files, a page, settings."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ FILES = PARAMETERS, LOOP, SETTINGS, PAGE
 
 
 def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
-    """What was found, a sentence or a row of a table a line."""
+    """Lines on a fit: the rows of its table, then sentences."""
     return [
         *aligned(_rows(fit)).splitlines(),
         *messages(fit),
@@ -48,37 +48,11 @@ def lines(fit: Fit, measured: MeasuredLoop) -> list[str]:
 
 
 def messages(fit: Fit) -> list[str]:
-    """What the loop cannot tell, and what else there is to know, in sentences."""
-    lost = [
-        name
-        for name, error in zip(fit.names, fit.errors, strict=True)
-        if math.isinf(error)
-    ]
+    """Sentences on settings that are not determined, and on the nearest run."""
     sentences = [_known(combination) for combination in fit.together]
-    if lost and fit.together:
-        sentences.append(
-            f"The loop does not tell {listed(lost)} apart: they stay as near to where they began "
-            "as that allows."
-        )
-    elif lost:
-        sentences.append(
-            f"The loop does not tell {listed(lost)}: what is given here is as near to where it "
-            "began as the loop allows."
-        )
+    sentences += _lost(fit)
     sentences += _bounds(fit)
-    if fit.for_the_mesh.any():
-        names = listed(
-            [
-                n
-                for n, is_lost in zip(fit.names, fit.for_the_mesh, strict=True)
-                if is_lost
-            ]
-        )
-        sentences.append(
-            f"With elements of half the size the loop changes by {100.0 * fit.mesh:.2g} % of its "
-            f"range, and {names} may change by more than a factor of {FACTOR:g} for that: more "
-            "elements may tell more."
-        )
+    sentences += _for_the_mesh(fit)
     nearest = fit.nearest
     given = nearest.beside.figures(nearest.run.iterate)["distance_given"]
     sentences += [f"{message}." for message in nearest.beside.drive_messages(given)]
@@ -89,21 +63,56 @@ def messages(fit: Fit) -> list[str]:
     return sentences
 
 
+def _lost(fit: Fit) -> list[str]:
+    """Sentence on settings that are not determined; none where all are."""
+    lost = []
+    for name, error in zip(fit.names, fit.errors, strict=True):
+        if math.isinf(error):
+            lost.append(name)
+    if not lost:
+        return []
+    names = listed(lost)
+    if fit.together:
+        return [
+            f"The loop does not tell {names} apart: they stay as near to where they "
+            "began as that allows."
+        ]
+    return [
+        f"The loop does not tell {names}: what is given here is as near to where it "
+        "began as the loop allows."
+    ]
+
+
+def _for_the_mesh(fit: Fit) -> list[str]:
+    """Sentence on settings that the mesh hides; none where there is no such setting."""
+    hidden = []
+    for name, is_hidden in zip(fit.names, fit.for_the_mesh, strict=True):
+        if is_hidden:
+            hidden.append(name)
+    if not hidden:
+        return []
+    return [
+        f"With elements of half the size the loop changes by {100.0 * fit.mesh:.2g} % "
+        f"of its range, and {listed(hidden)} may change by more than a factor of "
+        f"{FACTOR:g} for that: more elements may tell more."
+    ]
+
+
 def _known(combination: Combination) -> str:
-    """Sentence on a combination that is known of settings that are not."""
+    """Sentence on a known combination of settings that are not known by themselves."""
     if math.isnan(combination.value):
         return f"Only a combination of {listed(list(combination.powers))} is known."
     margin = 100.0 * combination.error
     ends = f"from {combination.lower:.4g} to {combination.upper:.4g}"
     return (
-        f"Only {_product(combination)} is known: {combination.value:.6g} in SI units, with a "
-        f"standard error of {margin:.2g} % ({ends} with two), while each is within a factor of "
-        f"{combination.factor:g} of its value."
+        f"Only {_product(combination)} is known: {combination.value:.6g} in SI units, "
+        f"with a standard error of {margin:.2g} % ({ends} with two), while each is "
+        f"within a factor of {combination.factor:g} of its value."
     )
 
 
 def _product(combination: Combination) -> str:
-    """Powers of settings, as one writes them."""
+    """Text of a product of powers of settings."""
     factors = []
     for name, power in combination.powers.items():
         if power == 1.0:
@@ -126,10 +135,15 @@ def _bounds(fit: Fit) -> list[str]:
 
 
 def _distances(fit: Fit, measured: MeasuredLoop) -> str:
-    near, far = (f"{100.0 * run.distance:.4g} %" for run in (fit.nearest, fit.first))
+    """Line on the distances of the nearest and of the first run to the loop."""
+    near = f"{100.0 * fit.nearest.distance:.4g} %"
+    far = f"{100.0 * fit.first.distance:.4g} %"
     rows = f"{len(fit.nearest.differences)} of {len(measured.force)} rows"
     quantity = fit.nearest.beside.quantity
-    return f"{quantity}: {near} from {measured.source}, {far} before; {fit.runs} runs, {rows}"
+    return (
+        f"{quantity}: {near} from {measured.source}, {far} before; "
+        f"{fit.runs} runs, {rows}"
+    )
 
 
 def _rows(fit: Fit) -> list[list[str]]:
@@ -151,20 +165,29 @@ def _rows(fit: Fit) -> list[list[str]]:
             _end(upper),
             f"{start:.6g}",
         ]
-        with_others = ["-" if math.isnan(c) else f"{c + 0.0:.2f}" for c in correlation]
-        table.append([*cells, *with_others[: len(others)]])
+        if others:
+            cells += [_correlation(value) for value in correlation]
+        table.append(cells)
     return table
 
 
+def _correlation(value: float) -> str:
+    """Text of a correlation."""
+    if math.isnan(value):
+        return "-"
+    # A sum with 0 has no negative zero.
+    return f"{value + 0.0:.2f}"
+
+
 def _end(value: float) -> str:
-    """An end of what is within two standard errors."""
+    """Text of a value at two standard errors."""
     if math.isinf(value):
         return "-"
     return f"{value:.6g}"
 
 
 def _entries(fit: Fit) -> list[list[Any]]:
-    """Setting, unit, start, value, standard error, ends and correlations, a row for each."""
+    """Rows of setting, unit, start, value, standard error, ends and correlations."""
     units = [about(fit.settings.definitions()[name]).unit for name in fit.names]
     columns = (
         fit.names,
@@ -180,13 +203,13 @@ def _entries(fit: Fit) -> list[list[Any]]:
 
 
 def as_json(fit: Fit) -> dict[str, Any]:
-    """The same for scripts."""
+    """Numbers and messages of a fit for scripts."""
     figures = fit.nearest.beside.figures(fit.nearest.run.iterate)
     return {
-        **{
-            name: figures[name]
-            for name in ("quantity", "distance", "rows", "rows_compared")
-        },
+        "quantity": figures["quantity"],
+        "distance": figures["distance"],
+        "rows": figures["rows"],
+        "rows_compared": figures["rows_compared"],
         "distance_before": fit.first.distance,
         "runs": fit.runs,
         "parameters": {row[0]: _parameter(row) for row in _entries(fit)},
@@ -199,7 +222,7 @@ def as_json(fit: Fit) -> dict[str, Any]:
 
 
 def _parameter(row: list[Any]) -> dict[str, float]:
-    """A fitted setting for scripts, of its row of the table."""
+    """Numbers of a fitted setting for scripts, from its row of `_entries`."""
     _, _, start, value, error, lower, upper, *_ = row
     return {
         "start": float(start),
@@ -212,23 +235,20 @@ def _parameter(row: list[Any]) -> dict[str, float]:
 
 def write_loop(run: FinishedRun, folder: Path) -> None:
     """Write the loop of a run as CSV, with time, in SI."""
-    across, up = (f"{name} [{unit}]" for name, unit in run.loop.axes)
+    (across, across_unit), (up, up_unit) = run.loop.axes
     columns = {
         "time [s]": run.problem.instants,
-        across: run.displacement,
-        up: run.force,
+        f"{across} [{across_unit}]": run.displacement,
+        f"{up} [{up_unit}]": run.force,
     }
     write(folder / LOOP, csv_of(columns))
 
 
 def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
-    """Write all files."""
+    """Write all `FILES` of a fit into a folder."""
     head = ["setting", "unit", "start", "value", "standard_error", "lower", "upper"]
-    write_csv(
-        folder / PARAMETERS,
-        [*head, *(f"correlation_{n}" for n in fit.names)],
-        _entries(fit),
-    )
+    correlations = [f"correlation_{name}" for name in fit.names]
+    write_csv(folder / PARAMETERS, [*head, *correlations], _entries(fit))
     write_loop(fit.nearest.run, folder)
     write(folder / SETTINGS, dump(fit.settings))
     sentences = [
@@ -242,27 +262,36 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
         PlotSection("Loop and differences", _panels(fit, measured)),
         f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
     ]
-    write_page(
-        folder / PAGE, f"{fit.settings.scene.capitalize()} fitted to a loop", sections
-    )
+    title = f"{fit.settings.scene.capitalize()} fitted to a loop"
+    write_page(folder / PAGE, title, sections)
 
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:
-    nearest = fit.nearest
-    beside = fit.nearest.beside
+    """Panels of the loops, and of the differences of the nearest run."""
+    return [_loops(fit, measured), _differences(fit)]
+
+
+def _loops(fit: Fit, measured: MeasuredLoop) -> Panel:
+    """Panel of the measured loop, the first run and the nearest one."""
     first = fit.first.run
-    x, y = (PanelAxis(title, unit) for title, unit in nearest.run.loop.axes)
+    nearest = fit.nearest.run
     curves = (
         PanelCurve("measured", measured.displacement, measured.force, 5, "points"),
         PanelCurve("before", first.displacement, first.force, 0, "dotted"),
-        PanelCurve("fitted", nearest.run.displacement, nearest.run.force, 1),
+        PanelCurve("fitted", nearest.displacement, nearest.force, 1),
     )
+    across, up = nearest.loop.axes
+    x = PanelAxis(*across)
+    y = PanelAxis(*up)
+    return Panel("Force over displacement", x, y, curves)
+
+
+def _differences(fit: Fit) -> Panel:
+    """Panel of the differences of the nearest run, row by row."""
+    beside = fit.nearest.beside
     numbers = np.arange(1.0, len(beside.counted) + 1.0)[beside.counted]
-    left = PanelCurve("difference", numbers, 100.0 * nearest.differences, 1, "points")
+    percent = 100.0 * fit.nearest.differences
+    curve = PanelCurve("difference", numbers, percent, 1, "points")
+    row = PanelAxis("row of the table", whole=True)
     share = PanelAxis(f"{beside.quantity}: fitted less measured", "% of its range")
-    return [
-        Panel("Force over displacement", x, y, curves),
-        Panel(
-            "What is left", PanelAxis("row of the table", whole=True), share, (left,)
-        ),
-    ]
+    return Panel("What is left", row, share, (curve,))

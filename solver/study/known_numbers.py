@@ -1,4 +1,4 @@
-"""Numbers that are known of runs, beside those of an answer: functions of `known_numbers.toml`."""
+"""Known numbers of runs beside computed ones: the functions of `known_numbers.toml`."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.study.quantities.cycles import turning_points
 
 WORKS = {"m": "J", "1/m": "J/m"}
-"""Unit of what a loop encloses, by that of what it goes over, where it is work."""
+"""Unit of the area of a loop by the unit of its abscissa, where the area is work."""
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """A problem with its settings, and what a run or a reference has for it."""
+    """A problem with its settings, and the fields of a run or of a reference."""
 
     settings: Any
     problem: Problem
@@ -39,14 +39,14 @@ class Answer:
 
     @property
     def support(self) -> tuple[Array, Array]:
-        """Pressing force and friction on a support, N, each of shape (n_points, n_instants)."""
+        """Pressing force and friction on a support, (n_points, n_instants) each, N."""
         contact = self.fields.contact("support")
         assert contact.normal_force is not None
         return contact.normal_force, contact.tangential_force
 
     @property
     def slip(self) -> Array:
-        """Slip on a support, m, same shape."""
+        """Slip on a support, shape (n_points, n_instants), m."""
         return self.fields.contact("support").slip
 
     @property
@@ -57,44 +57,48 @@ class Answer:
 
 
 Number = tuple[str, str, float, float]
-"""Quantity, unit, what is known, and what an answer has."""
+"""Quantity, unit, known value, and value of an answer."""
 
 
 def loop(answer: Answer) -> Iterator[Number]:
-    """Largest and last value that a loop finds, and the work that it encloses from the first on.
+    """Largest and last value that a loop finds, and its work in a cycle.
 
-    Both beside the closed form over the same path.
+    The cycle begins at the first largest value of the prescribed quantity.
     """
     curves = answer.settings.exact(answer.problem, answer.fields)
     (exact,) = [curve for curve in curves if curve.of == "loop"]
     loop = answer.loop
     across, up = loop.along(answer.fields)
-    known = exact.across
-    found = across
-    given = up
-    named = loop.across
     if loop.finds_force(answer.problem):
-        known = exact.up
-        found = up
+        yield from _values_of_loop(*loop.up, exact.up, up)
         given = across
-        named = loop.up
-    sizes = np.abs(known)
-    places = {"largest": int(sizes.argmax()), "last": len(sizes) - 1}
-    for word, place in places.items():
-        if word == "largest" or 0.01 < sizes[place] / sizes.max() < 0.99:
-            yield (
-                f"{word} {named[0].lower()}",
-                named[1],
-                float(known[place]),
-                float(found[place]),
-            )
-    if turning_points(given) and (unit := WORKS.get(loop.across[1])):
+    else:
+        yield from _values_of_loop(*loop.across, exact.across, across)
+        given = up
+    unit = WORKS.get(loop.across[1])
+    if turning_points(given) and unit:
         start = int(np.argmax(given))
-        exact_work, work = (
-            float(abs(np.trapezoid(force[start:], over[start:])))
-            for force, over in ((exact.up, exact.across), (up, across))
-        )
-        yield "energy of a cycle", unit, exact_work, work
+        known = _area(exact.up, exact.across, start)
+        found = _area(up, across, start)
+        yield "energy of a cycle", unit, known, found
+
+
+def _values_of_loop(
+    title: str, unit: str, known: Array, found: Array
+) -> Iterator[Number]:
+    """Largest and last value of a quantity, known and found, (n_instants,) each."""
+    name = title.lower()
+    sizes = np.abs(known)
+    largest = int(sizes.argmax())
+    yield f"largest {name}", unit, float(known[largest]), float(found[largest])
+    # A last value that is zero, or the largest one again, is no test.
+    if 0.01 < sizes[-1] / sizes.max() < 0.99:
+        yield f"last {name}", unit, float(known[-1]), float(found[-1])
+
+
+def _area(force: Array, over: Array, start: int) -> float:
+    """Area under a force over its abscissa, (n_instants,) each, from an instant on."""
+    return float(abs(np.trapezoid(force[start:], over[start:])))
 
 
 def opening(answer: Answer) -> Iterator[Number]:
@@ -105,26 +109,27 @@ def opening(answer: Answer) -> Iterator[Number]:
     assert exact is not None
     assert strand.broken is not None
     wire, node = strand.broken
+    # Both nodes of the break stand one after the other.
     before = (wire - 1) * (strand.elements + 1) + node
-    moved = answer.fields.displacement[before : before + 2, -1]
+    displacement = answer.fields.displacement[before : before + 2, -1]
     slip = exact.slip[node:, -1]
-    yield (
-        "opening of the break",
-        "m",
-        float(slip[1] - slip[0]),
-        float(moved[1] - moved[0]),
-    )
+    known = float(slip[1] - slip[0])
+    found = float(displacement[1] - displacement[0])
+    yield "opening of the break", "m", known, found
 
 
 def _half_plane(answer: Answer, total: float) -> HalfPlane:
+    """Closed form of a cylinder pressed on a half-plane by a total force, N/m."""
     settings = answer.settings
-    return HalfPlane(
-        total, settings.radius, settings.young / (1.0 - settings.poisson**2)
-    )
+    modulus = settings.young / (1.0 - settings.poisson**2)
+    return HalfPlane(total, settings.radius, modulus)
 
 
-def _places(answer: Answer, force: Array) -> tuple[Array, Array]:
-    """Lengths of the points of a support, and their places from the middle of a force."""
+def _points(answer: Answer, force: Array) -> tuple[Array, Array]:
+    """Lengths of the points of a support, and their distances from a force's middle.
+
+    The force has shape (n_points,), and so have both results, m.
+    """
     law = answer.problem.rubbing["support"]
     middle = law.positions @ force / force.sum()
     return law.by_point(law.weights[:, None])[:, 0], law.positions - middle
@@ -133,43 +138,73 @@ def _places(answer: Answer, force: Array) -> tuple[Array, Array]:
 def pressed_parabola(answer: Answer) -> Iterator[Number]:
     """Largest pressure, and half-width by the second moment of the pressure."""
     force = answer.support[0][:, -1]
-    lengths, places = _places(answer, force)
+    lengths, distances = _points(answer, force)
     exact = _half_plane(answer, float(force.sum()))
     yield "largest pressure", "Pa", exact.peak, (force / lengths).max()
-    second = float(force @ places**2 / force.sum())
+    second = float(force @ distances**2 / force.sum())
     yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
 
 
 def sheared_parabola(answer: Answer) -> Iterator[Number]:
-    """What sticks as the shear has its first peak, and what a cycle takes.
-
-    The half-width is from the second moments of pressure and friction, as of two square
-    roots: a count of nodes would be coarse.
-    """
-    (pressing, shear) = answer.support
-    friction = answer.settings.friction
+    """Stick zone and traction at the first peak of the shear, and energy of a cycle."""
+    # A third of the instants leads to the first peak, and a cycle follows.
     first = (answer.settings.instants - 1) // 3
-    pressed, held = (np.abs(force[:, first]) for force in (pressing, shear))
-    lengths, places = _places(answer, pressed)
-    total = float(pressed.sum())
-    carried = friction * float(pressed.sum())
-    exact = _half_plane(answer, total)
-    share = float(held.sum()) / carried
-    moments = friction * float(places**2 @ pressed) - float(places**2 @ held)
-    stuck = 2.0 * np.sqrt(moments / (carried - held.sum()))
+    yield from _peak_of_shear(answer, first)
+    yield _energy_of_shear(answer, first)
+
+
+def _peak_of_shear(answer: Answer, first: int) -> Iterator[Number]:
+    """Half-width of stick, and traction in the middle, at a peak of the shear."""
+    pressing, shear = answer.support
+    friction = answer.settings.friction
+    pressed = np.abs(pressing[:, first])
+    held = np.abs(shear[:, first])
+    lengths, distances = _points(answer, pressed)
+    exact = _half_plane(answer, float(pressed.sum()))
+    share = float(held.sum()) / (friction * float(pressed.sum()))
+    stuck = _stick_half_width(friction, distances, pressed, held)
     yield "half-width of stick", "m", exact.stuck(share), stuck
     middle = int(np.argmax(pressed))
-    known = float(exact.traction(places[middle : middle + 1], friction, share)[0])
-    yield "shear traction in the middle", "Pa", known, held[middle] / lengths[middle]
+    tractions = exact.traction(distances[middle : middle + 1], friction, share)
+    found = held[middle] / lengths[middle]
+    yield "shear traction in the middle", "Pa", float(tractions[0]), found
+
+
+def _stick_half_width(
+    friction: float, distances: Array, pressed: Array, held: Array
+) -> float:
+    """Half-width of stick, m, by the second moments of pressure and friction.
+
+    Both are taken as of two square roots: a count of nodes would be coarse.
+
+    Parameters
+    ----------
+    friction
+        Coefficient of friction mu.
+    distances
+        Distances of the points from the middle, shape (n_points,), m.
+    pressed, held
+        Sizes of pressing force and friction, same shape, N/m.
+    """
+    reserve = friction * float(pressed.sum()) - held.sum()
+    moments = friction * float(distances**2 @ pressed) - float(distances**2 @ held)
+    return float(2.0 * np.sqrt(moments / reserve))
+
+
+def _energy_of_shear(answer: Answer, first: int) -> Number:
+    """Energy of a cycle of the shear, after its first peak."""
+    pressing, shear = answer.support
+    friction = answer.settings.friction
     slip = np.diff(answer.slip, axis=1)[:, first:]
     total = float(pressing[:, -1].sum())
     share = abs(float(shear[:, -1].sum())) / (friction * total)
-    energy = _half_plane(answer, total).energy(friction, share)
-    yield "energy of a cycle", "J/m", energy, -np.sum(shear[:, first + 1 :] * slip)
+    known = _half_plane(answer, total).energy(friction, share)
+    found = -np.sum(shear[:, first + 1 :] * slip)
+    return "energy of a cycle", "J/m", known, found
 
 
 def shoe(answer: Answer) -> Iterator[Number]:
-    """Shoe that is pressed over its gap, then pushed to 0.99 and 1.01 of what friction holds."""
+    """Shoe pressed over its gap, then pushed to 0.99 and 1.01 of the friction bound."""
     pressed, held = (force.sum(axis=0) for force in answer.support)
     yield "normal reaction", "N/m", 12e6, pressed[1]
     yield "friction at 0.99", "N/m", 3.564e6, held[2]
@@ -177,79 +212,82 @@ def shoe(answer: Answer) -> Iterator[Number]:
 
 
 def driven_by_fluid(answer: Answer) -> Iterator[Number]:
-    """Front of slip that a fluid drives, over how far this has diffused."""
-    own = answer.settings
-    lack = own.normal_stress - own.shear_stress / own.friction
-    late = slice(own.instants // 2, None)
-    diffused = np.sqrt(4.0 * own.diffusivity * own.times()[late])
-    place = answer.problem.rubbing["support"].positions
+    """Front of slip that a fluid drives, over the length of its diffusion."""
+    settings = answer.settings
+    late = slice(settings.instants // 2, None)
+    diffused = np.sqrt(4.0 * settings.diffusivity * settings.times()[late])
+    positions = answer.problem.rubbing["support"].positions
     slip = np.abs(answer.slip[:, late])
-    reached = np.array([_front(place, at_instant) for at_instant in slip.T])
-    # The pressure is DP erfc(x / sqrt(4 alpha t)) (R. C. Viesca, J. Fluid Mech. 928,
-    # A29, 2021).
-    far = np.linspace(0.0, 20.0, 20_001)
-    (exact,) = fronts(far, (lack / own.overpressure - erfc(far))[:, None])
-    yield (
-        "front over sqrt(4 alpha t)",
-        "-",
-        exact,
-        reached @ diffused / (diffused @ diffused),
-    )
+    found = np.array([_front(positions, at_instant) for at_instant in slip.T])
+    ratio = found @ diffused / (diffused @ diffused)
+    yield "front over sqrt(4 alpha t)", "-", _known_front(settings), ratio
 
 
-def _front(place: Array, slip: Array) -> float:
-    """Where slip ends: towards there its power 2/3 falls evenly, as nothing is singular."""
+def _known_front(settings: Any) -> float:
+    """Front of slip over sqrt(4 alpha t).
+
+    The pressure is DP erfc(x / sqrt(4 alpha t)).
+    R. C. Viesca, J. Fluid Mech. 928, A29, 2021.
+    """
+    reserve = settings.normal_stress - settings.shear_stress / settings.friction
+    positions = np.linspace(0.0, 20.0, 20_001)
+    strength = reserve / settings.overpressure - erfc(positions)
+    (front,) = fronts(positions, strength[:, None])
+    return float(front)
+
+
+def _front(positions: Array, slip: Array) -> float:
+    """Position where slip ends, m: linear extrapolation of its power 2/3 to zero.
+
+    Positions, m, and slip, m, have shape (n_points,). The power is straight near the
+    front, where no stress is singular.
+    """
     last = np.flatnonzero(slip > NO_SLIP * slip.max())[-1]
     near = slice(last - 2, last + 1)
-    slope, level = np.polyfit(place[near], slip[near] ** (2.0 / 3.0), 1)
+    slope, level = np.polyfit(positions[near], slip[near] ** (2.0 / 3.0), 1)
     return float(-level / slope)
 
 
 def growing_strength(answer: Answer) -> Iterator[Number]:
-    """Slip under a strength that grows from the middle, where it is exceeded by all that it grows.
+    """Slip under a strength that grows from the middle, where the load exceeds it.
 
-    The last node that slips has no part of its share, half an element, that sticks.
+    The closed form leaves out that the last node that slips stands for half an element
+    that sticks.
     """
-    own = answer.settings
-    place = answer.problem.rubbing["support"].positions
-    half_length = own.normal_profile[1][0]
-    strength = own.friction * own.normal_stress
-    stiffness = 0.5 * own.young / (1.0 - own.poisson**2)
-    exact = slip_under_growing_strength(
-        place, half_length, own.shear_stress - strength, stiffness
-    )
+    settings = answer.settings
+    positions = answer.problem.rubbing["support"].positions
+    half_length = settings.normal_profile[1][0]
+    strength = settings.friction * settings.normal_stress
+    excess = settings.shear_stress - strength
+    stiffness = 0.5 * settings.young / (1.0 - settings.poisson**2)
+    exact = slip_under_growing_strength(positions, half_length, excess, stiffness)
     slip = np.abs(answer.slip[:, -1])
-    middle = int(np.argmin(np.abs(place - half_length / 2)))
+    middle = int(np.argmin(np.abs(positions - half_length / 2)))
     yield "slip in the middle", "m", exact[0], slip[0]
     yield "slip half-way to the end", "m", exact[middle], slip[middle]
 
 
 def joint(answer: Answer) -> Iterator[Number]:
-    """Slip at the well of a fault that gives way like a joint, and the stiffness that it shows.
+    """Slip at the well of a fault that gives way like a joint, and its stiffness.
 
-    Both bodies are in series with it, and their far sides stay where they are.
+    Both bodies are in series with the joint, and their far sides do not move.
     """
-    own = answer.settings
+    settings = answer.settings
     law = answer.problem.rubbing["support"]
-    height = own.height
-    modulus = 0.5 * own.young / (1.0 + own.poisson)
-    stiffness = own.tangential_stiffness
-    alone = own.shear_stress / stiffness
+    modulus = 0.5 * settings.young / (1.0 + settings.poisson)
+    stiffness = settings.tangential_stiffness
+    alone = settings.shear_stress / stiffness
     slip = answer.slip[:, -1]
     held = -answer.fields.contact("support").tangential_force[:, -1]
     areas = law.by_point(law.weights)
-    exact = alone / (1.0 + modulus / (2.0 * stiffness * height))
-    yield "slip at the well", "m", exact, float(slip[0])
-    yield (
-        "friction per area over slip",
-        "N/m^3",
-        stiffness,
-        float((held / areas / slip).max()),
-    )
+    known = alone / (1.0 + modulus / (2.0 * stiffness * settings.height))
+    yield "slip at the well", "m", known, float(slip[0])
+    found = float((held / areas / slip).max())
+    yield "friction per area over slip", "N/m^3", stiffness, found
 
 
 def _forces(answer: Answer) -> tuple[float, float]:
-    """What presses on a brick, and its weight, N/m."""
+    """Pressing force on a brick, and weight of a brick, N/m."""
     settings = answer.settings
     weight = settings.unit_weight * settings.length * settings.height
     return settings.pressure * settings.length, weight
@@ -258,32 +296,32 @@ def _forces(answer: Answer) -> tuple[float, float]:
 def pile(answer: Answer) -> Iterator[Number]:
     """Shear force of a pile of bricks, which slides at its top, or tips about its toe.
 
-    About the toe what presses, and the weight of the bricks, have half a length.
+    About the toe the pressing force, and the weight of the bricks, have a lever of half
+    a length.
     """
     settings = answer.settings
-    (pressed, brick) = _forces(answer)
-    slides = settings.friction * (pressed + brick)
+    pressing, brick = _forces(answer)
+    slides = settings.friction * (pressing + brick)
     count = settings.courses
-    tips = 0.5 * settings.length * (pressed + count * brick) / (count * settings.height)
-    yield (
-        "shear force",
-        "N/m",
-        min(slides, tips),
-        float(answer.loop.along(answer.fields)[1][-1]),
-    )
+    total = pressing + count * brick
+    tips = 0.5 * settings.length * total / (count * settings.height)
+    _, force = answer.loop.along(answer.fields)
+    yield "shear force", "N/m", min(slides, tips), float(force[-1])
 
 
 def weighed_wall(answer: Answer) -> Iterator[Number]:
-    """What the ground carries of a wall."""
-    pressed, brick = _forces(answer)
-    grounds = [name for name in answer.problem.rubbing if name.startswith("support")]
-    across = [answer.fields.contact(name).normal_force for name in grounds]
-    force = sum(float(own[:, -1].sum()) for own in across if own is not None)
-    yield "force on the ground", "N/m", 4.0 * (pressed + 4.0 * brick), force
+    """Force of a wall on the ground, under its weight and a pressure."""
+    pressing, brick = _forces(answer)
+    found = 0.0
+    for name in answer.problem.rubbing:
+        force = answer.fields.contact(name).normal_force
+        if name.startswith("support") and force is not None:
+            found += float(force[:, -1].sum())
+    yield "force on the ground", "N/m", 4.0 * (pressing + 4.0 * brick), found
 
 
 def moved_end(answer: Answer) -> Iterator[Number]:
-    """Force that moves an end of a rod whose other end is free: sqrt(2 E S mu p u)."""
+    """Force that moves an end of a rod with a free other end: sqrt(2 E S mu p u)."""
     rods = answer.settings.structure()
     assert isinstance(rods, Rods)
     assert rods.right.displacement is not None
@@ -294,24 +332,30 @@ def moved_end(answer: Answer) -> Iterator[Number]:
 
 
 def on_slope(answer: Answer) -> Iterator[Number]:
-    """Part of the weight that presses on a slope where it is steepest, whatever a spring pulls."""
-    own = answer.settings
-    angle = np.radians(own.path("slope_load"))
+    """Part of the weight that presses on a slope where it is steepest.
+
+    The pull of a spring along the slope does not change it.
+    """
+    settings = answer.settings
+    angle = np.radians(settings.path("slope_load"))
     steepest = int(angle.argmax())
-    known = own.weight * float(np.cos(angle[steepest]))
+    known = settings.weight * float(np.cos(angle[steepest]))
     yield "pressing force", "N/m", known, float(answer.support[0][:, steepest].sum())
 
 
 def pushed_block(answer: Answer) -> Iterator[Number]:
-    """Forces and moments of the side that pushes a block under pressure, and of its support."""
-    own = answer.settings
+    """Forces and moments of the pushed side of a block, and of its support."""
+    settings = answer.settings
     problem = answer.problem
     fields = answer.fields
-    load = -own.top_normal_traction * own.length
+    load = -settings.top_normal_traction * settings.length
     pressing = answer.support[0][:, -1]
     push = reaction(problem, "left", 0).of(fields)
     moment = reaction_moment(problem, "left").of(fields)
+    # The foot is at the origin, at the left end of the support.
     around_foot = float(moment[-1] + problem.rubbing["support"].positions @ pressing)
-    yield "force at the pushed side", "N/m", own.friction * load, float(push[-1])
+    held = settings.friction * load
+    yield "force at the pushed side", "N/m", held, float(push[-1])
     yield "pressing force", "N/m", load, float(pressing.sum())
-    yield "moment of both about the foot", "N", 0.5 * load * own.length, around_foot
+    known = 0.5 * load * settings.length
+    yield "moment of both about the foot", "N", known, around_foot

@@ -1,4 +1,4 @@
-"""Lessons: files that are read, checked against the engine, and shown by the page.
+"""Lessons: files that are read, tested by runs, and shown by the page.
 
 A lesson is a question, a prediction, a run with one or two controls, and claims that
 runs test.
@@ -41,15 +41,25 @@ OF_CHECKPOINT = {
 """Keys of a checkpoint; `settings` and `tolerance` may be left out."""
 MOST_CONTROLS = 2
 FEWEST_POINTS = 3
-"""Of a curve that one may draw."""
+"""Smallest number of points of a curve that learners may draw."""
 
 
 @dataclass(frozen=True, eq=False)
 class Claim:
     """A claim of a lesson on a quantity of a run.
 
-    It holds from `low` to `high`, infinite for what never comes; `expected` says so in
-    words.
+    Attributes
+    ----------
+    claim
+        The claim in words.
+    settings
+        Settings of the run.
+    quantity
+        Quantity that is measured.
+    low, high
+        Range in which the claim holds, infinite for an event that never comes.
+    expected
+        This range in words.
     """
 
     claim: str
@@ -60,10 +70,10 @@ class Claim:
     expected: str
 
     def tested(self, run: FinishedRun, share: float) -> tuple[bool, str]:
-        """Whether it holds in a run, and what was measured there, in words.
+        """Test the claim in a run: whether it holds, and a sentence on the values.
 
-        A quantity of one instant has to be as expected where the plots stand, too: at a
-        share of the interval.
+        A quantity of one instant has to be as expected at the instant of the plots,
+        too, which is at a `share` of the interval.
         """
         quantity = self.quantity
         value = self.quantity(run)
@@ -73,13 +83,13 @@ class Claim:
             seen = quantity.of(run, round(share * (run.problem.n_instants - 1)))
             if not self.low <= seen <= self.high:
                 holds = False
-                words += (
-                    f", but {_written(seen, quantity.unit)} at the instant of the plots"
-                )
+                at_plots = _written(seen, quantity.unit)
+                words += f", but {at_plots} at the instant of the plots"
         return holds, f"{quantity.title}: {words}; expected {self.expected}"
 
 
 def _written(value: float, unit: str) -> str:
+    """Text of a value with its unit."""
     if math.isinf(value):
         return "never"
     return f"{value:.4g} {unit}".strip()
@@ -87,10 +97,11 @@ def _written(value: float, unit: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Lesson:
-    """A lesson as its file says, whose name it has (app/lessons/README.md).
+    """A lesson by its file, whose name it has.
 
-    `right` is the index of the right choice; text and explanation are in paragraphs.
-    `instant` and `until` are shares of the interval. No `interface` is the first one.
+    `app/lessons/README.md` explains the keys. `right` is the index of the right choice;
+    text and explanation are in paragraphs. `instant` and `until` are shares of the
+    interval. An empty `interface` means the first one.
     """
 
     name: str
@@ -115,17 +126,19 @@ class Lesson:
 
     @property
     def curve(self) -> list[tuple[float, float]]:
-        """What is measured over the setting that one draws over, in its order.
+        """Expected values over the setting `draw`, in its order.
 
-        Of the checkpoints that change nothing else and ask for the quantity of the
-        first of them: the middle of what is expected, infinite for never.
+        The points are those of the checkpoints that change this setting alone and ask
+        for the quantity of the first of them: the middle of the range that is expected,
+        infinite for never.
         """
         curve: dict[float, float] = {}
-        own = self.settings.values()
+        given = self.settings.values()
         asked = ""
         for claim in self.checkpoints:
             values = claim.settings.values()
-            same = all(values[name] == own[name] for name in own if name != self.draw)
+            others = [name for name in given if name != self.draw]
+            same = all(values[name] == given[name] for name in others)
             if self.draw in values and same and asked in ("", claim.quantity.name):
                 asked = claim.quantity.name
                 curve[values[self.draw]] = 0.5 * (claim.low + claim.high)
@@ -133,10 +146,14 @@ class Lesson:
 
 
 def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
-    """Whether what a lesson claims holds, each with a line; equal settings share a run."""
+    """Test the claims of a lesson: whether each holds, and a line on it.
+
+    Claims with equal settings share a run.
+    """
     reads = {claim.quantity.reads for claim in lesson.checkpoints}
     errors = "errors" in reads
     indicators = "indicators" in reads
+    # Claims often test several quantities of one run.
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
         key = dump(claim.settings)
@@ -145,7 +162,10 @@ def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
                 claim.settings, errors=errors, indicators=indicators
             )
         holds, words = claim.tested(runs[key], lesson.instant)
-        yield holds, f"{'+' if holds else '-'} {claim.claim} {words}"
+        mark = "-"
+        if holds:
+            mark = "+"
+        yield holds, f"{mark} {claim.claim} {words}"
 
 
 def lesson_from_file(path: Path) -> Lesson:
@@ -155,6 +175,7 @@ def lesson_from_file(path: Path) -> Lesson:
 
 
 def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
+    """Lesson of the table of a file; tables that are no lesson are refused."""
     kept = {
         "scene": str,
         "settings": dict,
@@ -174,19 +195,17 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     for key in ("text", "explanation"):
         with placed(key):
             values[key] = _paragraphs(values[key], controls)
-    checkpoints = tuple(_checkpoints(values["checkpoints"], settings))
-    changed = {
-        "settings": settings,
-        "right": values["right"] - 1,
-        "checkpoints": checkpoints,
-    }
-    lesson = Lesson(name=name, **(values | changed))
+    values["checkpoints"] = tuple(_checkpoints(values["checkpoints"], settings))
+    values["settings"] = settings
+    # Files count from 1.
+    values["right"] -= 1
+    lesson = Lesson(name=name, **values)
     _check(lesson)
     return lesson
 
 
 def _check(lesson: Lesson) -> None:
-    """Refuse numbers out of range, and names of what there is not."""
+    """Refuse numbers out of range, and unknown names."""
     right = lesson.right + 1
     count = len(lesson.choices)
     can = f"the number of one of at least two choices, of which there are {count}"
@@ -203,51 +222,54 @@ def _check(lesson: Lesson) -> None:
     known = ", ".join(lesson.views)
     are_shown = {*lesson.beside} <= {*lesson.views}
     require(are_shown, "beside", lesson.beside, known, "choose some of its views")
-    points = [
-        place for place, value in lesson.curve if place > 0.0 and math.isfinite(value)
-    ]
+    _check_curve(lesson)
+
+
+def _check_curve(lesson: Lesson) -> None:
+    """Refuse a curve to draw that has too few points."""
+    points = []
+    for position, value in lesson.curve:
+        if position > 0.0 and math.isfinite(value):
+            points.append(position)
     is_drawn = not lesson.draw or len(points) >= FEWEST_POINTS
     can = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
-    require(
-        is_drawn, "draw", lesson.draw, can, "write more checkpoints, or leave it out"
-    )
+    remedy = "write more checkpoints, or leave it out"
+    require(is_drawn, "draw", lesson.draw, can, remedy)
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
-    """Paragraphs between empty lines; placeholders that stand for nothing are refused."""
-    for place in re.findall(r"\{(.*?)\}", text):
-        kind, _, name = place.partition(":")
+    """Paragraphs between empty lines; unknown placeholders are refused."""
+    for placeholder in re.findall(r"\{(.*?)\}", text):
+        kind, _, name = placeholder.partition(":")
         if kind == "value":
             reading(name)
         elif kind != "control" or name not in controls:
             known = ", ".join(f"{{control:{control}}}" for control in controls)
+            can = f"{known}, {{value:QUANTITY}}"
             remedy = "correct what stands in braces"
-            raise SettingError(
-                "placeholder", place, f"{known}, {{value:QUANTITY}}", remedy
-            )
+            raise SettingError("placeholder", placeholder, can, remedy)
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
 
 
 def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim]:
-    require(
-        bool(values),
-        "checkpoints",
-        values,
-        "at least one",
-        "say what the lesson claims",
-    )
+    """Claims of the tables of checkpoints; other entries are refused."""
+    remedy = "say what the lesson claims"
+    require(bool(values), "checkpoints", values, "at least one", remedy)
     for number, entry in enumerate(values, start=1):
         with placed(f"checkpoint {number}"):
             is_table = isinstance(entry, dict)
             require(is_table, "checkpoints", entry, "a table", "write [[checkpoints]]")
             check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
-            own = settings.replace(**entry.get("settings", {}))
-            quantity = entry["quantity"]
-            yield Claim(entry["claim"], own, reading(quantity), *_expected(entry))
+            changed = settings.replace(**entry.get("settings", {}))
+            quantity = reading(entry["quantity"])
+            yield Claim(entry["claim"], changed, quantity, *_expected(entry))
 
 
 def _expected(entry: Mapping[str, Any]) -> tuple[float, float, str]:
-    """Both ends of what is expected, and words: a number and its tolerance, a range, or "never"."""
+    """Low and high end of the expected range, and the range in words.
+
+    A range is given by a number and its tolerance, by two numbers, or by "never".
+    """
     value = entry["expected"]
     tolerance = entry.get("tolerance")
     if value == "never" and tolerance is None:

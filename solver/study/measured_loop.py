@@ -1,20 +1,20 @@
-"""A measured loop, force over displacement, as tables have it, beside a run, and their distance.
+"""A measured loop, force over displacement, and its distance to a run.
 
-A run has one of both given and finds the other: the force is compared where the
-displacement is given, and else the displacement. With the difference d_j to row j of
-the table,
+A run has one of both prescribed and finds the other: the force is compared where the
+displacement is prescribed, and otherwise the displacement. With the difference d_j to
+row j of the table,
 
     distance = sqrt(mean of d_j^2) / (largest - smallest measured value),
 
 where each row counts alike. Rows that have a time are compared at that time, if it is
 in the run, whose loop is linear between its instants.
 
-Rows without times are matched along the path. What is given, in the table and in the
-run, is cut into branches at its reversals (swings of less than 5 % of the range are
-none). The branches of the table are laid on as many branches of the run that go the
-same ways, so that their ends fit best; of equals on the last, which are those of a
-steady loop. In a branch rows are matched by the value of what is given; beyond its ends
-they are compared with these.
+Rows without times are matched along the path. The prescribed quantity, in the table and
+in the run, is cut into branches at its reversals (swings of less than 5 % of the range
+are ignored). The branches of the table are laid on as many branches of the run with the
+same directions, so that their ends fit best; of equal fits the last one counts, which
+is that of a steady loop. In a branch rows are matched by the prescribed value; beyond
+the ends of a branch they are compared with its ends.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop, LoopFields
 from solver.files.columns import KINDS, TableColumn, unit_doubt
@@ -35,19 +35,32 @@ from solver.settings.definitions import SettingError
 from solver.study.comparison import FEWEST, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
 
-CAN = "CSV whose head names displacement and force of every row, and their time if it is known"
+CAN = (
+    "CSV whose head names displacement and force of every row, "
+    "and their time if it is known"
+)
 ALIKE = 0.02
-"""Share of the range by which the ends of branches may differ, each, that fit equally
-well."""
+"""Share of the range up to which misfits of the ends of branches count as equal."""
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredLoop:
-    """A measured loop, in SI and the units of the loop of its scene, and what was read of the file.
+    """A measured loop, in SI, as it was read from a file.
 
-    Displacement, force and times, s, have shape (n_rows,); without times rows are
-    matched along the path. Of displacement and force `bare` has the names where the
-    file gives no unit, else "".
+    Attributes
+    ----------
+    displacement, force
+        Values of every row, shape (n_rows,), in the units of the loop of the scene.
+    times
+        Times of the rows, shape (n_rows,), s; without them rows are matched along the
+        path.
+    units
+        Units of displacement and force.
+    source, message
+        Name of the file, and how its columns were understood.
+    bare
+        Names of the columns of displacement and force where the file gives no unit,
+        else empty.
     """
 
     displacement: Array
@@ -59,41 +72,49 @@ class MeasuredLoop:
     bare: tuple[str, str] = ("", "")
 
     def unit_doubts(self, displacement: Array, force: Array) -> list[str]:
-        """Sentences where it is some thousand times off a run's loop, (n_instants,) each.
+        """Sentences on columns that are some thousand times off a run's loop.
 
-        Only what has no unit in the file is doubted.
+        Displacement and force of the run have shape (n_instants,), in the units of the
+        loop. Only columns without a unit in the file are doubted.
         """
-        pairs = ((self.displacement, displacement), (self.force, force))
-        doubts = [
-            unit_doubt(name, unit, float(np.ptp(own)), float(np.ptp(run)), "the run")
-            for (own, run), name, unit in zip(pairs, self.bare, self.units, strict=True)
-            if name
-        ]
+        measured = (self.displacement, self.force)
+        of_run = (displacement, force)
+        doubts = []
+        for column, name in enumerate(self.bare):
+            if not name:
+                continue
+            size = float(np.ptp(measured[column]))
+            expected = float(np.ptp(of_run[column]))
+            unit = self.units[column]
+            doubts.append(unit_doubt(name, unit, size, expected, "the run"))
         return [doubt for doubt in doubts if doubt]
 
     def csv(self) -> str:
-        """Table of it, as `read_loop` takes it."""
-        if self.times is None:
-            times = {}
-        else:
-            times = {"time [s]": self.times}
-        heads = [f"displacement [{self.units[0]}]", f"force [{self.units[1]}]"]
-        return csv_of({**times, heads[0]: self.displacement, heads[1]: self.force})
+        """Table of the loop as CSV, which `loop_in` reads."""
+        across, up = self.units
+        columns = {}
+        if self.times is not None:
+            columns["time [s]"] = self.times
+        columns[f"displacement [{across}]"] = self.displacement
+        columns[f"force [{up}]"] = self.force
+        return csv_of(columns)
 
 
 def csv_of(columns: Mapping[str, Array]) -> str:
-    """Columns of numbers by their heads as CSV."""
-    rows = (
-        ",".join(f"{value:.10g}" for value in row)
-        for row in zip(*columns.values(), strict=True)
-    )
-    return "\n".join([",".join(columns), *rows, ""])
+    """Columns of numbers, shape (n_rows,) each, by their heads, as CSV."""
+    lines = [",".join(columns)]
+    for row in zip(*columns.values(), strict=True):
+        lines.append(",".join(f"{value:.10g}" for value in row))
+    return "\n".join([*lines, ""])
 
 
 def columns_of(
     table: Table, axes: Axes
 ) -> tuple[TableColumn | None, TableColumn, TableColumn]:
-    """Columns of time, where there is one, displacement and force that the head has to name."""
+    """Columns of time (None without one), displacement and force, as the head has them.
+
+    A table that does not name displacement and force is refused.
+    """
     columns = table.columns
     if not any(column.is_known for column in columns):
         raise table.refuse(
@@ -111,7 +132,7 @@ def columns_of(
 
 
 def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
-    """The loop in a table, for a loop of these titles and units.
+    """Read the loop in a table, for a loop of these titles and units.
 
     Raises
     ------
@@ -120,44 +141,60 @@ def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
         few, with words or infinite numbers in them, or values that are all the same.
     """
     table = table.given_as("the measured loop", CAN)
-    chosen = columns_of(table, axes)
-    roles = zip(chosen, (("time", "s"), *axes), strict=True)
-    used = {
-        name: (column, unit) for column, (name, unit) in roles if column is not None
-    }
+    time, across, up = columns_of(table, axes)
+    (across_title, across_unit), (up_title, up_unit) = axes
+    used = {}
+    if time is not None:
+        used["time"] = (time, "s")
+    used[across_title] = (across, across_unit)
+    used[up_title] = (up, up_unit)
     reading = in_si(table, used)
     *times, displacement, force = reading.numbers
-    if len(force) < FEWEST:
-        raise table.refuse(f"it has {len(force)} rows: give at least {FEWEST}")
-    for values, (title, _) in zip((displacement, force), axes, strict=True):
-        if np.ptp(values) == 0.0:
-            raise table.refuse(f"{title} has the same value in all rows")
+    _check_rows(table, across_title, displacement)
+    _check_rows(table, up_title, force)
     message = reading.message
     if not times:
         message += "; matched along the path, as no time is given"
-    _, across, up = chosen
     return MeasuredLoop(
         displacement=displacement,
         force=force,
         times=times[0] if times else None,
-        units=(axes[0][1], axes[1][1]),
+        units=(across_unit, up_unit),
         source=table.source,
         message=message,
         bare=(_bare(across), _bare(up)),
     )
 
 
+def _check_rows(table: Table, title: str, values: Array) -> None:
+    """Refuse values, (n_rows,), that are too few or all the same."""
+    if len(values) < FEWEST:
+        raise table.refuse(f"it has {len(values)} rows: give at least {FEWEST}")
+    if np.ptp(values) == 0.0:
+        raise table.refuse(f"{title} has the same value in all rows")
+
+
 def _bare(column: TableColumn) -> str:
-    """Name of a column without a unit; empty of one with a unit."""
-    return "" if column.unit else column.name
+    """Name of a column without a unit; empty for a column with a unit."""
+    if column.unit:
+        return ""
+    return column.name
 
 
 class LoopComparison:
-    """A measured loop beside the runs of one problem.
+    """Comparison of a measured loop with the runs of one problem.
 
-    Where `finds_force`, displacement is given and force is compared, else the other way
-    round; `quantity` and `given` are their titles. The rows in `counted`, (n_rows,),
-    are compared.
+    Attributes
+    ----------
+    measured, loop
+        The measured loop, and the loop that the scene shows.
+    finds_force
+        Whether displacement is prescribed and force is compared, or the other way
+        round.
+    given, quantity
+        Titles of the prescribed and of the compared quantity.
+    counted
+        Whether a row is compared, shape (n_rows,).
     """
 
     def __init__(self, measured: MeasuredLoop, loop: Loop, problem: Problem) -> None:
@@ -168,41 +205,48 @@ class LoopComparison:
         if measured.units != (x, y):
             can = f"a loop of {across} ({x}) and {up} ({y})"
             raise self._refusal(can, "load one of this scene")
+        self.counted = self._in_the_run()
+        displacement = measured.displacement[self.counted]
+        force = measured.force[self.counted]
         self.finds_force = loop.finds_force(problem)
         if self.finds_force:
             self.given = across
             self.quantity = up
+            self._given = displacement
+            self._found = force
         else:
             self.given = up
             self.quantity = across
-        self.counted = np.ones(len(measured.force), dtype=bool)
-        if measured.times is not None:
-            first, last = self._instants[[0, -1]]
-            self.counted = (measured.times >= min(first, 0.0)) & (
-                measured.times <= last
+            self._given = force
+            self._found = displacement
+        self._given_range = float(np.ptp(self._given)) or 1.0
+        self._found_range = float(np.ptp(self._found)) or 1.0
+
+    def _in_the_run(self) -> Flags:
+        """Rows during the run, shape (n_rows,); all rows without times.
+
+        A table with too few of them is refused.
+        """
+        times = self.measured.times
+        if times is None:
+            return np.ones(len(self.measured.force), dtype=bool)
+        first, last = self._instants[[0, -1]]
+        counted = (times >= min(first, 0.0)) & (times <= last)
+        if counted.sum() < FEWEST:
+            ends = f"{times.min():g} s to {times.max():g} s"
+            remedy = (
+                "name the unit of its times (time [ms]), shift or scale them, "
+                "set duration, or leave the column of time out"
             )
-            if self.counted.sum() < FEWEST:
-                ends = f"{measured.times.min():g} s to {measured.times.max():g} s"
-                remedy = (
-                    "name the unit of its times (time [ms]), shift or scale them, set duration, "
-                    "or leave the column of time out"
-                )
-                can = f"at least {FEWEST} rows in the run, which lasts {last:g} s"
-                raise self._refusal(can, f"it goes from {ends}: {remedy}")
-        pair = measured.displacement[self.counted], measured.force[self.counted]
-        if self.finds_force:
-            self._given, self._found = pair
-        else:
-            self._given, self._found = pair[::-1]
-        self._sizes = [
-            float(np.ptp(values)) or 1.0 for values in (self._given, self._found)
-        ]
+            can = f"at least {FEWEST} rows in the run, which lasts {last:g} s"
+            raise self._refusal(can, f"it goes from {ends}: {remedy}")
+        return np.asarray(counted)
 
     def _refusal(self, can: str, remedy: str) -> SettingError:
         return SettingError("the measured loop", self.measured.source, can, remedy)
 
     def drive_messages(self, distance: float) -> list[str]:
-        """A sentence where what is given is farther from the measured than branches that fit."""
+        """Sentence on a prescribed path that is at a distance from the measured one."""
         far = f"{100.0 * distance:.2g} % of its range from the measured"
         message = f"{self.given} of the run is {far}: give the run the measured path"
         if distance > ALIKE:
@@ -210,11 +254,11 @@ class LoopComparison:
         return []
 
     def of(self, fields: LoopFields) -> float:
-        """Distance to an iterate, or to a reference."""
+        """Distance to an iterate or to a reference, as a share of the range."""
         return float(self.figures(fields)["distance"])
 
     def figures(self, fields: LoopFields) -> dict[str, Any]:
-        """What is compared and given, their distances, and numbers of rows, for scripts."""
+        """Quantities that are compared and prescribed, distances, rows, for scripts."""
         differences, drive = self.differences(*self.loop.along(fields))
         return {
             "quantity": self.quantity,
@@ -227,10 +271,16 @@ class LoopComparison:
         }
 
     def differences(self, displacement: Array, force: Array) -> tuple[Array, Array]:
-        """What is found, and what is given, of a run less the rows that are compared, (n_counted,).
+        """Differences of a run from the rows that are compared, (n_counted,) each.
 
-        Both are shares of the measured range. A table is refused whose branches are
-        none of the run's.
+        The first are those of the compared quantity, the second those of the prescribed
+        one, as shares of the measured range. A table is refused whose branches are none
+        of the run's.
+
+        Parameters
+        ----------
+        displacement, force
+            Loop of the run, shape (n_instants,), in its units.
         """
         if self.finds_force:
             given = displacement
@@ -238,67 +288,79 @@ class LoopComparison:
         else:
             given = force
             found = displacement
+        instants = np.arange(len(self._instants))
         if self.measured.times is not None:
-            instants = np.arange(len(self._instants))
-            places = np.interp(
-                self.measured.times[self.counted], self._instants, instants
-            )
+            times = self.measured.times[self.counted]
+            places = np.interp(times, self._instants, instants)
         else:
             places = self._along_path(given)
-        values = (
-            np.interp(places, np.arange(len(line)), line) for line in (found, given)
-        )
-        pairs = zip(values, (self._found, self._given), self._sizes[::-1], strict=True)
-        own, drive = ((value - measured) / size for value, measured, size in pairs)
-        return own, drive
+        difference = np.interp(places, instants, found) - self._found
+        drive = np.interp(places, instants, given) - self._given
+        return difference / self._found_range, drive / self._given_range
 
     def _along_path(self, given: Array) -> Array:
-        """Places of the rows among the instants of a run, (n_counted,), fractions between them."""
+        """Places of the rows among the instants of a run, with fractions, (n_counted,).
+
+        `given` is the prescribed quantity of the run, shape (n_instants,).
+        """
         rows = branches(self._given)
         instants = branches(given)
-        ways = np.sign(np.diff(self._given[rows]))
-        own = np.sign(np.diff(given[instants]))
-        misfits = {
-            first: float(
-                np.abs(
-                    given[instants[first : first + len(rows)]] - self._given[rows]
-                ).sum()
-            )
-            for first in range(len(own) - len(ways) + 1)
-            if np.array_equal(own[first : first + len(ways)], ways)
-        }
+        directions = np.sign(np.diff(self._given[rows]))
+        first = self._first_branch(given, instants, rows)
+        places = np.empty(len(self._given))
+        of_run = pairwise(instants[first : first + len(rows)])
+        of_table = pairwise(rows)
+        for (start, stop), (begin, end), direction in zip(
+            of_run, of_table, directions, strict=True
+        ):
+            # `interp` needs values that rise.
+            line = np.maximum.accumulate(direction * given[start : stop + 1])
+            at = np.arange(start, stop + 1)
+            inside = slice(begin + (begin > 0), end + 1)
+            places[inside] = np.interp(direction * self._given[inside], line, at)
+        return places
+
+    def _first_branch(self, given: Array, instants: Indices, rows: Indices) -> int:
+        """First branch of the run on which the branches of the table are laid.
+
+        Parameters
+        ----------
+        given
+            Prescribed quantity of the run, shape (n_instants,).
+        instants, rows
+            Ends of the branches of the run and of the table.
+        """
+        ends = self._given[rows]
+        directions = np.sign(np.diff(ends))
+        count = len(directions)
+        of_run = np.sign(np.diff(given[instants]))
+        misfits = {}
+        # Only branches of the same directions can be laid on each other.
+        for first in range(len(of_run) - count + 1):
+            if np.array_equal(of_run[first : first + count], directions):
+                ends_of_run = given[instants[first : first + len(rows)]]
+                misfits[first] = float(np.abs(ends_of_run - ends).sum())
         if not misfits:
-            counts = f"{len(own)} times, and the measured loop {len(ways)} times"
+            counts = f"{len(of_run)} times, and the measured loop {count} times"
             remedy = "give the run such a load path, or every row its time"
             can = "rows along a path that the run goes, too"
-            raise self._refusal(
-                can, f"{self.given} of the run goes one way {counts}: {remedy}"
-            )
-        enough = min(misfits.values()) + ALIKE * self._sizes[0] * len(rows)
-        first = max(place for place, misfit in misfits.items() if misfit <= enough)
-        places = np.empty(len(self._given))
-        parts = pairwise(instants[first : first + len(rows)])
-        for (begin, end), (start, stop), way in zip(
-            pairwise(rows), parts, ways, strict=True
-        ):
-            line = np.maximum.accumulate(way * given[start : stop + 1])
-            inside = slice(begin + (begin > 0), end + 1)
-            at = np.arange(start, stop + 1)
-            places[inside] = np.interp(way * self._given[inside], line, at)
-        return places
+            text = f"{self.given} of the run goes one way {counts}: {remedy}"
+            raise self._refusal(can, text)
+        # Of equal fits the last is that of a steady loop.
+        enough = min(misfits.values()) + ALIKE * self._given_range * len(rows)
+        return max(first for first, misfit in misfits.items() if misfit <= enough)
 
 
 def branches(path: Array) -> Indices:
-    """Where a path begins, turns back, and ends."""
+    """Start, reversals and end of a path, (n_instants,): the ends of its branches."""
     last = len(path) - 1
-    ends = [0, *(place for place in turning_points(path) if 0 < place < last), last]
-    if len(ends) > 2 and abs(path[ends[-2]] - path[last]) <= SMALLEST_SWING * np.ptp(
-        path
-    ):
-        ends.pop(-2)
-    return np.array(ends)
+    turns = [turn for turn in turning_points(path) if 0 < turn < last]
+    # A last swing that is too small is no branch of its own.
+    if turns and abs(path[turns[-1]] - path[last]) <= SMALLEST_SWING * np.ptp(path):
+        turns.pop()
+    return np.array([0, *turns, last])
 
 
 def rms(values: Sequence[float] | Array) -> float:
-    """Root of the mean of squares."""
+    """Root of the mean of the squares of values, shape (n,)."""
     return float(np.sqrt(np.mean(np.square(values))))

@@ -1,13 +1,13 @@
-"""Times of all methods from settings to result: errors against them, and who is first where.
+"""Times of all methods from settings to result, beside their errors.
 
-Each method pays for what it needs: discretisation, factorisation, the coarser mesh,
-iterations. One pass without the clock finds the errors, and warms up; then timed passes
-run every method once, in turn, and the median of the passes counts. No error is
+Each method is billed for all its parts: discretisation, factorisation, the coarser
+mesh, iterations. One pass without the clock finds the errors, and warms up; then timed
+passes run every method once, in turn, and the median of the passes counts. No error is
 computed while the clock of a pass runs.
 
-Nothing is kept of what was solved before, and `timeit` collects no garbage meanwhile:
-to collect it bills all that the process holds. What is set side by side is of one
-clock, the processor's or not.
+Nothing is kept of earlier solutions, and `timeit` collects no garbage meanwhile, whose
+cost grows with all that the process holds. Times that are compared are of one clock:
+the processor's, or wall time.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
-"""Errors of the friction force whose times make the table."""
+"""Errors of the friction force in the table of times, by their titles."""
 GOAL = 1e-7
 """Error of the friction force at which an iteration ends."""
 MOST_ITERATIONS = 600
@@ -50,28 +50,37 @@ PLAIN: dict[str, Any] = {
     "k_update": "none",
     "finish": "none",
 }
-"""Settings that the forms of LATIN start from; all others are those of the run."""
+"""Settings common to the forms of LATIN; all others are those of the run."""
 FACTORS = (0.5, 1.0, 2.0)
-"""On the sizes and on the instants of the settings."""
+"""Factors on the sizes and on the instants of the settings."""
 LARGE = (*FACTORS, 4.0, 8.0)
-"""On the sizes, where minutes do not matter."""
+"""Factors on the sizes where minutes do not matter."""
 LONGEST = 10.0
+"""Estimated seconds from which a size is left out."""
 LONGEST_OF_LARGE = 600.0
-"""Seconds from which, by estimate, a size is left out."""
+"""The same where minutes do not matter."""
 REPEATS = 3
+"""Number of runs whose median counts."""
 SLOW = 1.0
-"""Seconds from which one run is enough."""
+"""Seconds of both solvers from which one run is enough."""
 INCREMENTAL = "incremental solver"
 FAST = "LATIN fast"
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorCurve:
-    """What a method reaches, and when.
+    """Errors of a method against time.
 
-    Steps are iterations done, or Newton steps of the incremental solver; seconds the
-    time from settings to there, medians of the passes; errors the relative L2 distances
-    to the incremental reference, 0 for itself. All have shape (n,).
+    Attributes
+    ----------
+    method
+        Name of the method.
+    steps
+        Iterations done, or Newton steps of the incremental solver, shape (n,).
+    seconds
+        Time from settings to there, the median of the passes, same shape, s.
+    error_displacement, error_force
+        Relative L2 distances to the incremental reference, 0 for itself, same shape.
     """
 
     method: str
@@ -82,21 +91,24 @@ class ErrorCurve:
 
     @property
     def is_latin(self) -> bool:
-        """Whether it is a form of LATIN."""
+        """Check whether the method is a form of LATIN."""
         return self.method != INCREMENTAL
 
     @property
     def seconds_per_iteration(self) -> float | None:
-        """Median time between two iterations; None for a method that has none."""
+        """Median time between iterations, s; None for a method without iterations."""
         if not self.is_latin or len(self.seconds) < 2:
             return None
         return float(np.median(np.diff(self.seconds)))
 
     def reached(self, level: float) -> tuple[float, float] | None:
-        """Time from which on the friction force has been so near, and the step it was."""
-        near = self.error_force <= level
-        first = near.argmax()
-        if near[first]:
+        """Time, s, and step at which the error of the friction force is first so small.
+
+        None where the method does not reach the level.
+        """
+        is_reached = self.error_force <= level
+        first = is_reached.argmax()
+        if is_reached[first]:
             return (float(self.seconds[first]), float(self.steps[first]))
         return None
 
@@ -107,35 +119,62 @@ def error_against_time(settings: Settings, repeats: int) -> list[ErrorCurve]:
     reference = reference_of(problem)
     distance = distance_to(reference, problem)
     forms = forms_of(settings)
+    # This pass finds the errors, and warms up.
     errors = {method: _errors(form, distance) for method, form in forms.items()}
-    times: dict[str, list[list[float]]] = {
-        method: [] for method in (*forms, INCREMENTAL)
-    }
+    counts = {method: len(values) for method, values in errors.items()}
+    times = _times(settings, forms, counts, repeats)
+    curves = []
+    for method in forms:
+        steps = np.arange(1.0, counts[method] + 1.0)
+        curves.append(ErrorCurve(method, steps, times[method], *errors[method].T))
+    steps = np.array([float(reference.steps)])
+    exact = np.zeros(1)
+    curves.append(ErrorCurve(INCREMENTAL, steps, times[INCREMENTAL], exact, exact))
+    return curves
+
+
+def _times(
+    settings: Settings,
+    forms: dict[str, Settings],
+    counts: dict[str, int],
+    repeats: int,
+) -> dict[str, Array]:
+    """Median times of all methods by name, shape (n,) each, s.
+
+    Parameters
+    ----------
+    settings
+        Settings of the incremental solver.
+    forms, counts
+        Settings and numbers of iterations of the forms of LATIN, by name.
+    repeats
+        Number of passes.
+    """
+    passes: dict[str, list[list[float]]] = {method: [] for method in forms}
+    passes[INCREMENTAL] = []
     for _ in range(repeats):
         for method, form in forms.items():
-            work = partial(_append_times, times[method], form, len(errors[method]))
-            seconds_of(work)
-        times[INCREMENTAL].append(
-            [seconds_of(partial(incremental, settings), time.perf_counter)]
-        )
-    steps = {method: np.arange(1.0, len(own) + 1.0) for method, own in errors.items()}
-    errors[INCREMENTAL] = np.zeros((1, 2))
-    steps[INCREMENTAL] = np.array([float(reference.steps)])
-    return [
-        ErrorCurve(method, steps[method], np.median(each, axis=0), *errors[method].T)
-        for method, each in times.items()
-    ]
+            # The times come from the run; `seconds_of` only keeps garbage uncollected.
+            seconds_of(partial(_append_times, passes[method], form, counts[method]))
+        work = partial(incremental, settings)
+        passes[INCREMENTAL].append([seconds_of(work, time.perf_counter)])
+    return {method: np.median(each, axis=0) for method, each in passes.items()}
 
 
 def forms_of(settings: Settings) -> dict[str, Settings]:
-    """Settings of every form of LATIN that a scene has, by name; nested where it has a start so."""
+    """Settings of every form of LATIN that a scene has, by name.
+
+    Forms with an automatic search direction start nested where the scene allows it.
+    """
     is_nested = settings.applies("start")
-    auto = {"search_direction": "auto", **({"start": "nested"} if is_nested else {})}
-    anderson = {**auto, "acceleration": "anderson"}
+    name = "LATIN auto k"
+    auto = {"search_direction": "auto"}
+    reduced = {"linear_stage": "pgd", **auto}
     if is_nested:
         name = "LATIN auto k, nested"
-    else:
-        name = "LATIN auto k"
+        auto["start"] = "nested"
+        reduced = {"linear_stage": "pgd"}
+    anderson = {**auto, "acceleration": "anderson"}
     forms: dict[str, dict[str, Any]] = {
         "LATIN monoscale": {"multiscale": False},
         "LATIN multiscale": {},
@@ -143,19 +182,21 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
         f"{name}, Anderson": anderson,
         f"{name}, Anderson, k updated": {**anderson, "k_update": "status"},
         FAST: {**anderson, "finish": "at-once"},
-        "LATIN PGD": {"linear_stage": "pgd", **({} if is_nested else auto)},
+        "LATIN PGD": reduced,
     }
     return {
-        method: settings.replace(**{**PLAIN, **form}) for method, form in forms.items()
+        method: settings.replace(**(PLAIN | form)) for method, form in forms.items()
     }
 
 
 def _errors(settings: Settings, distance: Distance) -> Array:
-    """Errors of both fields, (n, 2), until the friction force is as near as the goal."""
+    """Errors of displacement and friction force of every iterate, shape (n, 2).
+
+    Iterations end once the error of the friction force is below `GOAL`.
+    """
     errors: list[tuple[float, float]] = []
-    for iterate, _ in islice(
-        judged(discretise(settings), method_of(settings)), MOST_ITERATIONS
-    ):
+    iterates = judged(discretise(settings), method_of(settings))
+    for iterate, _ in islice(iterates, MOST_ITERATIONS):
         force = distance.of_friction_force(iterate)
         errors.append((distance.of_displacement(iterate), force))
         if not math.isfinite(force) or (force <= GOAL and iterate.number > 1):
@@ -164,7 +205,7 @@ def _errors(settings: Settings, distance: Distance) -> Array:
 
 
 def _append_times(passes: list[list[float]], settings: Settings, number: int) -> None:
-    """Append times after every iteration, with all that the run needs to end, and discretising."""
+    """Append the times from the start to every iteration, with discretisation, s."""
     start = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - start
@@ -175,25 +216,34 @@ def _append_times(passes: list[list[float]], settings: Settings, number: int) ->
 def seconds_of(
     work: Callable[[], object], clock: Callable[[], float] = time.process_time
 ) -> float:
-    """Time of some work, s; of the processor unless another clock is given."""
+    """Time of some work, s: of the processor unless another clock is given."""
     return timeit(work, timer=clock, number=1)
 
 
 def latin(settings: Settings) -> Solution:
-    """Solve as the settings say, with nothing beside that the run does not need."""
+    """Solve as the settings say, without indicators that the run does not need."""
     return solve(discretise(settings), method_of(settings), watch=False)
 
 
 def incremental(settings: Settings) -> Reference:
-    """Solve by increments."""
+    """Solve by the incremental solver."""
     return reference_of(discretise(settings))
 
 
 @dataclass(frozen=True)
 class TimesAtSize:
-    """Medians of both solvers, s, at a size of the first setting that grows with the scene.
+    """Times of both solvers at a size of the scene.
 
-    The message says why there is no answer; it is empty where there is one.
+    Attributes
+    ----------
+    size
+        Value of the first setting that grows with the scene.
+    instants
+        Number of instants.
+    latin, incremental
+        Median times, s.
+    message
+        Reason why there is no answer; empty where there is one.
     """
 
     size: int
@@ -211,37 +261,40 @@ class TimesAtSize:
 
 
 def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSize]:
-    """Measure both solvers, in turns, on multiples of the present size and number of instants.
+    """Measure both solvers, in turns, on multiples of the size and number of instants.
 
-    The method is the fast one; large are sizes that take minutes.
+    The method is the fast form of LATIN; `large` adds sizes that take minutes.
     """
-    names = settings.GROWS
+    factors: tuple[float, ...] = FACTORS
+    longest = LONGEST
     if large:
+        factors = LARGE
         longest = LONGEST_OF_LARGE
-    else:
-        longest = LONGEST
+    names = settings.GROWS
     measured: dict[tuple[int, int], TimesAtSize] = {}
-    for later, size in product(FACTORS, LARGE if large else FACTORS):
-        grown = {name: max(1, round(size * getattr(settings, name))) for name in names}
+    for later, factor in product(FACTORS, factors):
+        changes = {}
+        for name in names:
+            changes[name] = max(1, round(factor * getattr(settings, name)))
         instants = round(later * (settings.instants - 1)) + 1
-        at = grown[names[0]], instants
+        at = changes[names[0]], instants
+        changes["instants"] = instants
         if at not in measured:
-            measured[at] = _measured(
-                settings, {**grown, "instants": instants}, at, longest
-            )
+            measured[at] = _measured(settings, changes, at, longest)
     return list(measured.values())
 
 
 def _measured(
     settings: Settings, changes: dict[str, int], at: tuple[int, int], longest: float
 ) -> TimesAtSize:
-    """Both solvers at one size, unless that takes too long, or one of them has no answer."""
+    """Times of both solvers at a size, or the reason why there are none."""
     try:
         form = forms_of(settings.replace(**changes))[FAST]
     except SettingError:
         return TimesAtSize(*at, message="there is no such size")
-    most = form.max_iterations
-    cost = run_cost(discretise(form), method_of(form), most, with_reference=True)
+    limit = form.max_iterations
+    # An estimate decides before anything is run.
+    cost = run_cost(discretise(form), method_of(form), limit, with_reference=True)
     if cost.seconds > longest:
         return TimesAtSize(*at, message=f"left out: it would take about {cost}")
     try:
@@ -250,12 +303,16 @@ def _measured(
     except NoReferenceError as refusal:
         return TimesAtSize(*at, message=str(refusal))
     ending = latin(form).status.ending
-    seconds: list[tuple[float, ...]] = []
-    while not seconds or (len(seconds) < REPEATS and sum(seconds[0]) < SLOW):
-        seconds.append(
-            tuple(seconds_of(partial(solve, form)) for solve in (latin, incremental))
-        )
-    mine, others = map(statistics.median, zip(*seconds, strict=True))
-    return TimesAtSize(
-        *at, mine, others, "" if ending is Ending.CONVERGED else f"LATIN: {ending}"
-    )
+    message = ""
+    if ending is not Ending.CONVERGED:
+        message = f"LATIN: {ending}"
+    of_latin: list[float] = []
+    of_incremental: list[float] = []
+    is_quick = True
+    while not of_latin or (len(of_latin) < REPEATS and is_quick):
+        of_latin.append(seconds_of(partial(latin, form)))
+        of_incremental.append(seconds_of(partial(incremental, form)))
+        is_quick = of_latin[0] + of_incremental[0] < SLOW
+    ours = statistics.median(of_latin)
+    others = statistics.median(of_incremental)
+    return TimesAtSize(*at, ours, others, message)

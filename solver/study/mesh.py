@@ -1,8 +1,8 @@
-"""Whether elements and instants are enough: a quantity on three of each, and what it tends to.
+"""Mesh study: a quantity on three meshes or numbers of instants, and its limit.
 
 Richardson's extrapolation, with the margin that Roache gives it (J. Fluids Eng. 116,
-405, 1994). Runs end with the exact solution on their mesh, so what differs between them
-is the mesh alone, or the time step alone.
+405, 1994). Runs end with the exact solution on their mesh, so that they differ by the
+mesh alone, or by the time step alone.
 """
 
 from __future__ import annotations
@@ -19,24 +19,31 @@ from solver.study.quantities.quantity import Quantity
 SAFETY = 1.25
 """Roache's factor on what is still missing, for three meshes."""
 LEAST_ORDER = 0.5
+"""Smallest order that is believed: with a smaller one no limit is in sight."""
 LARGEST_ORDER = 2.1
-"""Between which an order is believed: a smaller one has shown no limit yet, and a
-larger one is luck, as no quantity of ours has one from linear elements."""
+"""Largest order that is believed: linear elements give no quantity a larger one."""
 UNSURE = 3.0
-"""Times the largest difference, where there is no limit to believe. Where the order is
-luck it is `SAFETY` times (both: Eca and Hoekstra, J. Comput. Phys. 262, 104, 2014)."""
+"""Factor on the largest difference, where no limit is in sight.
+
+Where the order is too large the factor is `SAFETY` (both: Eca and Hoekstra, J. Comput.
+Phys. 262, 104, 2014)."""
 AN_ELEMENT = "an element's size"
 TIME_STEP = "a time step"
-"""What is halved, in words."""
+"""Size that is halved, in words."""
 EQUAL = 1e-6
-"""Relative difference up to which two values are one."""
+"""Relative difference up to which values count as equal."""
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """A quantity on three meshes, each with elements or steps of half the size of the one before.
+    """A quantity on three meshes, each of half the size of the one before.
 
-    The coarse one is first; `own` is the place of the one that is asked about.
+    Attributes
+    ----------
+    values
+        Values of the quantity, the one on the coarsest mesh first.
+    own
+        Index of the mesh whose error is asked for.
     """
 
     values: tuple[float, float, float]
@@ -44,20 +51,21 @@ class Refinement:
 
     @property
     def is_told(self) -> bool:
-        """Whether all three have a value."""
+        """Check whether the quantity has a value on all three meshes."""
         return all(math.isfinite(value) for value in self.values)
 
     @property
     def _steps(self) -> tuple[float, float]:
-        """Differences from mesh to mesh; none where all are one value."""
+        """Differences from mesh to mesh; zero where all values are equal."""
         coarse, middle, fine = self.values
-        if max(self.values) - min(self.values) <= EQUAL * max(map(abs, self.values)):
+        size = max(abs(value) for value in self.values)
+        if max(self.values) - min(self.values) <= EQUAL * size:
             return 0.0, 0.0
         return middle - coarse, fine - middle
 
     @property
     def order(self) -> float | None:
-        """Power of that size with which the rest goes; None where there is no such."""
+        """Power of the size with which the error falls; None where there is none."""
         first, second = self._steps
         if first * second > 0.0:
             return math.log2(first / second)
@@ -65,7 +73,7 @@ class Refinement:
 
     @property
     def limit(self) -> float:
-        """What the quantity tends to, or that on the finest mesh where nothing tells it."""
+        """Limit of the quantity; its value on the finest mesh if none is in sight."""
         order = self.order
         fine = self.values[-1]
         if order is None or not LEAST_ORDER <= order <= LARGEST_ORDER:
@@ -74,63 +82,72 @@ class Refinement:
 
     @property
     def margin(self) -> float:
-        """To both sides of the limit."""
+        """Margin of the limit to both sides."""
         order = self.order
-        widest = max(map(abs, self._steps))
+        largest = max(abs(step) for step in self._steps)
         if order is None or order < LEAST_ORDER:
-            return UNSURE * widest
-        return SAFETY * (
-            widest if order > LARGEST_ORDER else abs(self.limit - self.values[-1])
-        )
+            return UNSURE * largest
+        if order > LARGEST_ORDER:
+            return SAFETY * largest
+        return SAFETY * abs(self.limit - self.values[-1])
 
     @property
     def deviation(self) -> float:
-        """How far the value that is asked about may be from the limit, as a share of that."""
+        """Largest error of the value that is asked for, as a share of the limit."""
         if not any(self._steps):
             return 0.0
-        most = abs(self.values[self.own] - self.limit) + self.margin
+        error = abs(self.values[self.own] - self.limit) + self.margin
         if self.limit:
-            return most / abs(self.limit)
-        if most:
+            return error / abs(self.limit)
+        if error:
             return math.inf
         return 0.0
 
 
 def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], int]:
-    """Settings with three sizes, each twice as fine as the one before, and the place of their own.
+    """Settings with three sizes, each twice as fine as the one before.
 
-    That is the middle one, or the first where the sizes cannot be halved. Names are
-    those of the mesh, or `instants`, of which the steps are counted. What a scene does
-    not take is refused.
+    The second result is the index of the given settings among them: the middle, or the
+    first where the sizes cannot be halved. Sizes that a scene does not take are
+    refused.
+
+    Parameters
+    ----------
+    settings
+        Settings of the scene.
+    names
+        Names of the settings of the mesh, or `instants`, of which the steps count.
     """
-
-    def refined(factor: float) -> Settings:
-        sizes = {}
-        for name in names:
-            first = 1 if name == "instants" else 0
-            size = factor * (settings.values()[name] - first) + first
-            if size == int(size):
-                sizes[name] = int(size)
-            else:
-                sizes[name] = size
-        return settings.replace(**sizes)
-
     try:
-        return [refined(factor) for factor in (0.5, 1, 2)], 1
+        return [_refined(settings, names, factor) for factor in (0.5, 1, 2)], 1
     except SettingError:
-        return [refined(factor) for factor in (1, 2, 4)], 0
+        return [_refined(settings, names, factor) for factor in (1, 2, 4)], 0
+
+
+def _refined(settings: Settings, names: Sequence[str], factor: float) -> Settings:
+    """Settings with a multiple of these numbers of elements, or of steps."""
+    sizes = {}
+    for name in names:
+        first = 0
+        if name == "instants":
+            first = 1
+        size = factor * (settings.values()[name] - first) + first
+        if size == int(size):
+            size = int(size)
+        sizes[name] = size
+    return settings.replace(**sizes)
 
 
 def decides(settings: Settings, asked: Quantity) -> bool:
-    """Whether a mesh decides a quantity: not how a run went, but what it came to."""
+    """Check whether a quantity is one of the result, which depends on the mesh."""
     return asked.reads is None and asked.applies(settings)
 
 
 def value_on(settings: Settings, asked: Quantity) -> float:
-    """A quantity of the solution on a mesh; NaN where no run certifies one."""
-    run = finished_run(
-        settings.replace(finish="at-once"), errors=False, indicators=False
-    )
+    """A quantity of the certified solution on a mesh; NaN without such a solution."""
+    # Certified runs differ by the mesh, not by their stop rules.
+    certified = settings.replace(finish="at-once")
+    run = finished_run(certified, errors=False, indicators=False)
     if run.solution.is_certified:
         return asked(run)
     return math.nan
@@ -143,46 +160,54 @@ def size_of(settings: Settings) -> str:
 
 
 def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
-    """Two sentences on what three meshes, or numbers of instants, tell by halving a size."""
+    """Two sentences on the limit of a quantity, and on the error of this run."""
     if not refinement.is_told:
-        return "One of the runs came to no certified solution, or has no such value: no answer."
+        return (
+            "One of the runs came to no certified solution, or has no such value: "
+            "no answer."
+        )
     if refinement.margin == 0.0:
         return f"All three are equal: {size} does not change it."
-    limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
+    sentence = _limit_sentence(refinement, unit, size)
     if refinement.limit:
-        own = f"This run is within {_share(refinement)} of that."
-    else:
-        own = ""
+        return f"{sentence} This run is within {_share(refinement)} of that."
+    return sentence
+
+
+def _limit_sentence(refinement: Refinement, unit: str, size: str) -> str:
+    """Sentence on the limit of a quantity with smaller sizes."""
+    limit = f"{refinement.limit:.4g} ± {refinement.margin:.2g} {unit}".rstrip()
     order = refinement.order
     if order is None:
-        told = f"It follows no power of {size}: {limit} is all that is known."
-    elif order < LEAST_ORDER:
-        told = (
-            f"It changes with the power {order:.2f} of {size}, which shows no limit: {limit}, if "
-            "there is one."
+        return f"It follows no power of {size}: {limit} is all that is known."
+    if order < LEAST_ORDER:
+        return (
+            f"It changes with the power {order:.2f} of {size}, which shows no limit: "
+            f"{limit}, if there is one."
         )
-    elif order > LARGEST_ORDER:
-        told = f"It hardly changes any more with {size}: {limit}."
-    else:
-        told = (
-            f"Its error goes with the power {order:.2f} of {size}, and with ever smaller ones it "
-            f"becomes {limit}."
-        )
-    return f"{told} {own}".rstrip()
+    if order > LARGEST_ORDER:
+        return f"It hardly changes any more with {size}: {limit}."
+    return (
+        f"Its error goes with the power {order:.2f} of {size}, and with ever smaller "
+        f"ones it becomes {limit}."
+    )
 
 
 def which_to_refine(elements: Refinement, instants: Refinement) -> str:
-    """What both leave of the error, in a sentence; empty where one of them tells nothing."""
+    """Sentence on the errors that both leave; empty where one of them is not known."""
     if not (elements.is_told and instants.is_told):
         return ""
     if elements.deviation == instants.deviation == 0.0:
         return "Neither more elements nor more instants change it."
     left = f"elements leave up to {_share(elements)}, instants up to {_share(instants)}"
-    more = "elements" if elements.deviation >= instants.deviation else "instants"
+    more = "instants"
+    if elements.deviation >= instants.deviation:
+        more = "elements"
     return f"Refine {more} first: {left}."
 
 
 def _share(refinement: Refinement) -> str:
+    """Text of the largest error as a share of the limit."""
     if refinement.deviation < 1.0:
         return f"{100.0 * refinement.deviation:.2g} %"
     return "all of it"

@@ -1,4 +1,4 @@
-"""A report: sections of words, tables and charts, and the one HTML page that a command makes of it.
+"""Report of a command: sections of words, tables and charts, as one HTML page.
 
 Words and tables are HTML. A chart is plain data: curves on a pair of axes, or a map
 over two. It is drawn by an entry point of the group `slipfront.renderers`, as the
@@ -23,22 +23,46 @@ from solver.arrays import Array, Flags, Indices
 from solver.files.disk import whole_file, write
 
 GROUP = "slipfront.renderers"
-NO_CHARTS = "The page has no charts, as nothing that draws them is installed: pip install slipfront"
-HUES = (
-    *("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9"),
-    *("#7B5CE0", "#999933", "#8C564B", "#B3003C", "#1F9AA0"),
+NO_CHARTS = (
+    "The page has no charts, as nothing that draws them is installed: "
+    "pip install slipfront"
 )
-"""Of curves, from hue 1 on: Okabe and Ito's palette, told apart by the colour-blind,
-and five more for panels of more curves, which have marks besides."""
+HUES = (
+    "#0072B2",
+    "#E69F00",
+    "#009E73",
+    "#CC79A7",
+    "#D55E00",
+    "#56B4E9",
+    "#7B5CE0",
+    "#999933",
+    "#8C564B",
+    "#B3003C",
+    "#1F9AA0",
+)
+"""Colours of curves, from hue 1 on.
+
+The first six are Okabe and Ito's palette, which the colour-blind tell apart; the others
+are for panels of more curves, which have marks besides."""
 Line = Literal["solid", "dashed", "dotted", "points"]
 
 
 @dataclass(frozen=True, eq=False)
 class PanelAxis:
-    """A quantity, its unit (empty for a pure number), and whether decades are evenly spaced.
+    """Axis of a chart.
 
-    Without limits all of the curves is shown. On a whole one only whole numbers have a
-    meaning; names stand at 0, 1, ... where these are no numbers.
+    Attributes
+    ----------
+    quantity, unit
+        Quantity on the axis, and its unit, empty for a pure number.
+    logarithmic
+        Whether decades are evenly spaced.
+    limits
+        Ends of the axis; without them all curves are shown whole.
+    whole
+        Whether only whole numbers have a meaning.
+    names
+        Names that stand at 0, 1, ... in place of numbers.
     """
 
     quantity: str
@@ -58,11 +82,19 @@ class PanelAxis:
 
 @dataclass(frozen=True, eq=False)
 class PanelCurve:
-    """One line of a panel: points, shape (n,), in the units of the axes; none is drawn at NaN.
+    """Curve of a panel.
 
-    Curves of one hue belong together; 0 is the neutral one, of references. A curve
-    without a label is not in the legend, and one of "points" has a thin line between
-    them.
+    Attributes
+    ----------
+    label
+        Label in the legend; without it the curve is not in the legend.
+    x, y
+        Points, shape (n,), in the units of the axes; no point is drawn at NaN.
+    hue
+        Number of the colour; curves of one hue belong together, and 0 is the neutral
+        one, of references.
+    line
+        Style; "points" have a thin line between them.
     """
 
     label: str
@@ -74,10 +106,21 @@ class PanelCurve:
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """Points of a chart that each stand for a run, n of them in the order in which they came.
+    """Points of a chart that each stand for a run, n of them, in order of arrival.
 
-    Each belongs to the curve of its hue; in a panel y is NaN where a run has no value.
-    `holds` is whether it is an answer, and `said` what it is and came to, in words.
+    Attributes
+    ----------
+    numbers
+        Numbers of the runs, shape (n,).
+    x, y
+        Points, shape (n,), in the units of the axes; in a panel y is NaN where a run
+        has no value.
+    hues
+        Hues of the curves that the points belong to, shape (n,).
+    holds
+        Whether the value of a run is an answer, shape (n,).
+    said
+        Settings and result of each run, in words.
     """
 
     numbers: Indices
@@ -90,7 +133,7 @@ class Runs:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One pair of axes with its curves, and the runs that these go through, if they do."""
+    """A pair of axes with curves, and the runs that the curves go through, if any."""
 
     title: str
     x: PanelAxis
@@ -101,9 +144,18 @@ class Panel:
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """A quantity over two settings, whose values ascend.
+    """Map of a quantity over two settings.
 
-    Its values z have shape (len(y_values), len(x_values)), NaN where there is none.
+    Attributes
+    ----------
+    title, x, y, scale
+        Title, axes of the settings, and axis of the quantity.
+    x_values, y_values
+        Values of the settings, ascending, shape (n_x,) and (n_y,).
+    z
+        Values of the quantity, shape (n_y, n_x), NaN where there is none.
+    runs
+        Runs of the map.
     """
 
     title: str
@@ -130,75 +182,93 @@ class PlotSection:
 Section = str | PlotSection
 """Words and tables are HTML."""
 Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
-"""From sections, what all charts of a page need, once, and each of them as HTML of its
-own."""
+"""Function of sections that gives the head of a page with charts, and HTML of each."""
 Shown = Mapping[str, tuple[str, int]]
-"""Columns of a console: head and characters by name."""
+"""Columns on a console: head and number of characters by name."""
 NUMBER = re.compile(r"-|-?\d[\d.e+-]*")
-VERDICTS = "right", "holds", "unsolved", "refused", "unclear", "wrong", "FAILS"
+VERDICTS = (
+    "right",
+    "holds",
+    "unsolved",
+    "refused",
+    "unclear",
+    "wrong",
+    "FAILS",
+)
+"""Texts of cells that have a colour."""
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
 def write_page(file: Path, title: str, report: Sequence[Section]) -> None:
     """Write a report as a page that needs nothing beside it."""
     plots = [part for part in report if isinstance(part, PlotSection)]
-    if plots:
-        render = renderer()
-    else:
-        render = None
-    missing = f"<p>{escape(NO_CHARTS)}</p>"
-    if render:
-        head, drawn = render(plots)
-    else:
-        head = ""
-        drawn = [missing] * len(plots)
-    places = iter(drawn)
-    body = "\n".join(part if isinstance(part, str) else next(places) for part in report)
+    head, drawn = _drawn(plots)
+    parts = []
+    # Charts stand in the report where their sections do.
+    charts = iter(drawn)
+    for part in report:
+        if isinstance(part, str):
+            parts.append(part)
+        else:
+            parts.append(next(charts))
+    body = "\n".join(parts)
     write(file, PAGE.substitute(title=escape(title), head=head, body=body))
 
 
+def _drawn(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
+    """Head of a page with these charts, and HTML of each section."""
+    if plots:
+        render = renderer()
+        if render:
+            return render(plots)
+    return "", [f"<p>{escape(NO_CHARTS)}</p>"] * len(plots)
+
+
 def renderer() -> Renderer | None:
-    """What draws charts, if anything that does is installed."""
+    """Renderer of charts, if one is installed."""
     for found in entry_points(group=GROUP):
-        with contextlib.suppress(ImportError):  # the engine may be there alone
+        with contextlib.suppress(ImportError):  # the engine may be installed alone
             render: Renderer = found.load()
             return render
     return None
 
 
 def bullets(lines: Sequence[str]) -> str:
-    """Sentences as a list."""
-    return (
-        "<ul>\n" + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
-    )
+    """Sentences as an HTML list."""
+    entries = "\n".join(f"<li>{escape(line)}</li>" for line in lines)
+    return f"<ul>\n{entries}\n</ul>"
 
 
 def html_table(rows: Iterable[Sequence[str]]) -> str:
-    """A table of texts, whose first row is its head; a row of one entry is HTML, as wide as all."""
+    """HTML table of texts, whose first row is its head.
+
+    A row of a single entry is HTML, as wide as the table.
+    """
     head, *rest = rows
     lines = ["".join(f"<th>{escape(text)}</th>" for text in head)]
     for row in rest:
-        wide = f'<td class="more" colspan="{len(head)}">{row[0]}</td>'
-        lines.append(wide if len(row) == 1 < len(head) else "".join(map(_cell, row)))
-    return "<table>\n{}\n</table>".format(
-        "\n".join(f"<tr>{line}</tr>" for line in lines)
-    )
+        if len(row) == 1 < len(head):
+            lines.append(f'<td class="more" colspan="{len(head)}">{row[0]}</td>')
+        else:
+            lines.append("".join(_cell(text) for text in row))
+    body = "\n".join(f"<tr>{line}</tr>" for line in lines)
+    return f"<table>\n{body}\n</table>"
 
 
 def _cell(text: str) -> str:
+    """HTML cell of a text: numbers and verdicts have classes of their own."""
+    kind = ""
     if NUMBER.fullmatch(text):
         kind = "number"
     elif text in VERDICTS:
         kind = f"verdict {text}"
-    else:
-        kind = ""
     if kind:
         return f'<td class="{kind}">{escape(text)}</td>'
     return f"<td>{escape(text)}</td>"
 
 
 def text_of(value: object, digits: int = 2) -> str:
-    """A value as tables show it."""
+    """Text of a value in tables."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if not isinstance(value, float):
@@ -212,12 +282,14 @@ def text_of(value: object, digits: int = 2) -> str:
 
 def line_of(entries: Mapping[str, object], shown: Shown) -> str:
     """Entries of a row as a line of a console."""
-    texts = (f"{text_of(entries[name]):<{width}}" for name, (_, width) in shown.items())
+    texts = []
+    for name, (_, width) in shown.items():
+        texts.append(f"{text_of(entries[name]):<{width}}")
     return " ".join(texts).rstrip()
 
 
 def head_of(shown: Shown) -> str:
-    """Heads of these columns."""
+    """Heads of columns as a line of a console."""
     return line_of({name: head for name, (head, _) in shown.items()}, shown)
 
 
@@ -230,11 +302,12 @@ def write_csv(
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> str:
-    """A table in columns for a console."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) for cell, width in zip(row, widths, strict=True)
-        ).rstrip()
-        for row in rows
-    )
+    """Table in columns for a console."""
+    widths = []
+    for column in zip(*rows, strict=True):
+        widths.append(max(len(cell) for cell in column))
+    lines = []
+    for row in rows:
+        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
+        lines.append("  ".join(cells).rstrip())
+    return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Figs. 3 to 8 of the paper, drawn again: gains of the multiscale version, modes of the fields."""
+"""Figs. 3 to 8 of the paper, drawn again: multiscale gains, and modes of the fields."""
 
 from __future__ import annotations
 
@@ -44,8 +44,12 @@ MODE = PanelAxis("Space mode", "1/√m")
 def paper_figures(runs: PaperRuns) -> list[PaperFigure]:
     """Figs. 3 to 8."""
     return [
-        make(runs)
-        for make in (figure_3, figure_4, figure_5, figure_6, figure_7, figure_8)
+        figure_3(runs),
+        figure_4(runs),
+        figure_5(runs),
+        figure_6(runs),
+        figure_7(runs),
+        figure_8(runs),
     ]
 
 
@@ -56,21 +60,12 @@ def figure_3(runs: PaperRuns) -> PaperFigure:
         *_over_iterations(runs, "error_force", "friction force", "solid"),
         *_over_iterations(runs, "error_displacement", "displacement", "dotted"),
     ]
-    panels = [
-        Panel(
-            title,
-            PanelAxis("Iteration"),
-            PanelAxis(axis, logarithmic=True),
-            tuple(curves),
-        )
-        for title, axis, curves in (
-            ("What the method computes", "LATIN indicator η", computed),
-            ("What is true", "Relative error", true),
-        )
-    ]
     return paper_figure(
         3,
-        panels,
+        [
+            _convergence("What the method computes", "LATIN indicator η", computed),
+            _convergence("What is true", "Relative error", true),
+        ],
         _gain(runs, "indicator", 1e-4),
         _gain(runs, "error_displacement", 1e-2),
         _rates(runs, (30, 200)),
@@ -78,103 +73,122 @@ def figure_3(runs: PaperRuns) -> PaperFigure:
     )
 
 
+def _convergence(title: str, quantity: str, curves: list[PanelCurve]) -> Panel:
+    """Panel of a quantity over iterations, on a logarithmic scale."""
+    y = PanelAxis(quantity, logarithmic=True)
+    return Panel(title, PanelAxis("Iteration"), y, tuple(curves))
+
+
 def _over_iterations(
     runs: PaperRuns, name: str, word: str, line: Line
 ) -> list[PanelCurve]:
     """Curves of a scalar of the records of both versions."""
     numbers = np.arange(1.0, SHOWN + 1.0)
-    both = zip(VERSIONS, _both(runs, name), strict=True)
-    return [
-        PanelCurve(f"{word}, {version}", numbers, values[:SHOWN], hue, line)
-        for hue, (version, values) in enumerate(both, start=1)
-    ]
+    curves = []
+    for hue, version in enumerate(VERSIONS, start=1):
+        values = _of_both(runs, name)[hue - 1, :SHOWN]
+        curves.append(PanelCurve(f"{word}, {version}", numbers, values, hue, line))
+    return curves
 
 
-def _both(runs: PaperRuns, name: str) -> Array:
-    """One scalar of all records of both versions, shape (2, n_iterations)."""
-    both = runs.multiscale.records, runs.monoscale.records
-    return np.array([[getattr(record, name) for record in records] for records in both])
+def _of_both(runs: PaperRuns, name: str) -> Array:
+    """Scalar of all records of both versions, shape (2, n_iterations)."""
+    multiscale = [getattr(record, name) for record in runs.multiscale.records]
+    monoscale = [getattr(record, name) for record in runs.monoscale.records]
+    return np.array([multiscale, monoscale])
 
 
 def _gain(runs: PaperRuns, name: str, level: float) -> Finding:
-    """Iterations until a quantity passes a level."""
-    first, second = np.argmax(_both(runs, name) <= level, axis=1) + 1
+    """Finding on the iterations until a quantity falls below a level."""
+    first, second = np.argmax(_of_both(runs, name) <= level, axis=1) + 1
     return Finding(
-        f"It takes {first} iterations multiscale, {second} monoscale to bring {QUANTITIES[name]} "
-        f"below {level:g}: a gain of {second / first:.1f}.",
+        f"It takes {first} iterations multiscale, {second} monoscale to bring "
+        f"{QUANTITIES[name]} below {level:g}: a gain of {second / first:.1f}.",
         bool(second / first >= GAIN),
     )
 
 
 def _rates(runs: PaperRuns, window: tuple[int, int]) -> Finding:
-    """Rates of convergence, fitted to logarithms over a window of iterations."""
+    """Finding on rates of convergence, fitted to logarithms over a window."""
     start, end = window
-    ratios = {}
-    for name in QUANTITIES:
-        tails = np.log(_both(runs, name)[:, start - 1 : end])
+    ratios = []
+    words = []
+    for name, quantity in QUANTITIES.items():
+        tails = np.log(_of_both(runs, name)[:, start - 1 : end])
         multi, mono = np.polyfit(np.arange(end - start + 1), tails.T, 1)[0]
-        ratios[name] = float(multi / mono)
-    words = ", ".join(
-        f"{ratio:.2f} for {QUANTITIES[name]}" for name, ratio in ratios.items()
-    )
+        ratio = float(multi / mono)
+        ratios.append(ratio)
+        words.append(f"{ratio:.2f} for {quantity}")
     return Finding(
-        f"From iteration {start} to {end}, the rate of convergence multiscale over that monoscale "
-        f"is {words}.",
-        all(abs(ratio - 1.0) <= EQUAL_RATE for ratio in ratios.values()),
+        f"From iteration {start} to {end}, the rate of convergence multiscale over "
+        f"that monoscale is {', '.join(words)}.",
+        all(abs(ratio - 1.0) <= EQUAL_RATE for ratio in ratios),
     )
 
 
 def figure_4(runs: PaperRuns) -> PaperFigure:
-    """The friction force after ten iterations at two instants, against the reference."""
-    problem = runs.early[0].problem
-    solutions: list[Fields] = [runs.reference, *runs.early]
-    law = problem.friction
+    """The friction force after ten iterations at two instants, beside the reference."""
+    # The first point is the clamped one.
+    law = runs.early[0].problem.friction
     lengths = law.by_point(law.weights)[1:]
+    positions = law.positions[1:]
+    solutions: list[Fields] = [runs.reference, *runs.early]
     force = np.array([fields.contact_force[1:] for fields in solutions])
-    moved = np.array([fields.displacement[1:] for fields in solutions])
+    displacement = np.array([fields.displacement[1:] for fields in solutions])
+    instants = runs.early[0].problem.instants
     panels = []
-    moments = [int(np.abs(problem.instants - at).argmin()) for at in INSTANTS]
-    for instant, moment in zip(INSTANTS, moments, strict=True):
-        shown = zip(("reference", *VERSIONS), force[..., moment] / lengths, strict=True)
-        curves = tuple(
-            PanelCurve(label, law.positions[1:], values, hue)
-            for hue, (label, values) in enumerate(shown)
-        )
-        axes = (
-            PanelAxis("Position x", "m"),
-            PanelAxis("Friction force per length", "N/m"),
-        )
-        panels.append(Panel(f"t = {instant:g} s", *axes, curves))
-    early = moments[0]
+    for time in INSTANTS:
+        instant = int(np.abs(instants - time).argmin())
+        at_instant = force[..., instant] / lengths
+        panels.append(_forces_at(time, positions, at_instant))
+    early = int(np.abs(instants - INSTANTS[0]).argmin())
     root = np.sqrt(lengths)
     return paper_figure(
         4,
         panels,
         _balance(force[..., early]),
-        _distance("the displacement", moved[..., early] * root),
+        _distance("the displacement", displacement[..., early] * root),
         _distance("the friction force", force[..., early] / root),
         early=EARLY,
     )
 
 
+def _forces_at(time: float, positions: Array, forces: Array) -> Panel:
+    """Panel of the friction force of the reference and both versions at a time, s.
+
+    Positions have shape (n_points,), m, and forces (3, n_points), N/m.
+    """
+    curves = []
+    for hue, label in enumerate(("reference", *VERSIONS)):
+        curves.append(PanelCurve(label, positions, forces[hue], hue))
+    y = PanelAxis("Friction force per length", "N/m")
+    return Panel(f"t = {time:g} s", PLACE, y, tuple(curves))
+
+
 def _balance(forces: Array) -> Finding:
-    """Sum of the friction force along the bar, which a load of zero must find balanced."""
+    """Finding on the sum of the friction force along the bar, which no load balances.
+
+    The forces are those of the reference and both versions, shape (3, n_points), N.
+    """
     totals = forces.sum(axis=1)
     size = float(np.abs(forces[0]).sum())
-    labels = zip(("reference", *VERSIONS), totals, strict=True)
-    words = ", ".join(
-        f"{round(total, 1) + 0.0:.1f} N {label}" for label, total in labels
-    )
+    words = []
+    for label, total in zip(("reference", *VERSIONS), totals, strict=True):
+        words.append(f"{round(total, 1) + 0.0:.1f} N {label}")
     multi, mono = np.abs(totals[1:] - totals[0])
     return Finding(
-        f"Friction force added up along the bar at t = 0.5 s: {words}; its size adds up to "
-        f"{size:.0f} N.",
+        f"Friction force added up along the bar at t = 0.5 s: {', '.join(words)}; "
+        f"its size adds up to {size:.0f} N.",
         bool(multi <= 0.01 * size <= mono),
     )
 
 
 def _distance(words: str, solutions: Array) -> Finding:
-    """Distances to the reference at t = 0.5 s, of fields with the weights of L2 along the bar."""
+    """Finding on the distances of both versions to the reference at t = 0.5 s.
+
+    The fields of the reference and both versions, shape (3, n_points), have the weights
+    of L2 along the bar.
+    """
     apart = np.linalg.norm(solutions - solutions[0], axis=1)
     multi, mono = apart[1:] / np.linalg.norm(solutions[0])
     return Finding(
@@ -189,40 +203,48 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
     largest = max(part.values[0] for part in parts)
     noise = runs.five.records[-1].error_force
     orders = np.arange(1.0, len(parts[-1].values) + 1.0)
-    curves = [
-        PanelCurve(
-            f"substructure {number}", orders, part.values / largest, number, "points"
-        )
-        for number, part in enumerate(parts, start=1)
-    ]
+    curves = []
+    for number, part in enumerate(parts, start=1):
+        label = f"substructure {number}"
+        shares = part.values / largest
+        curves.append(PanelCurve(label, orders, shares, number, "points"))
     front = PanelCurve("1/(2n − 1)", orders, front_decay(len(orders)), 0, "dotted")
-    error = PanelCurve(
-        "error of the solution", orders, np.full(len(orders), noise), 0, "dashed"
+    level = np.full(len(orders), noise)
+    error = PanelCurve("error of the solution", orders, level, 0, "dashed")
+    whole = _singular_values(
+        "All, numbered from the clamp", (1e-11, 3.0), [*curves, front, error]
     )
-    panels = []
-    for title, limits, shown in (
-        ("All, numbered from the clamp", (1e-11, 3.0), (*curves, front, error)),
-        ("Those that the front sweeps", (1e-2, 1.5), (*curves[2:], front)),
-    ):
-        share = PanelAxis("Singular value / largest", logarithmic=True, limits=limits)
-        panels.append(Panel(title, PanelAxis("Mode n", whole=True), share, shown))
-    return paper_figure(5, panels, _mode_counts(parts, noise * largest), noise=noise)
+    swept = _singular_values(
+        "Those that the front sweeps", (1e-2, 1.5), [*curves[2:], front]
+    )
+    counts = _mode_counts(parts, noise * largest)
+    return paper_figure(5, [whole, swept], counts, noise=noise)
+
+
+def _singular_values(
+    title: str, limits: tuple[float, float], curves: list[PanelCurve]
+) -> Panel:
+    """Panel of singular values over the number of the mode."""
+    share = PanelAxis("Singular value / largest", logarithmic=True, limits=limits)
+    return Panel(title, PanelAxis("Mode n", whole=True), share, tuple(curves))
 
 
 def _mode_counts(parts: Sequence[Decomposition], noise: float) -> Finding:
-    """Numbers of modes by substructure; a field below the solution's error counts as zero."""
-    counts = [
-        [part.modes_for(share) if part.values[0] > noise else 0 for share in SHARES]
-        for part in parts
-    ]
-    words = ", ".join(
-        f"{'/'.join(map(str, row))} in substructure {number}"
-        for number, row in enumerate(counts, start=1)
-    )
-    one_percent = [row[1] for row in counts]
+    """Finding on the number of modes by substructure.
+
+    A field below the error of the solution, `noise`, counts as zero.
+    """
+    words = []
+    one_percent = []
+    for number, part in enumerate(parts, start=1):
+        counts = [0] * len(SHARES)
+        if part.values[0] > noise:
+            counts = [part.modes_for(share) for share in SHARES]
+        words.append(f"{'/'.join(map(str, counts))} in substructure {number}")
+        one_percent.append(counts[1])
     return Finding(
-        f"Modes that leave at most 10/1/0.1 % of a substructure's friction force: {words}. All "
-        f"would be {len(parts[0].values)}.",
+        "Modes that leave at most 10/1/0.1 % of a substructure's friction force: "
+        f"{', '.join(words)}. All would be {len(parts[0].values)}.",
         3 * max(one_percent[:2]) <= min(one_percent[2:]),
     )
 
@@ -231,6 +253,7 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     """The friction force's space modes 1, 3 and 5 in substructures 4 and 5."""
     fourth, fifth = runs.friction_forces[3:]
     alike = fourth.correlations(fifth.space_modes)
+    # The sign of a mode is arbitrary.
     turned = fifth.space_modes * np.sign(alike)
     inside = fourth.positions - fourth.positions[0]
     panels = []
@@ -248,17 +271,15 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
 
 
 def _sign_changes(*parts: Decomposition) -> Finding:
-    """Numbers of sign changes along modes 1, 3, 5: how local they are."""
-    counts = [
-        np.count_nonzero(
-            np.diff(np.sign(part.space_modes[:, :5:2]), axis=0), axis=0
-        ).tolist()
-        for part in parts
-    ]
+    """Finding on the number of sign changes along modes 1, 3, 5: how local they are."""
+    counts = []
+    for part in parts:
+        changes = np.diff(np.sign(part.space_modes[:, :5:2]), axis=0)
+        counts.append(np.count_nonzero(changes, axis=0).tolist())
     words = " and ".join(", ".join(map(str, row)) for row in counts)
     return Finding(
-        f"Modes 1, 3, 5 change sign {words} times (substructures 4 and 5): later modes are more "
-        "local.",
+        f"Modes 1, 3, 5 change sign {words} times (substructures 4 and 5): "
+        "later modes are more local.",
         all(row[0] < row[1] < row[2] for row in counts),
     )
 
@@ -272,11 +293,12 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
         for order, mode in enumerate(displacement.space_modes.T[:3], start=1)
     )
     left = displacement.errors
-    counts = displacement.modes_for(0.01), force.modes_for(0.01)
+    of_displacement = displacement.modes_for(0.01)
+    of_force = force.modes_for(0.01)
     reducible = Finding(
-        f"The first 1, 2, 3 modes leave {left[1]:.1%}, {left[2]:.2%}, {left[3]:.2%} of the "
-        f"displacement; 1 % takes {counts[0]} modes, where the friction force takes {counts[1]} of "
-        f"its {len(force.values)}.",
+        f"The first 1, 2, 3 modes leave {left[1]:.1%}, {left[2]:.2%}, {left[3]:.2%} "
+        f"of the displacement; 1 % takes {of_displacement} modes, where the friction "
+        f"force takes {of_force} of its {len(force.values)}.",
         bool(left[3] <= 0.01),
     )
     panel = Panel("SVD of the converged displacement", PLACE, MODE, curves)
@@ -287,44 +309,44 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
     """The first three displacement modes of the PGD in substructure 5."""
     exact = runs.displacements[-1]
     last = runs.five_reduced.iterate
-    rubs = np.isin(
-        last.problem.substructures[-1].rows, last.problem.friction.tangent.above
-    )
+    rows = last.problem.substructures[-1].rows
+    rubs = np.isin(rows, last.problem.friction.tangent.above)
     kept = last.bases[-1].displacement_modes[rubs, :3]
     root = np.sqrt(exact.space_weights)[:, None]
-    sorted_ = np.linalg.qr(kept * root)[0] / root
+    orthonormal = np.linalg.qr(kept * root)[0] / root
+    both = {
+        "orthonormalised in order": orthonormal,
+        "as the iteration keeps them": kept,
+    }
     panels = []
     findings = []
-    both = {"orthonormalised in order": sorted_, "as the iteration keeps them": kept}
     for how, modes in both.items():
-        panels.append(
-            Panel(f"PGD modes, {how}", PLACE, MODE, tuple(_beside_svd(exact, modes)))
-        )
+        curves = tuple(_beside_svd(exact, modes))
+        panels.append(Panel(f"PGD modes, {how}", PLACE, MODE, curves))
         words = f"of PGD with SVD modes 1, 2, 3, {how}"
         findings.append(_correlation(words, exact.correlations(modes)))
     return paper_figure(8, panels, *findings, last=last.number)
 
 
 def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
-    """Modes at length one, turned to the side of the SVD modes that are dotted."""
-    turned = (
-        modes
-        * np.sign(exact.correlations(modes))
-        / np.sqrt(exact.space_weights @ modes**2)
-    )
+    """Curves of modes, (n_points, n_modes), beside the dotted SVD modes.
+
+    The modes are normalised, with the signs of the SVD modes.
+    """
+    # The sign of a mode is arbitrary.
+    signs = np.sign(exact.correlations(modes))
+    turned = modes * signs / np.sqrt(exact.space_weights @ modes**2)
+    positions = exact.positions
     curves = []
-    for order, (pgd, svd) in enumerate(
-        zip(turned.T, exact.space_modes.T, strict=False), start=1
-    ):
-        curves += [
-            PanelCurve(f"PGD {order}", exact.positions, pgd, order),
-            PanelCurve(f"SVD {order}", exact.positions, svd, order, "dotted"),
-        ]
+    for order, pgd in enumerate(turned.T, start=1):
+        svd = exact.space_modes[:, order - 1]
+        curves.append(PanelCurve(f"PGD {order}", positions, pgd, order))
+        curves.append(PanelCurve(f"SVD {order}", positions, svd, order, "dotted"))
     return curves
 
 
 def _correlation(words: str, signed: Array) -> Finding:
-    """Correlation of modes of the same order, shape (n,)."""
+    """Finding on the correlations of modes of the same order, shape (n_modes,)."""
     values = np.abs(signed)
     shown = ", ".join(f"{value:.3f}" for value in values)
     return Finding(f"Correlation {words}: {shown}.", bool(values.min() >= ALIKE))

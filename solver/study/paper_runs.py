@@ -1,4 +1,4 @@
-"""The paper's figures, drawn again: the runs behind them, and what is claimed, tested and shown."""
+"""Runs behind the paper's figures, and the claims and findings beside each figure."""
 
 from __future__ import annotations
 
@@ -21,32 +21,43 @@ WORDS = tomllib.loads(
     Path(__file__).with_name("paper_figures.toml").read_text(encoding="utf-8")
 )
 LOAD = (
-    "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of 900 N, "
-    "relaxation 0.8, all else as in Table 1."
+    "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of "
+    "900 N, relaxation 0.8, all else as in Table 1."
 )
-INTRODUCTION = """<p>Computed by Slipfront. The paper prints curves without numbers; each figure
-here stands with what the paper says of it, and with the numbers that bear it out or do not.</p>"""
+INTRODUCTION = (
+    "<p>Computed by Slipfront. The paper prints curves without numbers; each figure\n"
+    "here stands with what the paper says of it, and with the numbers that bear it "
+    "out or do not.</p>"
+)
 SAYS = {True: "Bears it out.", False: "Speaks against it."}
 FILE = "figures.html"
 EARLY = 10
 """Iterations after which Fig. 4 looks at the friction force."""
 LONG = 800
-"""Iterations of Fig. 3: enough to see the rate of convergence at the end of every
-error."""
+"""Iterations of Fig. 3: enough to see the final rate of convergence of every error."""
 CONVERGED = 1e-18
-"""LATIN indicator at which the fields of Figs. 5 to 7 count as converged (error near
-1e-6)."""
+"""LATIN indicator of the converged fields of Figs. 5 to 7 (error near 1e-6)."""
 REDUCED = 100
 """Iterations of the PGD of Fig. 8."""
 
 
 @dataclass(frozen=True, eq=False)
 class PaperRuns:
-    """The friction bar of Table 1 under a sine, and its incremental solution.
+    """Runs of the friction bar of Table 1 under a sine.
 
-    Ten substructures with the coarse problem and without, and iterate `EARLY` of both;
-    five, converged, and with the PGD at its default settings; the converged fields,
-    decomposed in each of the five.
+    Attributes
+    ----------
+    reference
+        Incremental solution.
+    multiscale, monoscale
+        Solutions on ten substructures, with the coarse problem and without.
+    early
+        Iterate `EARLY` of both.
+    five, five_reduced
+        Solutions on five substructures: converged, and with the PGD at its default
+        settings.
+    friction_forces, displacements
+        Converged fields, decomposed in each of the five substructures.
     """
 
     reference: Reference
@@ -60,7 +71,7 @@ class PaperRuns:
 
 
 def paper_runs() -> PaperRuns:
-    """Solve and decompose all of them."""
+    """Solve all runs of the figures, and decompose their fields."""
     settings = CATALOGUE["bar"].checked(
         {"method": "paper", "load": "sine", "peak": 900.0}
     )
@@ -69,30 +80,33 @@ def paper_runs() -> PaperRuns:
     def run(**changes: object) -> Solution:
         changed = settings.replace(**changes)
         problem = discretise(changed)
-        return solve(
-            problem, method_of(changed), distance=distance_to(reference, problem)
-        )
+        distance = distance_to(reference, problem)
+        return solve(problem, method_of(changed), distance=distance)
 
-    def ten(iterations: int, multiscale: bool) -> Solution:
+    def on_ten(iterations: int, multiscale: bool) -> Solution:
         return run(tolerance=1e-30, max_iterations=iterations, multiscale=multiscale)
 
     five = run(substructures=5, tolerance=CONVERGED, max_iterations=10 * LONG)
     last = five.iterate
     return PaperRuns(
-        reference,
-        ten(LONG, True),
-        ten(LONG, False),
-        [ten(EARLY, multiscale).iterate for multiscale in (True, False)],
-        five,
-        run(substructures=5, linear_stage="pgd", max_iterations=REDUCED),
-        decompositions(last.problem, last.boundary_force, is_force=True),
-        decompositions(last.problem, last.boundary_displacement, is_force=False),
+        reference=reference,
+        multiscale=on_ten(LONG, True),
+        monoscale=on_ten(LONG, False),
+        early=[on_ten(EARLY, True).iterate, on_ten(EARLY, False).iterate],
+        five=five,
+        five_reduced=run(substructures=5, linear_stage="pgd", max_iterations=REDUCED),
+        friction_forces=decompositions(
+            last.problem, last.boundary_force, is_force=True
+        ),
+        displacements=decompositions(
+            last.problem, last.boundary_displacement, is_force=False
+        ),
     )
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A measured answer to a claim: a sentence with its numbers, and whether they bear it out."""
+    """A measured answer to a claim: a sentence with numbers, and whether it holds."""
 
     text: str
     holds: bool
@@ -100,7 +114,7 @@ class Finding:
 
 @dataclass(frozen=True, eq=False)
 class PaperFigure:
-    """A figure of the paper, by its number there, drawn again, with what the paper says of it."""
+    """A figure of the paper, drawn again, with the paper's claim and the findings."""
 
     number: int
     title: str
@@ -116,7 +130,7 @@ class PaperFigure:
 
     @property
     def verdict(self) -> str:
-        """Whether the claim holds: "holds", "holds in part" or "does not hold"."""
+        """Verdict on the claim: "holds", "holds in part" or "does not hold"."""
         held = [finding.holds for finding in self.findings]
         if all(held):
             return "holds"
@@ -128,25 +142,31 @@ class PaperFigure:
 def paper_figure(
     number: int, panels: Sequence[Panel], *findings: Finding, **numbers: float
 ) -> PaperFigure:
-    """A figure with its words, in which numbers are named."""
+    """Figure with its title, claim and caption from `WORDS`, which name the numbers."""
     texts = {name: text.format(**numbers) for name, text in WORDS[str(number)].items()}
-    caption = f"{texts.pop('caption')} {LOAD}"
     return PaperFigure(
-        number, panels=panels, findings=findings, caption=caption, **texts
+        number=number,
+        title=texts["title"],
+        panels=panels,
+        claim=texts["claim"],
+        findings=findings,
+        caption=f"{texts['caption']} {LOAD}",
     )
 
 
 def write_figures(figures: Sequence[PaperFigure], folder: Path) -> None:
-    """Write `FILE` into a folder."""
+    """Write the figures as `FILE` into a folder."""
     report: list[Section] = [INTRODUCTION]
     for figure in figures:
+        claim = (
+            f"<b>The paper's claim:</b> {escape(figure.claim)} "
+            f"<b>Here it {figure.verdict}.</b>"
+        )
         findings = bullets(
             [f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings]
         )
-        claim = f"<b>The paper's claim:</b> {escape(figure.claim)} <b>Here it {figure.verdict}.</b>"
-        report += [
-            f"<h2>{escape(figure.heading)}</h2>",
-            PlotSection(figure.heading, figure.panels),
-            f'<p>{claim}</p>\n{findings}\n<p class="caption">{escape(figure.caption)}</p>',
-        ]
+        caption = f'<p class="caption">{escape(figure.caption)}</p>'
+        report.append(f"<h2>{escape(figure.heading)}</h2>")
+        report.append(PlotSection(figure.heading, figure.panels))
+        report.append(f"<p>{claim}</p>\n{findings}\n{caption}")
     write_page(folder / FILE, "The paper's figures, drawn again", report)

@@ -1,4 +1,4 @@
-"""The proof: every number that is known beside ours, as lines, CSV and one HTML page."""
+"""The proof: every known number beside the computed one, as CSV and an HTML page."""
 
 from __future__ import annotations
 
@@ -25,48 +25,64 @@ from solver.study.page import html_table, text_of, write_csv, write_page
 from solver.study.quantities.finished import FinishedRun
 from solver.study.trade_case import Case, all_cases
 
-PARTS = CLOSED_FORMS, PUBLISHED, TRADE = (
-    "Closed forms",
-    "Published numbers",
-    "Cases of the trade",
-)
-"""Parts of the report, by where what is known is from; cases of the trade are solved by
-LATIN."""
+CLOSED_FORMS = "Closed forms"
+PUBLISHED = "Published numbers"
+TRADE = "Cases of the trade"
+"""Part of the report whose cases LATIN alone solves."""
+PARTS = (CLOSED_FORMS, PUBLISHED, TRADE)
+"""Parts of the report, by the source of the known numbers."""
 SHOWN = {
-    **{"holds": ("", 5), "case": ("case", 56), "solver": ("solver", 12)},
-    **{
-        "quantity": ("quantity", 52),
-        "deviation": ("deviation", 9),
-        "allowed": ("allowed", 8),
-    },
+    "holds": ("", 5),
+    "case": ("case", 56),
+    "solver": ("solver", 12),
+    "quantity": ("quantity", 52),
+    "deviation": ("deviation", 9),
+    "allowed": ("allowed", 8),
 }
-"""Columns of a console."""
+"""Columns on a console: head and width by name."""
 Row = dict[str, Any]
-"""A number of a case by a solver, as it is written."""
+"""Entries of a row of the proof by column: a number of a case by a solver."""
 HOLDS = "holds"
 FAILS = "FAILS"
-NUMBERS = "holds", "quantity", "unit", "known", "solver", "ours", "deviation", "allowed"
+NUMBERS = (
+    "holds",
+    "quantity",
+    "unit",
+    "known",
+    "solver",
+    "ours",
+    "deviation",
+    "allowed",
+)
 """Columns of the page."""
 CASES = Path(__file__).with_name("known_numbers.toml")
 FILES = "proof.csv", "proof.html"
 PAGE = "http://localhost:5006/app"
-"""Where the page is served by default; links of the report open runs there."""
+"""Default address of the page, on which links of the report open runs."""
 TITLE = "Proof: what is known beside what Slipfront finds"
 WORDS = (
     f'<p>Links open the run on a page served at <a href="{PAGE}">{PAGE}</a>.</p>\n'
-    "<p>Each row is a number that is known, and the same number of a run: by LATIN, ended as a run "
-    "on the page ends, and but for cases of the trade by the incremental solver on the same mesh. "
-    "<em>Deviation</em> is the distance of both over the number that is known, <em>allowed</em> "
-    "what the mesh leaves.</p>"
+    "<p>Each row is a number that is known, and the same number of a run: by LATIN, "
+    "ended as a run on the page ends, and but for cases of the trade by the "
+    "incremental solver on the same mesh. <em>Deviation</em> is the distance of both "
+    "over the number that is known, <em>allowed</em> what the mesh leaves.</p>"
 )
 
 
 @dataclass(frozen=True, eq=False)
 class KnownCase:
-    """A problem whose answer is known from a source, and the largest deviation that is allowed.
+    """A problem whose answer is known from a source.
 
-    `numbers` are what is known of an answer, beside what it has; `part` is that of the
-    report.
+    Attributes
+    ----------
+    title, source, settings
+        Title of the case, source of the known numbers, and settings of the run.
+    allowed
+        Largest relative deviation that is allowed.
+    numbers
+        Function of an answer that gives known numbers beside those of the answer.
+    part
+        Part of the report.
     """
 
     title: str
@@ -78,63 +94,63 @@ class KnownCase:
 
     @property
     def address(self) -> str:
-        """What follows the page's address to open this run there."""
-        texts = {
-            name: value
-            if isinstance(value, str)
-            else json.dumps(value, separators=(",", ":"))
-            for name, value in self.settings.changed().items()
-        }
-        return f"?{urlencode({'scene': self.settings.scene, **texts})}"
+        """Query that opens the run on the page, after the page's address."""
+        texts = {"scene": self.settings.scene}
+        for name, value in self.settings.changed().items():
+            if isinstance(value, str):
+                texts[name] = value
+            else:
+                texts[name] = json.dumps(value, separators=(",", ":"))
+        return f"?{urlencode(texts)}"
 
 
 def rows_of(case: KnownCase) -> Iterator[Row]:
-    """Solve a case by LATIN and, unless it is of the trade, by the incremental solver too.
+    """Solve a case by LATIN and by the incremental solver.
 
-    A number of a run that did not come to its end proves nothing.
+    A case of the trade is solved by LATIN alone. A number of a run that has not
+    converged does not hold.
     """
     settings = case.settings
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
     has_converged = solution.status.ending is Ending.CONVERGED
-    answers = {
-        "LATIN": (has_converged, Answer(settings, problem, solution.iterate, solution))
-    }
+    answer = Answer(settings, problem, solution.iterate, solution)
+    yield from _rows_by("LATIN", case, answer, has_converged)
     if case.part != TRADE:
         reference = reference_of(problem)
         is_found = bool(reference.converged.all())
-        answers["incremental"] = is_found, Answer(settings, problem, reference)
-    for solver, (has_ended, answer) in answers.items():
-        for quantity, unit, known, ours in case.numbers(answer):
-            deviation = float(abs(ours - known) / abs(known))
-            holds = has_ended and deviation <= case.allowed
-            yield {
-                **{
-                    "holds": HOLDS if holds else FAILS,
-                    "part": case.part,
-                    "case": case.title,
-                },
-                **{
-                    "solver": solver,
-                    "quantity": quantity,
-                    "unit": unit,
-                    "known": float(known),
-                },
-                **{
-                    "ours": float(ours),
-                    "deviation": deviation,
-                    "allowed": case.allowed,
-                },
-                **{
-                    "mesh": size_of(settings),
-                    "source": case.source,
-                    "address": case.address,
-                },
-            }
+        answer = Answer(settings, problem, reference)
+        yield from _rows_by("incremental", case, answer, is_found)
+
+
+def _rows_by(
+    solver: str, case: KnownCase, answer: Answer, has_ended: bool
+) -> Iterator[Row]:
+    """Rows of a case by a solver, which has come to its end or not."""
+    for quantity, unit, known, ours in case.numbers(answer):
+        deviation = float(abs(ours - known) / abs(known))
+        verdict = FAILS
+        if has_ended and deviation <= case.allowed:
+            verdict = HOLDS
+        yield {
+            "holds": verdict,
+            "part": case.part,
+            "case": case.title,
+            "solver": solver,
+            "quantity": quantity,
+            "unit": unit,
+            "known": float(known),
+            "ours": float(ours),
+            "deviation": deviation,
+            "allowed": case.allowed,
+            "mesh": size_of(case.settings),
+            "source": case.source,
+            "address": case.address,
+        }
 
 
 def known_case(case: Case) -> KnownCase:
-    """Make a row of the proof of a case of the trade."""
+    """Make a case of the proof of a case of the trade."""
     asked = case.quantity
 
     def numbers(answer: Answer) -> Iterator[Number]:
@@ -147,50 +163,54 @@ def known_case(case: Case) -> KnownCase:
 
 
 def cases() -> list[KnownCase]:
-    """All cases, none of them solved yet."""
+    """All cases, not solved yet."""
     known = []
     for group in tomllib.loads(CASES.read_text(encoding="utf-8"))["known"]:
+        kind = CATALOGUE[group["scene"]]
         for title, settings in group["cases"].items():
-            kind = CATALOGUE[group["scene"]]
             case = KnownCase(
-                title,
-                group["source"],
-                group["allowed"],
-                kind.checked({**group.get("common", {}), **settings}),
-                getattr(known_numbers, group["numbers"]),
-                group.get("part", CLOSED_FORMS),
+                title=title,
+                source=group["source"],
+                allowed=group["allowed"],
+                settings=kind.checked(group.get("common", {}) | settings),
+                numbers=getattr(known_numbers, group["numbers"]),
+                part=group.get("part", CLOSED_FORMS),
             )
             known.append(case)
-    return [*known, *map(known_case, all_cases())]
+    return [*known, *(known_case(case) for case in all_cases())]
 
 
 def holds(row: Row) -> bool:
-    """Whether a number is as it has to be."""
+    """Check whether a number deviates by no more than is allowed."""
     return bool(row["holds"] == HOLDS)
 
 
 def summary(rows: Sequence[Row]) -> str:
-    """How many rows hold."""
-    return f"{sum(map(holds, rows))} of {len(rows)} numbers hold."
+    """Sentence on the number of rows that hold."""
+    return f"{sum(holds(row) for row in rows)} of {len(rows)} numbers hold."
 
 
 def write_proof(rows: Sequence[Row], folder: Path) -> None:
     """Write `FILES` into an existing folder."""
     write_csv(folder / FILES[0], list(rows[0]), [row.values() for row in rows])
     sections = [f"{WORDS}<p>{summary(rows)}</p>"]
-    digits = {"known": 6, "ours": 6}
     for part in PARTS:
-        lines = [list(NUMBERS)]
-        of_part = (row for row in rows if row["part"] == part)
-        for head, own in groupby(
-            of_part, itemgetter("address", "case", "mesh", "source")
-        ):
-            address, title, mesh, source = map(escape, head)
-            link = f'<a class="run" href="{escape(PAGE)}{address}"><b>{title}</b></a>'
-            lines.append([f"{link} · {mesh}<br><small>{source}</small>"])
-            lines += [
-                [text_of(row[name], digits.get(name, 2)) for name in NUMBERS]
-                for row in own
-            ]
-        sections += [f"<h2>{part}</h2>{html_table(lines)}"] * (len(lines) > 1)
+        of_part = [row for row in rows if row["part"] == part]
+        if of_part:
+            sections.append(f"<h2>{part}</h2>{html_table(_table(of_part))}")
     write_page(folder / FILES[1], TITLE, sections)
+
+
+def _table(rows: Sequence[Row]) -> list[list[str]]:
+    """Table of rows, with a line on each case before its numbers."""
+    digits = {"known": 6, "ours": 6}
+    lines = [list(NUMBERS)]
+    case_of = itemgetter("address", "case", "mesh", "source")
+    # Rows of a case follow each other.
+    for case, of_case in groupby(rows, case_of):
+        address, title, mesh, source = map(escape, case)
+        link = f'<a class="run" href="{escape(PAGE)}{address}"><b>{title}</b></a>'
+        lines.append([f"{link} · {mesh}<br><small>{source}</small>"])
+        for row in of_case:
+            lines.append([text_of(row[name], digits.get(name, 2)) for name in NUMBERS])
+    return lines

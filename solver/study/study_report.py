@@ -1,4 +1,4 @@
-"""A study as tables, charts, CSV files and one HTML page: who is first where, and by how much."""
+"""Reports of a study of run times: tables, charts, CSV files and one HTML page."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from solver.arrays import Array, Flags
 from solver.settings.definitions import title_of
 from solver.settings.scene import Settings
 from solver.study.measured_times import (
@@ -36,38 +37,35 @@ from solver.study.sweep.executors import machine
 FILES = "curves.csv", "levels.csv", "map.csv", "study.html"
 Row = list[str]
 TABLE_NOTE = (
-    "In brackets: iterations of LATIN; a star: the first. The last row is the time of LATIN's best "
-    "form over that of the incremental solver: below 1, LATIN is quicker."
+    "In brackets: iterations of LATIN; a star: the first. The last row is the time of "
+    "LATIN's best form over that of the incremental solver: below 1, LATIN is quicker."
 )
 CURVES = "Error against run time, set-up included"
 CAPTION = (
-    "A line is a form of LATIN, iteration by iteration; the dashed line is when the incremental "
-    "solver is done. Errors below the lower edge are drawn on it."
+    "A line is a form of LATIN, iteration by iteration; the dashed line is when the "
+    "incremental solver is done. Errors below the lower edge are drawn on it."
 )
 TIMES = "LATIN / incremental solver"
 BILLED = (
-    "The time of a method is all that it takes from settings to result: discretisation, "
-    "factorisation, the coarser mesh, iterations. Imports and the computation of errors are not "
-    "counted.",
-    f"The forms of LATIN end at a friction force error of {GOAL:g}, or after {MOST_ITERATIONS} "
-    "iterations.",
-    "Errors are relative L2 distances over space and time to the result of the incremental solver "
-    "on the same mesh and instants, whose own error is therefore 0.",
+    "The time of a method is all that it takes from settings to result: "
+    "discretisation, factorisation, the coarser mesh, iterations. Imports and the "
+    "computation of errors are not counted.",
+    f"The forms of LATIN end at a friction force error of {GOAL:g}, or after "
+    f"{MOST_ITERATIONS} iterations.",
+    "Errors are relative L2 distances over space and time to the result of the "
+    "incremental solver on the same mesh and instants, whose own error is therefore 0.",
 )
 SPAN = (1e-9, 2.0)
-"""Errors that are shown; smaller ones are drawn at SMALLEST, just above the lower
-edge."""
+"""Range of the errors that are shown."""
 SMALLEST = 2e-9
+"""Value, just above the lower edge, at which smaller errors are drawn."""
 
 
 def conditions(settings: Settings, repeats: int) -> list[str]:
-    """Under which conditions a study was measured, in sentences."""
-    changed = settings.changed()
-    values = (
-        ", ".join(f"{name} = {value}" for name, value in changed.items()) or "defaults"
-    )
+    """Sentences on the conditions of the measurement."""
+    changes = [f"{name} = {value}" for name, value in settings.changed().items()]
     return [
-        f"Scene: {settings.scene} ({values}).",
+        f"Scene: {settings.scene} ({', '.join(changes) or 'defaults'}).",
         f"Machine: {machine()}.",
         f"All methods in one process, in turns; medians of {repeats} passes.",
         *BILLED,
@@ -75,60 +73,91 @@ def conditions(settings: Settings, repeats: int) -> list[str]:
 
 
 def table(curves: Sequence[ErrorCurve]) -> list[Row]:
-    """Time to each level, with the iterations in brackets and a star at the first method.
+    """Time of each method to each level, and its iterations in brackets.
 
-    The last row is of the best form of LATIN over the incremental solver.
+    A star marks the first method. The last row is of the best form of LATIN over the
+    incremental solver.
     """
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
-    reached = {
-        curve.method: [
-            curve.reached(level) or (math.inf, 0.0) for level in LEVELS.values()
-        ]
-        for curve in curves
-    }
-    times = np.array([[seconds for seconds, _ in own] for own in reached.values()])
+    times = np.array([_times_to_levels(curve) for curve in curves])
     for curve, is_first in zip(curves, times == times.min(axis=0), strict=True):
-        cells = []
-        for (seconds, step), star in zip(reached[curve.method], is_first, strict=True):
-            if curve.is_latin:
-                number = f" ({step:.0f})"
-            else:
-                number = ""
-            text = f"{1e3 * seconds:.3g} ms{number}{' *' * bool(star)}"
-            cells.append(text if math.isfinite(seconds) else "not reached")
-        each = curve.seconds_per_iteration
-        if each is not None:
-            cost = f"{1e3 * each:.3f}"
-        else:
-            cost = "-"
-        rows.append([curve.method, *cells, cost, f"{curve.error_force.min():.1e}"])
+        rows.append(_row(curve, is_first))
     is_latin = np.array([curve.is_latin for curve in curves])
+    # The best form of LATIN at each level, whichever it is.
     ratios = times[is_latin].min(axis=0) / times[~is_latin].min(axis=0)
-    texts = (f"{ratio:.2g}" if math.isfinite(ratio) else "-" for ratio in ratios)
+    texts = []
+    for ratio in ratios:
+        if math.isfinite(ratio):
+            texts.append(f"{ratio:.2g}")
+        else:
+            texts.append("-")
     return [*rows, [f"best {TIMES}", *texts, "-", "-"]]
 
 
+def _times_to_levels(curve: ErrorCurve) -> list[float]:
+    """Time to each level, s; infinite where a method does not reach it."""
+    times = []
+    for level in LEVELS.values():
+        seconds, _ = curve.reached(level) or (math.inf, 0.0)
+        times.append(seconds)
+    return times
+
+
+def _row(curve: ErrorCurve, is_first: Flags) -> Row:
+    """Row of a method; `is_first`, (n_levels,), says where no method is quicker."""
+    cells = []
+    for level, star in zip(LEVELS.values(), is_first, strict=True):
+        reached = curve.reached(level)
+        if reached is None:
+            cells.append("not reached")
+            continue
+        seconds, step = reached
+        text = f"{1e3 * seconds:.3g} ms"
+        if curve.is_latin:
+            text += f" ({step:.0f})"
+        if star:
+            text += " *"
+        cells.append(text)
+    cost = "-"
+    if curve.seconds_per_iteration is not None:
+        cost = f"{1e3 * curve.seconds_per_iteration:.3f}"
+    return [curve.method, *cells, cost, f"{curve.error_force.min():.1e}"]
+
+
 def sizes_table(settings: Settings, measured: Sequence[TimesAtSize]) -> list[Row]:
-    """Times of both solvers at every size, or why they have none."""
-    rows = [
-        [_titles(settings)[0], "instants", "LATIN, s", f"{INCREMENTAL}, s", TIMES, ""]
+    """Times of both solvers at every size, or the reason why they have none."""
+    head = [
+        _titles(settings)[0],
+        "instants",
+        "LATIN, s",
+        f"{INCREMENTAL}, s",
+        TIMES,
+        "",
     ]
+    rows = [head]
     for times in measured:
-        numbers = (
-            text_of(number) for number in (times.latin, times.incremental, times.ratio)
-        )
-        rows.append([str(times.size), str(times.instants), *numbers, times.message])
+        row = [
+            str(times.size),
+            str(times.instants),
+            text_of(times.latin),
+            text_of(times.incremental),
+            text_of(times.ratio),
+            times.message,
+        ]
+        rows.append(row)
     return rows
 
 
 def notes(settings: Settings, measured: Sequence[TimesAtSize]) -> list[str]:
-    """What the sizes show, in sentences."""
+    """Sentences on the times at all sizes."""
     ratios = np.array([times.ratio for times in measured if not times.message])
+    ahead = int((ratios < 1.0).sum())
+    titles = " and ".join(_titles(settings)).lower()
     return [
-        f"LATIN is ahead (below 1) at {int((ratios < 1.0).sum())} of {ratios.size} sizes. From "
-        "settings to a certified or accurate end, in seconds of the processor, medians of up to "
+        f"LATIN is ahead (below 1) at {ahead} of {ratios.size} sizes. From settings to "
+        "a certified or accurate end, in seconds of the processor, medians of up to "
         "three runs in turns.",
-        f"What grows, each by the same factor: {' and '.join(_titles(settings)).lower()}.",
+        f"What grows, each by the same factor: {titles}.",
     ]
 
 
@@ -139,51 +168,57 @@ def _titles(settings: Settings) -> list[str]:
 
 
 def error_panels(curves: Sequence[ErrorCurve]) -> list[Panel]:
-    """Errors of displacement and of friction force over time, a curve for each method."""
-    panels = []
-    for name, title in (
-        ("error_displacement", "Displacement"),
-        ("error_force", "Friction force"),
-    ):
-        *latin, other = (
-            PanelCurve(
-                own.method, own.seconds, np.maximum(getattr(own, name), SMALLEST), hue
-            )
-            for hue, own in enumerate(curves, start=1)
-        )
-        # The solver that is the reference itself is a vertical line.
-        line = PanelCurve(
-            other.label, np.repeat(other.x, 2), np.array(SPAN), 0, "dashed"
-        )
-        axes = (
-            PanelAxis("Time", "s", logarithmic=True),
-            PanelAxis("Relative error", logarithmic=True, limits=SPAN),
-        )
-        panels.append(Panel(title, *axes, (*latin, line)))
-    return panels
+    """Errors of displacement and of friction force over time, a curve per method."""
+    displacements = [curve.error_displacement for curve in curves]
+    forces = [curve.error_force for curve in curves]
+    return [
+        _error_panel("Displacement", curves, displacements),
+        _error_panel("Friction force", curves, forces),
+    ]
+
+
+def _error_panel(
+    title: str, curves: Sequence[ErrorCurve], errors: Sequence[Array]
+) -> Panel:
+    """Panel of the errors of all methods, (n,) each; the last one is incremental."""
+    *latin, incremental = curves
+    lines = []
+    for hue, curve in enumerate(latin, start=1):
+        y = np.maximum(errors[hue - 1], SMALLEST)
+        lines.append(PanelCurve(curve.method, curve.seconds, y, hue))
+    # The solver that is the reference itself is a vertical line.
+    at = np.repeat(incremental.seconds, 2)
+    lines.append(PanelCurve(incremental.method, at, np.array(SPAN), 0, "dashed"))
+    time = PanelAxis("Time", "s", logarithmic=True)
+    error = PanelAxis("Relative error", logarithmic=True, limits=SPAN)
+    return Panel(title, time, error, tuple(lines))
 
 
 def write_curves(curves: Sequence[ErrorCurve], folder: Path) -> None:
     """Write `curves.csv` and `levels.csv` (s; errors as fractions)."""
-    points = []
-    levels = []
+    points: list[tuple[object, ...]] = []
+    levels: list[tuple[object, ...]] = []
     for curve in curves:
-        which = curve.method, "latin" if curve.is_latin else "incremental"
+        kind = "incremental"
+        if curve.is_latin:
+            kind = "latin"
         columns = (
             curve.steps,
             curve.seconds,
             curve.error_displacement,
             curve.error_force,
         )
-        points += [(*which, *map(float, point)) for point in zip(*columns, strict=True)]
+        for point in zip(*columns, strict=True):
+            points.append((curve.method, kind, *map(float, point)))
         for level in LEVELS.values():
             reached = curve.reached(level) or ("", "")
-            levels.append((*which, level, *reached, curve.seconds_per_iteration))
+            cost = curve.seconds_per_iteration
+            levels.append((curve.method, kind, level, *reached, cost))
     head = ["method", "kind"]
-    columns_of_points = [*head, "step", "seconds", "error_displacement", "error_force"]
-    write_csv(folder / "curves.csv", columns_of_points, points)
-    more = ["level", "seconds", "step", "seconds_per_iteration"]
-    write_csv(folder / "levels.csv", [*head, *more], levels)
+    of_points = [*head, "step", "seconds", "error_displacement", "error_force"]
+    write_csv(folder / "curves.csv", of_points, points)
+    of_levels = [*head, "level", "seconds", "step", "seconds_per_iteration"]
+    write_csv(folder / "levels.csv", of_levels, levels)
 
 
 def write_study(
@@ -195,14 +230,19 @@ def write_study(
 ) -> None:
     """Write `map.csv` and `study.html`."""
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
-    rows = ((settings.GROWS[0], *astuple(times)) for times in measured)
+    rows = [(settings.GROWS[0], *astuple(times)) for times in measured]
     write_csv(folder / "map.csv", head, rows)
+    sizes = html_table(sizes_table(settings, measured))
     sections: list[Section] = [
-        f"<h2>Time to an error of the friction force</h2>\n{html_table(table(curves))}\n"
-        f"<p>{TABLE_NOTE}</p>\n<h2>{CURVES}</h2>",
+        "<h2>Time to an error of the friction force</h2>\n"
+        f"{html_table(table(curves))}\n"
+        f"<p>{TABLE_NOTE}</p>\n"
+        f"<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(curves)),
-        f"<p>{CAPTION}</p>\n<h2>Who is first where</h2>\n"
-        f"{html_table(sizes_table(settings, measured))}\n{bullets(notes(settings, measured))}",
+        f"<p>{CAPTION}</p>\n"
+        "<h2>Who is first where</h2>\n"
+        f"{sizes}\n"
+        f"{bullets(notes(settings, measured))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(settings, repeats))}",
     ]
     write_page(folder / FILES[-1], "Error against run time", sections)

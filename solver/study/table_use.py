@@ -1,4 +1,4 @@
-"""What a table that is brought to a run is: a measured loop, results of a program, or a path."""
+"""Use of a table that is brought to a run: a measured loop, results, or a path."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from solver.study.measured_loop import MeasuredLoop, columns_of, loop_in
 
 
 class Use(StrEnum):
-    """What a table is."""
+    """Use of a table: a measured loop, results of another program, or a load path."""
 
     LOOP = "loop"
     RESULTS = "results"
@@ -24,18 +24,19 @@ class Use(StrEnum):
 
 
 def use_of(table: Table, axes: Axes) -> Use:
-    """What a table is by its head, beside a loop of these axes.
+    """Use of a table by its head, for a scene whose loop has these axes.
 
-    Results are over positions and times; without a time, or with a friction force, a
-    table of positions is of results that lack something. A position beside another
-    force, however, is where a machine stands, if no time comes twice: then it is a
-    loop, as is all that has its columns.
+    Results are over positions and times; a table of positions without a time, or with a
+    friction force, is of results that lack something. But a position beside another
+    force is the position of a machine, if no time occurs twice: then the table is a
+    loop, as is every table with the columns of a loop.
     """
     named = [column.quantities[0] for column in table.columns]
     has_position = any("position" in kinds for kinds in named)
     has_friction = any(FRICTION in kinds and "force" not in kinds for kinds in named)
     has_displacement = any(DISPLACEMENT in kinds for kinds in named)
     is_loop = False
+    # The same reading decides as later reads the loop.
     with suppress(RefusedError):
         columns_of(table, axes)
         is_loop = True
@@ -43,19 +44,21 @@ def use_of(table: Table, axes: Axes) -> Use:
         return Use.RESULTS
     if has_position and not has_displacement and not _times_rise(table):
         return Use.RESULTS
-    return Use.LOOP if is_loop else Use.PATH
+    if is_loop:
+        return Use.LOOP
+    return Use.PATH
 
 
 def brought_in(
     table: Table, settings: Settings, axes: Axes
 ) -> OtherResults | MeasuredLoop:
-    """The results, or else the loop, in a table for a scene whose loop has these axes."""
+    """Results, or else a loop, in a table for a scene whose loop has these axes."""
     if use_of(table, axes) is Use.RESULTS:
         return results_in(table, settings)
     return loop_in(table, axes)
 
 
 def _times_rise(table: Table) -> bool:
-    """Whether every row is later than the one before, as of a machine, where there are times."""
+    """Check whether rows are in the order of their times, if the table has times."""
     times = [column.place for column in table.columns if "time" in column.quantities[0]]
     return len(times) != 1 or bool(np.all(np.diff(table.numbers[times[0]]) > 0.0))

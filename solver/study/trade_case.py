@@ -1,4 +1,4 @@
-"""A case of the trade: somebody's question, the run that answers it, and a number that is known."""
+"""Case of the trade: a question, the run that answers it, and a known number."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from solver.study.quantities.quantity import Quantity
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A case as its file says, whose name it has (`cases/README.md` says what each is)."""
+    """A case by its file, whose name it has (`cases/README.md` explains the keys)."""
 
     name: str
     order: int
@@ -61,14 +61,10 @@ def case_from_file(path: Path) -> Case:
             entries = {"picture": settings.icon._asdict(), **entries}
             fields = fields_in(Case, entries, quantity=str, picture=dict)
             tolerance = fields["tolerance"]
+            is_share = 0.0 < tolerance < 1.0
             can = "a share above 0 and below 1"
-            require(
-                0.0 < tolerance < 1.0,
-                "tolerance",
-                tolerance,
-                can,
-                "say what the mesh leaves",
-            )
+            remedy = "say what the mesh leaves"
+            require(is_share, "tolerance", tolerance, can, remedy)
             check_controls(fields["controls"], settings)
             check_keys(fields["picture"], dict.fromkeys(Icon._fields, str))
             fields["quantity"] = reading(fields["quantity"])
@@ -78,5 +74,6 @@ def case_from_file(path: Path) -> Case:
 
 def all_cases() -> list[Case]:
     """Read all cases of the folder `cases`, in their order."""
-    cases = map(case_from_file, Path(__file__).with_name("cases").glob("*.toml"))
+    files = Path(__file__).with_name("cases").glob("*.toml")
+    cases = [case_from_file(file) for file in files]
     return sorted(cases, key=lambda case: case.order)

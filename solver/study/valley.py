@@ -1,4 +1,4 @@
-"""How far settings may go from the nearest run before the misfit rises: the profile likelihood.
+"""Profile likelihood: how far settings may go from the nearest run.
 
 The misfit is |r(z)|^2, r the differences to a measured loop, (n_rows,), and z the
 settings on their scales, (p,). Along a direction w, a setting alone or a combination,
@@ -6,16 +6,16 @@ its profile is
 
     m(c) = least misfit of all z with w . z = c,
 
-found from one c to the next by least squares over what is left free. With the least
+found from one c to the next by least squares over the free directions. With the least
 misfit m0 and the noise s^2 = m0 / (n - p), all c with
 
     m(c) - m0 <= F s^2
 
 are within two standard errors (F is the quantile of the F distribution with 1 and n - p
-degrees of freedom that belongs to them: 4 of many rows). The slope of r at the nearest
-run, which is all that (J^T J)^-1 knows, tells that only where r is straight. Here it is
-not: a node of the mesh slips or it does not, and the floor of a valley has a dent for
-each.
+degrees of freedom that belongs to two standard errors: 4 for many rows). The slope of r
+at the nearest run, which is all that (J^T J)^-1 knows, tells that only where r is
+straight. Here r is not straight: a node of the mesh slips or sticks, and the floor of a
+valley has a dent for each node.
 
 These dents tell of the mesh and not of the loop. So whether a setting is known at all
 is judged with the change d of the loop on elements of half the size as one more source
@@ -23,8 +23,8 @@ of noise:
 
     m(c) - m0 <= F (s^2 + |d|^2)
 
-must end on both sides before `FACTOR`. Once it is known its margins are those of the
-noise.
+must end on both sides before `FACTOR`. The margins of a setting that is known are those
+of the noise.
 """
 
 from __future__ import annotations
@@ -41,32 +41,31 @@ from solver.arrays import Array
 from solver.study.compared_runs import ComparedRuns
 
 FACTOR = 1.5
-"""Change of a setting that is not determined if it is within two standard errors."""
+"""Factor on a setting within two standard errors from which on it is not determined."""
 LIMIT = math.log(FACTOR)
-"""The same in z."""
+"""The same distance in z."""
 WALK = math.log(3.0)
-"""How far from a place the floor of its valley is searched for a lower one, in z."""
+"""Distance in z along the floor of a valley that is searched for a lower place."""
 TWO = float(2.0 * norm.cdf(2.0) - 1.0)
-"""Probability of what is within two standard errors."""
+"""Probability of a normal value within two standard errors."""
 BROAD = 1e-2
-"""Step, in z, of the differences that tell where a valley goes."""
+"""Step, in z, of the finite differences that tell the direction of a valley."""
 SILENT = 1e-6
-"""Noise, as a share of the measured range, below which runs have errors of their
-own."""
+"""Smallest noise, as a share of the measured range: runs have errors as large."""
 LOWER = 0.1
-"""Share of F s^2 by which a place has to be lower to be another one."""
-GROWTH = 0.5, 2.0
-"""Between which a step along a profile is, over the distance so far."""
+"""Share of F s^2 by which the misfit of another place has to be lower to count."""
+GROWTH = (0.5, 2.0)
+"""Smallest and largest step along a profile, over the distance so far."""
 MARGIN = 1.1
+"""Factor on the distance to a level by which a step aims beyond it."""
 SMALL = 1e-3
-"""How far beyond a level it aims, and the share of the level below which a rise is
-none."""
+"""Share of a level below which a rise of the misfit counts as zero."""
 PLACES = 16
-"""Places on one side of a profile, at most."""
+"""Largest number of places on one side of a profile."""
 
 
 class LowerPlace(Exception):  # noqa: N818
-    """A place with a lower misfit than that from which the valley goes."""
+    """A place z, shape (p,), with a lower misfit than the nearest run so far."""
 
     def __init__(self, z: Array) -> None:
         super().__init__("there is a lower place")
@@ -75,18 +74,19 @@ class LowerPlace(Exception):  # noqa: N818
 
 @dataclass(frozen=True)
 class Side:
-    """One side of a profile.
+    """Side of a profile: places along a direction, and the misfit there.
 
     Attributes
     ----------
-    distances, rises
-        How far its places are from the nearest run, and by how much the misfit is
-        larger there; shape (n_places,). The first is the nearest run.
+    distances
+        Distances of the places from the nearest run, in z, shape (n_places,). The first
+        place is the nearest run.
+    rises
+        Misfit of the places less the least one, same shape.
     places
-        The z of these, shape (n_places, p).
+        The z of the places, shape (n_places, p).
     is_at_bound
-        Whether there is nothing beyond the last place, as the setting has a bound
-        there.
+        Whether the last place is at a bound of the setting.
     """
 
     distances: Array
@@ -95,7 +95,7 @@ class Side:
     is_at_bound: bool
 
     def end(self, level: float) -> float:
-        """Distance at which the misfit has risen to a level for good; infinite if that is not seen.
+        """Distance from which on the misfit stays above a level; infinite if not seen.
 
         Between two places the root of the rise is taken as straight.
         """
@@ -113,7 +113,16 @@ class Side:
 
 @dataclass(frozen=True)
 class Profile:
-    """Both sides of the profile along a direction, and what they tell at the levels of a valley."""
+    """Both sides of the profile along a direction, and the levels of their valley.
+
+    Attributes
+    ----------
+    below, above
+        Sides of the profile.
+    noise, doubt
+        Rises of the misfit that are within two standard errors: of the noise, and of
+        noise and mesh.
+    """
 
     below: Side
     above: Side
@@ -122,35 +131,52 @@ class Profile:
 
     @property
     def is_known(self) -> bool:
-        """Whether it ends on both sides before the factor, the mesh taken into account."""
+        """Check that both ends are nearer than `LIMIT`, with the mesh as noise."""
         return max(self.below.end(self.doubt), self.above.end(self.doubt)) < LIMIT
 
     @property
     def is_known_to_noise(self) -> bool:
-        """Whether it would be known if the mesh were right."""
+        """Check that both ends are nearer than `LIMIT`, if the mesh were exact."""
         return max(self.ends(self.noise)) < LIMIT
 
     def ends(self, level: float | None = None) -> tuple[float, float]:
-        """Distances to both ends of what is within two standard errors, infinite where open.
+        """Distances to both ends of two standard errors, infinite where a side is open.
 
-        Those of the noise where it is known, and else those of noise and mesh.
+        Without a level they are those of the noise where the direction is known, and
+        otherwise those of noise and mesh.
         """
-        if level is None:
-            level = self.noise if self.is_known else self.doubt
-        sides = (self.below.end(level), self.above.end(level))
-        below, above = (end if end < LIMIT else math.inf for end in sides)
-        return below, above
+        if level is None and self.is_known:
+            level = self.noise
+        elif level is None:
+            level = self.doubt
+        return _or_open(self.below.end(level)), _or_open(self.above.end(level))
+
+
+def _or_open(end: float) -> float:
+    """Distance to an end nearer than `LIMIT`; infinite for one farther away."""
+    if end < LIMIT:
+        return end
+    return math.inf
 
 
 class Valley:
-    """The misfit around a place of least squares, or another one on the floor around it.
+    """Misfit around a place of least squares.
 
-    Where a run has a lower misfit, `LowerPlace` is raised with it, if it is asked for.
+    Parameters
+    ----------
+    runs
+        Runs beside the measured loop.
+    z
+        Place of least squares, shape (p,).
+    seeks
+        Whether to raise `LowerPlace` where a run has a lower misfit.
 
     Attributes
     ----------
-    z, least
-        The place that is looked from, (p,), and the least misfit, there or elsewhere.
+    z
+        Centre from which the valley is explored, shape (p,).
+    minimum
+        Misfit of the centre.
     noise, doubt
         Rises of the misfit that are within two standard errors: of the noise, and of
         noise and mesh.
@@ -166,12 +192,13 @@ class Valley:
     def __init__(self, runs: ComparedRuns, z: Array, *, seeks: bool) -> None:
         self.runs = runs
         self.z = z
-        self.least = runs.misfit(z)
+        self.minimum = runs.misfit(z)
         self._seeks = seeks
         self._bounds = runs.bounds
+        # The noise is what the fit leaves of the differences.
         rows = len(runs.first.differences)
         free = rows - len(z)
-        self.deviation = max(math.sqrt(self.least / free), SILENT)
+        self.deviation = max(math.sqrt(self.minimum / free), SILENT)
         quantile = float(f_distribution.ppf(TWO, 1, free))
         change = runs.of_mesh(z)
         self.mesh = change / math.sqrt(rows)
@@ -179,17 +206,22 @@ class Valley:
         self.doubt = self.noise + quantile * change**2
         self._look()
 
-    def around(self, z: Array, reach: float) -> Valley:
-        """The same valley from another place on its floor, and so far from it in all settings."""
+    def around(self, z: Array, distance: float) -> Valley:
+        """The same valley from another centre on its floor, within a box around it.
+
+        The centre has shape (p,); the box reaches a distance in z in all settings.
+        """
         moved = copy(self)
         moved.z = z
-        moved.least = self.runs.misfit(z)
+        moved.minimum = self.runs.misfit(z)
         moved._seeks = False
-        moved._bounds = np.clip(z + reach * np.array([[-1.0], [1.0]]), *self._bounds)
+        box = z + distance * np.array([[-1.0], [1.0]])
+        moved._bounds = np.clip(box, *self._bounds)
         moved._look()
         return moved
 
     def _look(self) -> None:
+        """Find the Jacobian and the covariance at the centre."""
         self.jacobian = self.runs.jacobian(self.z, BROAD)
         # Where the slope tells nothing, a step is as long as the search.
         weak = np.eye(len(self.z)) / WALK**2
@@ -199,69 +231,98 @@ class Valley:
 
     @property
     def moves(self) -> Array:
-        """Moves from here that were seen to be within doubt, shape (n_places, p)."""
+        """Moves from the centre to places seen within doubt, shape (n_places, p)."""
         return np.array(self._inside) - self.z
 
     def walk(self) -> None:
-        """Go along the weakest direction, both ways, in search of a lower place."""
+        """Search for a lower place along the weakest direction, both ways."""
+        # A single setting has its profile, and no other direction.
         if len(self.z) > 1:
             weakest = np.linalg.svd(self.jacobian)[2][-1]
             for along in (-weakest, weakest):
                 self._side(along, WALK)
 
     def profile(self, along: Array, limit: float = LIMIT) -> Profile:
-        """Profile along a direction, shape (p,), no farther than a limit."""
+        """Profile along a direction, shape (p,), up to a distance `limit` in z."""
         below = self._seen(-along, limit) or self._side(-along, limit)
         above = self._seen(along, limit) or self._side(along, limit)
         return Profile(below, above, self.noise, self.doubt)
 
     def _seen(self, along: Array, limit: float) -> Side | None:
-        """A side that is known to be open, by a place beyond the limit that was within doubt."""
+        """Side along a direction, (p,), that is already known to be open.
+
+        It is open if a place beyond the limit has been seen within doubt. None
+        otherwise.
+        """
         distances = self.moves @ along
         farthest = int(distances.argmax())
         if distances[farthest] < limit:
             return None
         places = [self.z, self._inside[farthest]]
-        rises = [self.runs.misfit(place) - self.least for place in places]
+        rises = [self.runs.misfit(place) - self.minimum for place in places]
         return Side(np.array([0.0, limit]), np.array(rises), np.array(places), False)
 
     def _side(self, along: Array, limit: float) -> Side:
-        """One side of a profile, until the misfit has risen above the doubt or a limit is met."""
+        """Side of a profile along a direction, (p,), up to a distance `limit` in z.
+
+        The side ends where the misfit has risen above the doubt.
+        """
         room = self._room(along)
         limit = min(room, limit)
         variance = float(along @ self._covariance @ along)
-        # By a distance of 1 along the direction the settings move so far, if all is
-        # straight.
+        # Settings move so far by a distance of 1, if the valley is straight.
         course = self._covariance @ along / variance
         distances = [0.0]
-        rises = [self.runs.misfit(self.z) - self.least]
+        rises = [self.runs.misfit(self.z) - self.minimum]
         places = [self.z]
         step = min(2.0 * math.sqrt(variance), limit)
         while distances[-1] < limit and rises[-1] <= self.doubt and len(rises) < PLACES:
+            last = distances[-1]
+            # `LIMIT` is a place of its own, as the ends are compared with it.
             stop = limit
-            if distances[-1] < LIMIT < limit:
+            if last < LIMIT < limit:
                 stop = LIMIT
-            distances.append(min(distances[-1] + step, stop))
-            ahead = places[-1] + course * (distances[-1] - distances[-2])
-            places.append(self._place(along, distances[-1], ahead, places[-1]))
-            rises.append(self.runs.misfit(places[-1]) - self.least)
-            if rises[-1] <= self.doubt:
-                self._inside.append(places[-1])
-            if self._seeks and rises[-1] < -LOWER * self.noise:
-                raise LowerPlace(places[-1])
-            course = (places[-1] - places[-2]) / (distances[-1] - distances[-2])
-            step = distances[-1] * self._growth(rises[-1])
+            distance = min(last + step, stop)
+            ahead = places[-1] + course * (distance - last)
+            place = self._place(along, distance, ahead, places[-1])
+            rise = self._rise(place)
+            course = (place - places[-1]) / (distance - last)
+            step = distance * self._growth(rise)
+            distances.append(distance)
+            places.append(place)
+            rises.append(rise)
         is_at_bound = distances[-1] == room
         return Side(np.array(distances), np.array(rises), np.array(places), is_at_bound)
 
+    def _rise(self, place: Array) -> float:
+        """Misfit of a place, (p,), less the least one; places within doubt are kept.
+
+        Raises
+        ------
+        LowerPlace
+            If the misfit is lower than the least one, and a lower place is sought.
+        """
+        rise = self.runs.misfit(place) - self.minimum
+        if rise <= self.doubt:
+            self._inside.append(place)
+        if self._seeks and rise < -LOWER * self.noise:
+            raise LowerPlace(place)
+        return rise
+
     def _growth(self, rise: float) -> float:
-        """Next step over the distance so far, by which a level is passed if the rise is square."""
-        level = self.noise if rise <= self.noise else self.doubt
+        """Next step over the distance so far: past a level, if the rise is square."""
+        if rise <= self.noise:
+            level = self.noise
+        else:
+            level = self.doubt
         farther = MARGIN * math.sqrt(level / max(rise, SMALL * level))
         return float(np.clip(farther - 1.0, *GROWTH))
 
     def _room(self, along: Array) -> float:
-        """How far a setting may go within its bounds; infinite for a combination."""
+        """Distance in z along a direction, (p,), to a bound of its setting.
+
+        Infinite for a direction that combines settings.
+        """
         moving = np.flatnonzero(along)
         if len(moving) > 1:
             return math.inf
@@ -270,21 +331,33 @@ class Valley:
         return float(abs(end - self.z[pivot]) / abs(along[pivot]))
 
     def _place(self, along: Array, distance: float, ahead: Array, last: Array) -> Array:
-        """Lowest place so far along a direction, found from one that is about there.
+        """Lowest place at a distance along a direction, shape (p,).
 
-        Where that is out, and two or more are left free, it is tried from the last
-        place, too: a floor that bends leads astray.
+        Parameters
+        ----------
+        along
+            Direction, shape (p,).
+        distance
+            Distance from the centre in z.
+        ahead
+            Place to search from, as the course so far leads there, shape (p,).
+        last
+            Place before, shape (p,). Where the search from `ahead` ends out of the
+            noise and two or more settings are left free, the search starts from there,
+            too: a floor that bends leads astray.
         """
+        # The course so far is the better guess, and one search is enough within noise.
         found = self._lowest(along, distance, ahead)
-        is_within = self.runs.misfit(found) - self.least <= self.noise
+        is_within = self.runs.misfit(found) - self.minimum <= self.noise
         if is_within or len(self.z) < 3:
             return found
         other = self._lowest(along, distance, last)
         return min(found, other, key=self.runs.misfit)
 
     def _lowest(self, along: Array, distance: float, start: Array) -> Array:
+        """Lowest place at a distance along a direction; all have shape (p,)."""
         start = np.clip(start, *self._bounds)
         pivot = int(np.abs(along).argmax())
-        # The setting that counts most brings it as far along as asked.
+        # The setting that counts most brings the start to the distance.
         start[pivot] += (distance - along @ (start - self.z)) / along[pivot]
         return self.runs.across(start, along, self._bounds)

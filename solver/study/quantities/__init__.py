@@ -11,43 +11,102 @@ from dataclasses import replace
 
 import solver.study.quantities.contact_measures as contacts
 import solver.study.quantities.cycle_measures as cyclic
+import solver.study.quantities.holding_measures as holding
 import solver.study.quantities.reduction_measures as reductions
 import solver.study.quantities.run_measures as runs
 from solver.settings.definitions import SettingError
-from solver.study.quantities.quantity import Quantity
+from solver.study.quantities.quantity import Parameter, Quantity, by_name
 
-QUANTITIES = {
-    found.name: found
-    for module in (runs, reductions, contacts, cyclic)
-    for found in vars(module).values()
-    if isinstance(found, Quantity)
-}
-"""All quantities by name, as their modules define them."""
+QUANTITIES = by_name(
+    runs.iterations,
+    runs.seconds,
+    runs.converged,
+    runs.indicator,
+    runs.behaviour,
+    runs.estimated_error,
+    runs.error_displacement,
+    runs.error_force,
+    runs.iterations_to_displacement,
+    runs.iterations_to_force,
+    runs.seconds_to_displacement,
+    runs.seconds_to_force,
+    reductions.modes,
+    reductions.svd_modes_displacement,
+    reductions.svd_modes_force,
+    reductions.svd_numbers,
+    reductions.clip_numbers,
+    reductions.clip_error,
+    contacts.peak_displacement,
+    contacts.displacement,
+    contacts.force,
+    contacts.axial_force,
+    contacts.left_force,
+    contacts.right_force,
+    contacts.top_force,
+    contacts.bottom_force,
+    contacts.peak_slip,
+    contacts.peak_friction,
+    contacts.peak_pressing,
+    contacts.peak_pressure,
+    contacts.contact_width,
+    contacts.peak_stress,
+    contacts.peak_stress_x,
+    contacts.peak_stress_y,
+    contacts.spring_force,
+    holding.holding_friction,
+    holding.holding_force,
+    contacts.end_displacement,
+    contacts.residual_displacement,
+    contacts.stiffness,
+    contacts.dissipation,
+    contacts.slipped_share,
+    contacts.stuck_share,
+    contacts.first_slip_time,
+    contacts.first_slip_displacement,
+    cyclic.cycle_energy_ratio,
+    cyclic.ratchet,
+    cyclic.sliding_share,
+    cyclic.shakedown_factor,
+    cyclic.stuck_bending,
+    cyclic.slipping_bending,
+    cyclic.bending_stiffness,
+    cyclic.energy_per_metre,
+    cyclic.stress_range,
+    cyclic.wire_slip,
+    cyclic.wire_work,
+    cyclic.recovery_length,
+)
+"""All quantities by name, in the order in which they are listed to people."""
 FORMER = {"energy": "dissipation", "slipping": "slipped_share"}
-"""Names that quantities had elsewhere before, and those that they have."""
+"""Former names of quantities, and the names that have replaced them."""
 
 
 def reading(text: object) -> Quantity:
-    """Quantity that is asked for, as `NAME` or `NAME@PARAMETER`; others are refused."""
+    """Quantity of a text `NAME` or `NAME@PARAMETER`; any other text is refused."""
+    name = ""
+    at_sign = ""
+    number = ""
     if isinstance(text, str):
         name, at_sign, number = text.partition("@")
-    else:
-        name = ""
-        at_sign = ""
-        number = ""
-    quantity = QUANTITIES.get(name)
     if name in FORMER:
         new = FORMER[name]
         raise SettingError("quantity", text, new, f"{name} is called {new}")
-    if quantity is None:
-        raise SettingError(
-            "quantity", text, ", ".join(QUANTITIES), "choose one of these"
-        )
+    if name not in QUANTITIES:
+        known = ", ".join(QUANTITIES)
+        raise SettingError("quantity", text, known, "choose one of these")
+    quantity = QUANTITIES[name]
     parameter = quantity.parameter
     if parameter is None and at_sign:
         raise SettingError("quantity", text, name, "it takes no parameter")
     if parameter is None or not (at_sign or parameter.needed):
         return quantity
+    at = _number(text, name, number, parameter)
+    title = quantity.title + parameter.words.format(at)
+    return replace(quantity, name=f"{name}@{at!r}", title=title, at=at)
+
+
+def _number(text: object, name: str, number: str, parameter: Parameter) -> float:
+    """Value of a quantity's parameter; a value that it may not have is refused."""
     low, high = parameter.bounds
     is_counted = isinstance(low, int)
     if is_counted:
@@ -61,5 +120,4 @@ def reading(text: object) -> Quantity:
         at = math.nan
     if not low <= at <= high or (is_counted and at != int(at)):
         raise SettingError("quantity", text, allowed, "mend the parameter")
-    title = quantity.title + parameter.words.format(at)
-    return replace(quantity, name=f"{name}@{at!r}", title=title, at=at)
+    return at

@@ -1,26 +1,23 @@
-"""Quantities of what a run came to: displacement, slip, forces, pressure, stress, its loop."""
+"""Quantities of the result: displacement, slip, forces, pressure, stress, loop."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import RESIDUE, Array
+from solver.arrays import Array, Flags
 from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import AxialForce, reaction
 from solver.discrete.rods.rods import Rods
 from solver.laws import OPEN
-from solver.reference.distance import determinate_forces
 from solver.settings.scene import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import (
-    EQUAL,
     FinishedRun,
     figures_of,
     first_largest,
@@ -30,21 +27,15 @@ from solver.study.quantities.quantity import CYCLE, Parameter, Quantity, quantit
 
 AT = Parameter(" after {:.0%} of the interval", (0.0, 1.0))
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
-ENDS: tuple[Literal["left"], Literal["right"]] = "left", "right"
+ENDS: tuple[Literal["left"], Literal["right"]] = ("left", "right")
 UNLOADED = 1e-3
 """Share of the largest force below which a structure counts as unloaded."""
 _opens = attrgetter("opens")
 _over_a_displacement = attrgetter("loop_is_over_displacement")
 
 
-def _rubs_by_mu(settings: Settings) -> bool:
-    """Whether friction is mu N at most, whatever has slipped."""
-    law = settings.law
-    return law.cohesion == 0.0 and math.isinf(law.cap) and law.strength is None
-
-
 def _has_no_wires_around(settings: Settings) -> bool:
-    """Whether the loop is no moment over a curvature."""
+    """Check that the loop is not the moment over the curvature of a rope."""
     return settings.kind != "helices"
 
 
@@ -56,22 +47,25 @@ def _in_the_plane(settings: Settings) -> bool:
 def peak_displacement(run: FinishedRun) -> float:
     """Largest displacement of any node at any instant, m.
 
-    Where a body lies on its image, it is that of a point over the one across from it,
-    which moves along as much the other way, and alike across.
+    Where a body lies on its image, the displacement is relative to the point across:
+    the image moves by as much the other way along the interface, and alike across it.
     """
     inside = run.problem.inside
-    moved = run.problem.at_rest(run.iterate.displacement)
+    absolute = run.problem.at_rest(run.iterate.displacement)
     if inside is None:
-        return float(np.abs(moved).max())
-    every = inside.displacement(moved, slice(None))
+        return float(np.abs(absolute).max())
+    vectors = inside.displacement(absolute, slice(None))
     ratio = max(law.slip_ratio for law in run.problem.rubbing.values())
     if ratio > 1.0:
-        return ratio * float(np.abs(every[:, 0]).max())
-    return float(np.linalg.norm(every, axis=1).max())
+        return ratio * float(np.abs(vectors[:, 0]).max())
+    return float(np.linalg.norm(vectors, axis=1).max())
 
 
 def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
-    """Key figure of the loop: largest in size, or at a share of the interval; NaN without it."""
+    """Key figure of the loop: the largest in size, or at a share of the interval.
+
+    NaN where the loop has no figure of that name.
+    """
     for figure in figures_of(run):
         if figure.name == name:
             if at is None:
@@ -84,30 +78,34 @@ def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
     "Largest displacement of the loop", "m", parameter=AT, applies=_has_no_wires_around
 )
 def displacement(run: FinishedRun, at: float | None) -> float:
-    """Displacement of the loop that is largest in size, m; NaN where it is over something else."""
+    """Displacement of the loop that is largest in size, m.
+
+    NaN where the loop is not over a displacement.
+    """
     return _of_loop(run, "displacement", at)
 
 
 @quantity("Largest force of the loop", "N", parameter=AT, applies=_has_no_wires_around)
 def force(run: FinishedRun, at: float | None) -> float:
-    """Force of the loop that is largest in size, N; NaN where it shows something else."""
+    """Force of the loop that is largest in size, N; NaN where the loop has none."""
     return _of_loop(run, "force", at)
 
 
 def _axial_force(run: FinishedRun) -> Array:
-    """Axial force in all elements, and at both ends, pull positive, (n_places, n_instants), N.
+    """Axial force in all elements, then at both ends: (n_elements + 2, n_instants), N.
 
-    In the middle of the last element friction has taken its part of the force at the
-    end.
+    Tension is positive. The ends are rows of their own, since friction takes a part of
+    the end force before the middle of the last element.
     """
     rods = run.settings.structure()
     assert isinstance(rods, Rods)
     left, right = (rods.end_force(run.problem, side).of(run.iterate) for side in ENDS)
-    return np.vstack([AxialForce(run.problem)(run.iterate.displacement), -left, right])
+    in_elements = AxialForce(run.problem)(run.iterate.displacement)
+    return np.vstack([in_elements, -left, right])
 
 
-def _most_axial_force(run: FinishedRun, at: float | None) -> int:
-    """Instant at a share of the interval, or that of the largest axial force."""
+def _axial_force_instant(run: FinishedRun, at: float | None) -> int:
+    """Instant at a share of the interval, or the instant of the largest axial force."""
     if at is None:
         return first_largest(np.abs(_axial_force(run)).max(axis=0))
     return _instant_at(run, at)
@@ -124,16 +122,20 @@ def _instant_at(run: FinishedRun, share: float) -> int:
     "N",
     parameter=AT,
     applies=lambda settings: settings.kind in ("rod", "wires"),
-    when=_most_axial_force,
+    when=_axial_force_instant,
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
-    """Largest axial force along rods at an instant, their ends included, N, pull positive."""
+    """Largest axial force along rods at an instant, with ends, N, tension positive."""
     force = _axial_force(run)[:, instant]
     return float(force[first_largest(force)])
 
 
 def _force_at(side: str) -> Quantity:
-    """Largest force that holds a side, or pulls the end of a rod there."""
+    """Largest force that holds a side of bodies, or pulls that end of a rod.
+
+    The force on an end is along the rod and positive to the right; the force on a side
+    in the plane is the size of a vector.
+    """
 
     def force(run: FinishedRun) -> float:
         problem = run.problem
@@ -142,48 +144,48 @@ def _force_at(side: str) -> Quantity:
             end = structure.end_force(problem, "right" if side == "right" else "left")
             values = end.of(run.iterate)
             return float(values[first_largest(values)])
-        along, up = (reaction(problem, side, axis).of(run.iterate) for axis in (0, 1))
+        along = reaction(problem, side, 0).of(run.iterate)
+        up = reaction(problem, side, 1).of(run.iterate)
         return float(np.hypot(along, up).max())
 
+    def applies(settings: Settings) -> bool:
+        return side in holding_sides(settings)
+
     title = f"Largest force at the {side}"
-    return Quantity(
-        f"{side}_force",
-        title,
-        "N",
-        force,
-        applies=lambda own: side in holding_sides(own),
-    )
+    return Quantity(f"{side}_force", title, "N", force, applies=applies)
 
 
 def holding_sides(settings: Settings) -> Collection[str]:
-    """Sides that have a force to tell: ends of a rod, and sides of prescribed displacement."""
+    """Sides with a holding force: rod ends, or sides of prescribed displacement."""
     if settings.kind == "rod":
         return "left", "right"
     structure = settings.structure()
     if not isinstance(structure, Stack):
         return []
-    sides = structure.sides.items()
-    return [side for side, given in sides if any(each.prescribed for each in given)]
+    held = []
+    for side, components in structure.sides.items():
+        if any(component.prescribed for component in components):
+            held.append(side)
+    return held
 
 
-left_force, right_force, top_force, bottom_force = map(
-    _force_at, ("left", "right", "top", "bottom")
-)
-"""N; of a rod's end along it, positive to the right, and in the plane its size."""
+left_force = _force_at("left")
+right_force = _force_at("right")
+top_force = _force_at("top")
+bottom_force = _force_at("bottom")
 
 
 @quantity("Largest slip", "m")
 def peak_slip(run: FinishedRun) -> float:
-    """Farthest that any point in contact has come along what it rubs on, m."""
-    contacts = map(run.iterate.contact, run.problem.surfaces)
-    return float(
-        max(np.abs(part.slip * (part.status != OPEN)).max() for part in contacts)
-    )
+    """Largest slip of any point in contact, at any instant, m."""
+    contacts = [run.iterate.contact(name) for name in run.problem.surfaces]
+    slips = [np.abs(each.slip * (each.status != OPEN)).max() for each in contacts]
+    return float(max(slips))
 
 
 @quantity("Largest friction, all points", "N")
 def peak_friction(run: FinishedRun) -> float:
-    """Largest sum over all points of the sizes of the friction force, N."""
+    """Largest sum over all points of the size of the friction force, N."""
     total = np.zeros(run.problem.n_instants)
     for name, law in run.problem.rubbing.items():
         force = run.iterate.contact(name).tangential_force
@@ -192,7 +194,10 @@ def peak_friction(run: FinishedRun) -> float:
 
 
 def _pressing(run: FinishedRun, name: str) -> Array:
-    """Pressing force at an interface, which is an unknown in scenes whose contacts open."""
+    """Pressing force at an interface, shape (n_points, n_instants), N.
+
+    The force is an unknown only in scenes whose contacts open.
+    """
     force = run.iterate.contact(name).normal_force
     assert force is not None
     return force
@@ -209,13 +214,13 @@ def peak_pressing(run: FinishedRun) -> float:
 def peak_pressure(run: FinishedRun) -> float:
     """Largest pressure at any point of an interface, Pa.
 
-    Force of a point over its tributary length, one metre thick. A spring has a force
-    and no pressure.
+    The pressure is the force of a point over its tributary length, one metre thick. A
+    spring has a force and no pressure.
     """
-    lengths = _lengths(run).items()
-    peaks = (
-        float((_pressing(run, name) / own[:, None]).max()) for name, own in lengths
-    )
+    peaks = []
+    for name, lengths in _lengths(run).items():
+        pressure = _pressing(run, name) / lengths[:, None]
+        peaks.append(float(pressure.max()))
     return max(peaks, default=math.nan)
 
 
@@ -227,24 +232,29 @@ def contact_width(run: FinishedRun) -> float:
 
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
-    """Tributary lengths of the points of all surfaces, m."""
+    """Tributary lengths of the points of each surface by name, shape (n_points,), m."""
     return {
         name: law.by_point(law.weights) for name, law in run.problem.surfaces.items()
     }
 
 
 def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
-    """Length and status of the points of these interfaces, one interface after the other."""
+    """Tributary length and status of all points of surfaces, one surface after another.
+
+    The lengths have shape (n_points,), m, the statuses (n_points, n_instants).
+    """
     lengths = _lengths(run)
     status = [run.iterate.contact(name).status for name in lengths]
     return np.concatenate(list(lengths.values())), np.concatenate(status)
 
 
-def _peak_stress(name: str, title: str, unit: str, place: int) -> Quantity:
-    """Largest von Mises stress at the centre of an element, or where that is; NaN without any."""
-    return Quantity(
-        name, title, unit, lambda run: run.peak_stress[place], applies=_in_the_plane
-    )
+def _peak_stress(name: str, title: str, unit: str, component: int) -> Quantity:
+    """Largest von Mises stress, its x or its y: 0, 1 or 2 of `peak_stress`."""
+
+    def of(run: FinishedRun) -> float:
+        return run.peak_stress[component]
+
+    return Quantity(name, title, unit, of, applies=_in_the_plane)
 
 
 peak_stress = _peak_stress("peak_stress", "Largest von Mises stress", "Pa", 0)
@@ -260,116 +270,6 @@ def spring_force(run: FinishedRun) -> float:
     return float(_pressing(run, "spring").max())
 
 
-@dataclass(frozen=True, eq=False)
-class _Hold:
-    """How far an interface as a whole is from sliding, at every instant, (n_instants,).
-
-    Attributes
-    ----------
-    pressing
-        All that presses, N; where mu varies, by its factors.
-    carried
-        All its friction, N.
-    slides
-        Whether all its points slip one way.
-    """
-
-    pressing: Array
-    carried: Array
-    slides: NDArray[np.bool_]
-
-    @property
-    def needed(self) -> Array:
-        """Coefficient of friction that is in use; 0 where nothing presses."""
-        nothing = np.zeros_like(self.pressing)
-        return np.divide(
-            np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0
-        )
-
-    def sliding(self, friction: float, instants: Array) -> Array:
-        """All that presses while it slides, N: at its instants, and as it begins to slide.
-
-        It begins between two instants, where all its friction, if it grows on as
-        before, comes to mu times all that presses.
-        """
-        pressing = self.pressing
-        carried = np.abs(self.carried)
-        step = np.diff(instants)
-        begins = np.flatnonzero(self.slides[2:] & ~self.slides[1:-1]) + 2
-        before = begins - 1
-        pace = (carried[before] - carried[before - 1]) / step[before - 1]
-        growth = pace * step[before]
-        rise = pressing[begins] - pressing[before]
-        lacks = friction * pressing[before] - carried[before]
-        closes = growth - friction * rise
-        share = np.divide(lacks, closes, np.ones_like(lacks), where=closes > 0.0)
-        at_onset = pressing[before] + np.clip(share, 0.0, 1.0) * rise
-        return np.concatenate([pressing[self.slides], at_onset])
-
-
-def _holds(run: FinishedRun) -> list[_Hold]:
-    """Interfaces with friction, each as a whole."""
-    problem = run.problem
-    friction = run.settings.friction
-    # A point that a clamp holds, too, never slips.
-    determinate = determinate_forces(problem)
-    holds = []
-    for name, law in problem.surfaces.items():
-        contact = run.iterate.contact(name)
-        *_, tangential = problem.contact_places[name]
-        if contact.normal_force is None:
-            bound = law.by_point(law.tangential.bound) * problem.scales.force
-            pressing = np.broadcast_to(bound / friction, contact.status.shape)
-        else:
-            share = law.mean_by_point(law.tangential.friction) / friction
-            pressing = share[:, None] * contact.normal_force
-        status = contact.status
-        is_free = (status == OPEN) | ~determinate[tangential] | (pressing <= 0.0)
-        forward = ((status == 1) | is_free).all(axis=0)
-        backward = ((status == -1) | is_free).all(axis=0)
-        slides = (forward | backward) & ~is_free.all(axis=0)
-        carried = contact.tangential_force.sum(axis=0)
-        holds.append(_Hold(pressing.sum(axis=0), carried, slides))
-    return holds
-
-
-@quantity("Smallest friction that holds", applies=_rubs_by_mu)
-def holding_friction(run: FinishedRun) -> float:
-    """Smallest coefficient of friction at which no interface slides as a whole.
-
-    All its friction over all that presses, at the worst instant; where mu varies, by
-    its factors. NaN where one slides: the run then cannot tell how much more it would
-    take.
-    """
-    if not run.settings.friction:
-        return math.nan
-    holds = _holds(run)
-    if any(hold.slides.any() for hold in holds):
-        return math.nan
-    needed = max(float(hold.needed.max(initial=0.0)) for hold in holds)
-    return needed if needed > RESIDUE else 0.0
-
-
-@quantity("Largest force that friction could hold", "N", applies=_rubs_by_mu)
-def holding_force(run: FinishedRun) -> float:
-    """Largest force that friction could hold at an interface that comes nearest to sliding, N.
-
-    That is mu times all that presses. Where interfaces slide as a whole, it is the
-    largest while they do, from where they begin to; else that at the interface and the
-    instant of which the largest share is in use, and the largest of several.
-    """
-    friction = float(run.settings.friction)
-    if not friction:
-        return 0.0
-    holds = _holds(run)
-    instants = run.problem.instants
-    forces = [hold.sliding(friction, instants) for hold in holds if hold.slides.any()]
-    if not forces:
-        most = max(float(hold.needed.max(initial=0.0)) for hold in holds)
-        forces = [hold.pressing[hold.needed >= (1.0 - EQUAL) * most] for hold in holds]
-    return friction * float(np.concatenate(forces).max(initial=0.0))
-
-
 @quantity(
     "Displacement at the largest load",
     "m",
@@ -377,13 +277,13 @@ def holding_force(run: FinishedRun) -> float:
     when=largest_load,
 )
 def end_displacement(run: FinishedRun, instant: int) -> float:
-    """Displacement of the loop where its force is largest, m: the largest while that stands."""
+    """Displacement of the loop at the largest load, m; the largest while it stands."""
     return float(run.displacement[instant])
 
 
 @quantity("Displacement left without load", "m", applies=_over_a_displacement)
 def residual_displacement(run: FinishedRun) -> float:
-    """What is left of the loop's displacement without load, m; NaN if the end is loaded."""
+    """Displacement of the loop left at an unloaded end, m; NaN if the end is loaded."""
     size = np.abs(run.force)
     if size[-1] > UNLOADED * size.max():
         return math.nan
@@ -394,24 +294,27 @@ def residual_displacement(run: FinishedRun) -> float:
 def stiffness(run: FinishedRun) -> float:
     """Largest force of the loop over its displacement, N/m."""
     instant = largest_load(run)
-    moved = float(run.displacement[instant])
-    if moved:
-        return float(run.force[instant]) / moved
+    displacement = float(run.displacement[instant])
+    if displacement:
+        return float(run.force[instant]) / displacement
     return math.nan
 
 
 @quantity("Energy dissipated", "J", parameter=CYCLE)
 def dissipation(run: FinishedRun, at: float | None) -> float:
-    """Energy that friction takes, J: of the whole run, or of a cycle; NaN if there are fewer."""
-    some = instants_of(run.settings, at)
-    if some is None:
+    """Energy dissipated by friction, J: in the whole run, or in a cycle.
+
+    NaN where the load has fewer cycles.
+    """
+    instants = instants_of(run.settings, at)
+    if instants is None:
         return math.nan
-    return float(run.dissipated[some].sum())
+    return float(run.dissipated[instants].sum())
 
 
 @quantity("Share of the points that slip", is_share=True)
 def slipped_share(run: FinishedRun) -> float:
-    """Share of the points that slip at any instant, of those that can."""
+    """Share of the points that slip at any instant, of those that can slip."""
     return float(_slipped_shares(run)[-1])
 
 
@@ -421,14 +324,15 @@ def slipped_share(run: FinishedRun) -> float:
     when=largest_load,
 )
 def stuck_share(run: FinishedRun, instant: int) -> float:
-    """Share of what touches that sticks at the largest load, by length; NaN if nothing does.
+    """Share of the length in contact that sticks at the largest load.
 
-    Points that are held and never move are left out.
+    Points that are held and never move are left out. NaN if nothing is in contact.
     """
-    length, every = _touching(run)
+    # Clamped points would count as sticking.
+    length, statuses = _touching(run)
     still = _stand_still(run)
     length = length * ~np.concatenate([still[name] for name in _lengths(run)])
-    status = every[:, instant]
+    status = statuses[:, instant]
     touching = length[status != OPEN].sum()
     if touching:
         return float(length[status == 0].sum() / touching)
@@ -436,9 +340,9 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
 
 
 def _slipped_shares(run: FinishedRun) -> Array:
-    """Share of the points of surfaces that have slipped by every instant, (n_instants,).
+    """Share of the points that have slipped by each instant, (n_instants,).
 
-    Of those that can slip.
+    Only points of surfaces that can slip count.
     """
     problem = run.problem
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
@@ -449,8 +353,8 @@ def _slipped_shares(run: FinishedRun) -> Array:
     return np.asarray(counted.mean(axis=0))
 
 
-def _stand_still(run: FinishedRun) -> dict[str, NDArray[np.bool_]]:
-    """Points of each interface that are held and never move, (n_points,): they cannot slip."""
+def _stand_still(run: FinishedRun) -> dict[str, Flags]:
+    """Points of each interface that are held and never slip, shape (n_points,)."""
     held = run.problem.is_held
     still = {}
     for name, law in run.problem.rubbing.items():
@@ -461,7 +365,10 @@ def _stand_still(run: FinishedRun) -> dict[str, NDArray[np.bool_]]:
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:
-    """Value at the instant by which a share of the points, or any, has slipped; or infinite."""
+    """Value at the instant by which a share of the points, or any point, has slipped.
+
+    The values have shape (n_instants,). Infinite where no such instant comes.
+    """
     share = _slipped_shares(run)
     slips = (share > 0.0) & (share >= (at or 0.0))
     if slips.any():
@@ -471,7 +378,7 @@ def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:
 
 @quantity("Time of the first slip", "s", parameter=SHARE)
 def first_slip_time(run: FinishedRun, at: float | None) -> float:
-    """First instant by which points have slipped, s; infinite if none do."""
+    """First instant by which points have slipped, s; infinite if no point slips."""
     return _at_first_slip(run, run.problem.instants, at)
 
 
@@ -479,5 +386,5 @@ def first_slip_time(run: FinishedRun, at: float | None) -> float:
     "Displacement at the first slip", "m", parameter=SHARE, applies=_over_a_displacement
 )
 def first_slip_displacement(run: FinishedRun, at: float | None) -> float:
-    """Displacement of the loop at that instant, m."""
+    """Displacement of the loop at the first slip, m; infinite if no point slips."""
     return _at_first_slip(run, run.displacement, at)

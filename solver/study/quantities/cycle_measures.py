@@ -1,4 +1,4 @@
-"""Quantities of a load that repeats itself, and of strands: of helical wires, or a broken one."""
+"""Quantities of cyclic loads, of ropes of helical wires, and of broken wires."""
 
 from __future__ import annotations
 
@@ -19,21 +19,23 @@ from solver.study.quantities.finished import FinishedRun, first_largest
 from solver.study.quantities.quantity import CYCLE, quantity
 
 NO_ENERGY = 1e-12
-"""Share of all energy that rounding makes."""
+"""Share of the dissipated energy up to which the energy of a cycle is rounding."""
 REGAINED = 0.9
-"""Share of its tension up to which a broken wire is watched; it regains the rest at
-that rate. The element in which the rest is regained would blur the place."""
+"""Share of its tension up to which the recovery of a broken wire is measured.
+
+The rest is extrapolated at the same rate: the element in which the tension is complete
+again would blur the length."""
 
 
 def has_cycles(settings: Settings) -> bool:
-    """Whether a load has a cycle."""
+    """Check whether the load has a cycle."""
     return cycles_in(settings) > 0
 
 
 def has_a_limit(settings: Settings) -> bool:
-    """Whether slip that stays is known: of rods, and in the plane of closed contacts.
+    """Check whether a shakedown limit is known: for rods, and for closed contacts.
 
-    Contacts stay closed where surfaces without a gap rub by Coulomb's law.
+    Contacts in the plane stay closed where surfaces without a gap rub by Coulomb's law.
     """
     law = settings.law
     if not has_cycles(settings) or law.strength is not None:
@@ -42,11 +44,8 @@ def has_a_limit(settings: Settings) -> bool:
         return True
     if not settings.opens or settings.has("spring") or law != FrictionLaw():
         return False
-    gaps = [
-        hold.gap
-        for hold in settings.structure().described().holds
-        if hold.gap is not None
-    ]
+    holds = settings.structure().described().holds
+    gaps = [hold.gap for hold in holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
 
@@ -55,17 +54,16 @@ def has_a_limit(settings: Settings) -> bool:
     applies=lambda settings: cycles_in(settings) > 1,
 )
 def cycle_energy_ratio(run: FinishedRun) -> float:
-    """Energy of the last cycle over that of the second; NaN where that took none."""
+    """Energy of the last cycle over that of the second; NaN if the second is zero."""
     energy = run.cycles.energy
-    is_any = energy[1] > NO_ENERGY * np.abs(run.dissipated).sum()
-    if is_any:
+    if energy[1] > NO_ENERGY * np.abs(run.dissipated).sum():
         return float(energy[-1] / energy[1])
     return math.nan
 
 
 @quantity("Slip that the last cycle leaves", "m", applies=has_cycles)
 def ratchet(run: FinishedRun) -> float:
-    """Slip that the last cycle leaves, at the point where it leaves most, m."""
+    """Largest slip of a point that is left at the end of the last cycle, m."""
     left = np.abs(run.cycles.net[:, -1]).max()
     if left > RESIDUE * run.cycles.slip.max():
         return float(left)
@@ -84,28 +82,32 @@ def sliding_share(run: FinishedRun) -> float:
     On fretting maps, Wear 126, 1988). A point that a clamp holds never slips, and is
     left out.
     """
-    held = run.problem.is_held
-    lengths = [
-        law.by_point(
-            law.weights * ~np.all([held[rows] for rows in law.tangent.sides], axis=0)
-        )
-        for law in run.problem.surfaces.values()
-    ]
-    length = np.concatenate(lengths)[:, None]
+    length = _free_lengths(run)[:, None]
     status = run.iterate.status[run.problem.on_surfaces]
     status = status[:, instants_of(run.settings, cycles_in(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
+    # At an instant without contact nothing slips.
     shares = slipping[touching > 0.0] / touching[touching > 0.0]
     return float(shares.max(initial=0.0))
 
 
+def _free_lengths(run: FinishedRun) -> Array:
+    """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
+    held = run.problem.is_held
+    lengths = []
+    for law in run.problem.surfaces.values():
+        is_clamped = np.all([held[rows] for rows in law.tangent.sides], axis=0)
+        lengths.append(law.by_point(law.weights * ~is_clamped))
+    return np.concatenate(lengths)
+
+
 @quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
 def shakedown_factor(run: FinishedRun) -> float:
-    """Largest factor on the swing about the mean of the last cycle under which slip can cease.
+    """Largest factor on the swing about the mean of the last cycle that shakes down.
 
-    `solver/README.md`, 15; NaN where none is known, or not even the mean keeps all
-    contacts closed.
+    With that factor slip can still cease (`solver/README.md`, 15). NaN where no limit
+    is known, or where not even the mean load keeps all contacts closed.
     """
     try:
         if run.problem.opens:
@@ -116,18 +118,19 @@ def shakedown_factor(run: FinishedRun) -> float:
 
 
 def is_rope(settings: Settings) -> bool:
-    """Whether there are wires around a core."""
+    """Check whether the structure is a rope: helical wires around a core."""
     return settings.kind == "helices"
 
 
 def _rope(settings: Settings) -> Rope:
+    """Structure of the settings of a rope."""
     rope = settings.structure()
     assert isinstance(rope, Rope)
     return rope
 
 
 def _last(run: FinishedRun) -> slice:
-    """Instants of the last cycle, its beginning among them; or all without one."""
+    """Instants of the last cycle with its first one; all instants without a cycle."""
     ends = ends_of(run.settings)
     if len(ends) > 1:
         return slice(ends[-2], ends[-1] + 1)
@@ -136,7 +139,7 @@ def _last(run: FinishedRun) -> slice:
 
 @quantity("Bending stiffness while nothing slips", "N·m^2", applies=is_rope)
 def stuck_bending(run: FinishedRun) -> float:
-    """Bending stiffness while nothing slips, N m^2."""
+    """Bending stiffness of wires that all stick, N m^2."""
     return _rope(run.settings).section.stuck_bending
 
 
@@ -153,7 +156,7 @@ def slipping_bending(run: FinishedRun) -> float:
     when=lambda run: first_largest(run.displacement),
 )
 def bending_stiffness(run: FinishedRun, instant: int) -> float:
-    """Moment at the largest curvature over that, N m^2."""
+    """Moment at the largest curvature over that curvature, N m^2."""
     curvature = float(run.displacement[instant])
     if curvature:
         return float(run.force[instant]) / curvature
@@ -167,26 +170,26 @@ def bending_stiffness(run: FinishedRun, instant: int) -> float:
     applies=lambda settings: is_rope(settings) and not _rope(settings).is_clamped,
 )
 def energy_per_metre(run: FinishedRun, at: float | None) -> float:
-    """Energy that friction takes in a metre of strand, J/m: of the whole run, or of a cycle.
+    """Energy dissipated in a metre of strand, J/m: in the whole run, or in a cycle.
 
-    NaN near a clamp, and with fewer cycles.
+    NaN near a clamp, and where the load has fewer cycles.
     """
-    some = instants_of(run.settings, at)
-    if some is None:
+    instants = instants_of(run.settings, at)
+    if instants is None:
         return math.nan
-    return float(run.dissipated[some].sum()) / _rope(run.settings).seen_length
+    return float(run.dissipated[instants].sum()) / _rope(run.settings).seen_length
 
 
 @quantity("Largest stress range of a wire in the last cycle", "Pa", applies=is_rope)
 def stress_range(run: FinishedRun) -> float:
-    """How far the stress of a wire swings in the last cycle, the wire where it is most, Pa."""
+    """Largest stress range of any wire in the last cycle, Pa."""
     rope = _rope(run.settings)
     return float(stress_ranges(rope, run.iterate.displacement, _last(run)).max())
 
 
 @quantity("Largest slip of a wire in the last cycle, to and fro", "m", applies=is_rope)
 def wire_slip(run: FinishedRun) -> float:
-    """How far a wire slips to and fro in the last cycle, at the point that slips most, m."""
+    """Largest range of the slip of any point of a wire in the last cycle, m."""
     return float(np.ptp(run.iterate.displacement[:, _last(run)], axis=1).max())
 
 
@@ -194,17 +197,16 @@ def wire_slip(run: FinishedRun) -> float:
     "Largest friction work in the last cycle, a metre of wire", "J/m", applies=is_rope
 )
 def wire_work(run: FinishedRun) -> float:
-    """What friction takes of a metre of wire in the last cycle, where it is most, J/m.
+    """Largest friction work on a metre of wire in the last cycle, at any point, J/m.
 
-    There fretting is worst; near a clamp it is beside it.
+    Fretting is worst at that point, which near a clamp is beside the clamp.
     """
     last = instants_of(run.settings, cycles_in(run.settings) or None)
-    return max(
-        float(
-            (law.by_point(work[:, last].sum(axis=1)) / law.by_point(law.weights)).max()
-        )
-        for law, _, work in slips_of(run.iterate)
-    )
+    largest = []
+    for law, _, work in slips_of(run.iterate):
+        of_cycle = law.by_point(work[:, last].sum(axis=1))
+        largest.append(float((of_cycle / law.by_point(law.weights)).max()))
+    return max(largest)
 
 
 @quantity(
@@ -214,33 +216,35 @@ def wire_work(run: FinishedRun) -> float:
     when=lambda run: first_largest(np.maximum(run.force, 0.0)),
 )
 def recovery_length(run: FinishedRun, instant: int) -> float:
-    """How far from its break a wire carries its tension again, at the largest tension, m.
+    """Distance from its break at which a wire carries its tension again, m.
 
-    NaN without a broken wire, or without tension; infinite if it does so on neither
-    side.
+    The distance is taken at the largest tension. NaN without a broken wire, or without
+    tension; infinite if the wire regains its tension on neither side.
     """
     described = run.settings.structure().described()
     if described.broken is None or run.force[instant] <= 0.0:
         return math.nan
-    wire, place = described.broken
+    wire, position = described.broken
     axial = AxialForce(run.problem, slice(instant, instant + 1))
-    force = axial(run.iterate.displacement[:, instant : instant + 1])[
-        axial.wires == wire, 0
-    ]
-    share = force / run.force[instant]
+    forces = axial(run.iterate.displacement[:, instant : instant + 1])
+    # The tension far from the break is that of the loop.
+    share = forces[axial.wires == wire, 0] / run.force[instant]
     size = described.length / len(share)
-    node = round(place / size)
-    sides = share[node:], share[:node][::-1]
-    return min(size * _reached(side, REGAINED) / REGAINED for side in sides)
+    node = round(position / size)
+    after = size * _elements_to(share[node:], REGAINED) / REGAINED
+    before = size * _elements_to(share[:node][::-1], REGAINED) / REGAINED
+    return min(after, before)
 
 
-def _reached(share: Array, level: float) -> float:
-    """Elements from a break to where the tension, known in their middles, reaches a share of it.
+def _elements_to(share: Array, level: float) -> float:
+    """Number of elements from a break to where the tension reaches a level.
 
-    Linear between the middles, and nothing at the break; infinite if it is not reached.
+    The tension is known in the middles of the elements, as a share of the full one,
+    shape (n_elements,). It is zero at the break and linear between the middles.
+    Infinite if the level is not reached.
     """
-    places = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
+    distances = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
     values = np.maximum.accumulate(np.concatenate([[0.0], share]))
     if values[-1] >= level:
-        return float(np.interp(level, values, places))
+        return float(np.interp(level, values, distances))
     return math.inf

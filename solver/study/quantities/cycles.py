@@ -1,10 +1,10 @@
-"""A run cut into the cycles of its load: what each takes and leaves, and what becomes of slip.
+"""Cycles of a load: energy and slip of each cycle, and the long-term fate of slip.
 
-Cycles go from one turning point of a load to the next but one, so that the way there
-from rest is none of them. Slip ceases, dies out, goes to and fro, or goes on one way
-(J. R. Barber, Frictional systems subjected to oscillating loads, Ann. Solid Struct.
-Mech. 2, 2011). A word is said only where the last three cycles have earned it
-(solver/README.md, 15).
+A cycle goes from one turning point of a load to the next but one, so that the first
+loading from rest is not part of a cycle. Slip ceases, dies out, goes to and fro, or
+goes on in one direction (J. R. Barber, Frictional systems subjected to oscillating
+loads, Ann. Solid Struct. Mech. 2, 2011). The fate is told only where the last three
+cycles agree on it (solver/README.md, 15).
 """
 
 from __future__ import annotations
@@ -23,62 +23,66 @@ from solver.laws import Contact
 from solver.settings.scene import Settings
 
 SMALLEST_SWING = 0.05
-"""Share of the whole range that a path must turn back by to begin another half
-cycle."""
+"""Share of its range by which a path must turn back to begin another half cycle."""
 NO_SWING = 1e-9
-"""Share of its size by which rounding lets a path that stands still swing."""
+"""Share of its size by which a constant path may swing from rounding."""
 LAST = 3
-"""Cycles from which one tells what becomes of slip, whatever came before them."""
+"""Number of last cycles that tell the fate of slip, whatever came before them."""
 REPEATED = 1e-3
-"""Share of its range by which a load may differ from a cycle to the next."""
+"""Share of its range by which a repeated load may differ from one cycle to the next."""
 ALIKE = 0.02
-"""Share by which the slip of the last cycles may differ where it counts as the same."""
+"""Relative difference up to which the slip of the last cycles counts as equal."""
 ONE_WAY = 0.05
-"""Share of the slip of a cycle that is left at its end, from which on a point goes one
-way."""
+"""Share of the slip of a cycle left at its end from which on a point ratchets."""
 DIES = 0.9
-"""Slip of a cycle over that of the one before, up to which it dies, if it tends to
-nothing."""
+"""Slip of a cycle over that of the cycle before up to which slip may be dying out."""
 TENDS = 0.1
-"""Slip that it may tend to, as a share of that two cycles ago, to count as nothing."""
+"""Limit of dying slip that counts as zero, as a share of the slip two cycles ago."""
 Word = Literal[
     "elastic shakedown", "shakedown with slip that dies", "steady slip", "ratcheting"
 ]
 
 
 def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
-    """Interfaces with friction, the slip of their pairs, m, and the work it takes, J.
+    """Interfaces with friction, the slip of their pairs, m, and its friction work, J.
 
-    Both from each instant to the next, shape (n_pairs, n_instants), and both of the
-    local stage, whose laws hold at every iterate. A point slips at the bound of the
-    instant that it slips to. Springs do not rub.
+    Slip and work are increments since the instant before, shape (n_pairs, n_instants).
+    They are those of the local stage, whose laws hold at every iterate. A point slips
+    at the friction bound of the later instant. Springs do not rub.
     """
     scales = iterate.problem.scales
-    moved = iterate.local_displacement
+    displacement = iterate.local_displacement
     force = iterate.boundary_local_force
     for law in iterate.problem.surfaces.values():
-        slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
+        # Slip is the motion of the slider, without the elastic part.
+        slider = law.tangential.slider(displacement, force)
+        slip = np.diff(slider, axis=1, prepend=0.0)
         slip *= law.slip_ratio * scales.displacement
         yield law, slip, force[law.tangent.above] * slip * -scales.force
 
 
 @dataclass(frozen=True, eq=False)
 class LoadCycles:
-    """A run, cycle by cycle.
+    """Slip and friction work of a run, cycle by cycle.
 
     Attributes
     ----------
     ends
-        Instants at which they begin, and the last one ends, n_cycles + 1 of them.
-    slip, net, work
-        Of every point in each, shape (n_points, n_cycles): slip to and fro added up
-        while it is in contact, m; how much farther it stands at the end, m; what
-        friction takes, J, of all points that it stands for.
+        Instants at which the cycles begin, and at which the last one ends: n_cycles + 1
+        of them.
+    slip
+        Slip to and fro of each point, added up over a cycle while the point is in
+        contact, shape (n_points, n_cycles), m.
+    net
+        Slip of each point from the beginning to the end of a cycle, same shape, m.
+    work
+        Friction work of each point in a cycle, times the number of points that it
+        stands for, same shape, J.
     before
-        Slip before the first, as `slip`, shape (n_points,), m.
+        Slip to and fro of each point before the first cycle, shape (n_points,), m.
     is_repeated
-        Whether everything that acts is the same in the last three of them, or in all of
-        fewer.
+        Whether all loads are the same in the last three cycles, or in all cycles where
+        there are fewer.
     """
 
     ends: list[int]
@@ -93,12 +97,12 @@ class LoadCycles:
 
     @property
     def energy(self) -> Array:
-        """What friction takes in each, shape (n_cycles,), J."""
+        """Energy dissipated in each cycle, shape (n_cycles,), J."""
         return np.asarray(self.work.sum(axis=0))
 
 
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
-    """Cycles of an iterate; points stand interface by interface."""
+    """Cycles of an iterate; the points are those of one interface after another."""
     ends = ends_of(settings)
     slips = []
     works = []
@@ -108,6 +112,7 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     slip = np.concatenate(slips)
     work = np.concatenate(works)
     status = iterate.status[iterate.problem.on_surfaces]
+    # An open point moves without friction.
     rubbed = np.where(np.abs(status) == 1, np.abs(slip), 0.0)
     if ends:
         first = ends[0]
@@ -124,15 +129,13 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
 
 
 def ends_of(settings: Settings) -> list[int]:
-    """Instants at which the cycles of a load begin, and the last one ends.
+    """Instants at which the cycles of a load begin, and at which the last one ends.
 
-    Of several loads that which turns back most often counts, the first of equals. Fewer
-    than two instants are no cycle.
+    Of several loads the one with the most turning points counts, the first of equals.
+    Fewer than two instants are no cycle.
     """
-    turns = max(
-        (turning_points(path) for path in _paths(settings)), key=len, default=[]
-    )
-    return turns[::2]
+    turns = [turning_points(path) for path in _paths(settings)]
+    return max(turns, key=len, default=[])[::2]
 
 
 def cycles_in(settings: Settings) -> int:
@@ -141,9 +144,9 @@ def cycles_in(settings: Settings) -> int:
 
 
 def instants_of(settings: Settings, number: float | None = None) -> slice | None:
-    """Instants of a cycle after its beginning, cycles counted from 1; all without a number.
+    """Instants of a cycle without its first one; all instants without a number.
 
-    None where there are fewer cycles.
+    Cycles are counted from 1. None where the load has fewer cycles.
     """
     if number is None:
         return slice(None)
@@ -155,37 +158,41 @@ def instants_of(settings: Settings, number: float | None = None) -> slice | None
 
 
 def turning_points(path: Array) -> list[int]:
-    """Instants at which a path turns back by more than a small swing, and its end if as far out.
+    """Instants at which a path, shape (n_instants,), turns back.
 
-    Of each extreme that is held the first counts.
+    Swings below `SMALLEST_SWING` are ignored. The last extreme counts, too, if it is as
+    far out as the one two before it. Where an extreme value is held, its first instant
+    counts.
     """
-    least = max(
+    swing = max(
         SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max())
     )
-    extremes: list[int] = []
-    outmost = 0
-    way = 0.0
-    for place, value in enumerate(path):
-        if way == 0.0:
-            outmost = place
-            if abs(value - path[0]) > least:
-                way = math.copysign(1.0, value - path[0])
-        elif way * (value - path[outmost]) > 0.0:
-            outmost = place
-        elif way * (path[outmost] - value) > least:
-            extremes.append(outmost)
-            outmost = place
-            way = -way
-    is_closed = (
-        len(extremes) > 1 and way * (path[extremes[-2]] - path[outmost]) <= least
-    )
-    if is_closed:
-        return [*extremes, outmost]
-    return extremes
+    turns: list[int] = []
+    extreme = 0
+    direction = 0.0
+    for instant, value in enumerate(path):
+        # The first direction counts once the path has left its start.
+        if direction == 0.0:
+            extreme = instant
+            if abs(value - path[0]) > swing:
+                direction = math.copysign(1.0, value - path[0])
+        elif direction * (value - path[extreme]) > 0.0:
+            extreme = instant
+        elif direction * (path[extreme] - value) > swing:
+            turns.append(extreme)
+            extreme = instant
+            direction = -direction
+    # A path that ends on a last extreme ends with a whole cycle.
+    if len(turns) > 1 and direction * (path[turns[-2]] - path[extreme]) <= swing:
+        turns.append(extreme)
+    return turns
 
 
 def _paths(settings: Settings) -> Iterator[Array]:
-    """What acts over time; of what varies along a side, the place that changes most."""
+    """Loads over time, shape (n_instants,) each, in their units.
+
+    Of a load that varies along a side, the point counts at which it changes most.
+    """
     described = settings.structure().described()
     if described.tilt is not None:
         yield described.tilt
@@ -195,17 +202,20 @@ def _paths(settings: Settings) -> Iterator[Array]:
 
 
 def _is_repeated(settings: Settings, ends: list[int]) -> bool:
-    """Whether all that acts begins the last cycles alike, and reaches as far in them."""
+    """Check whether all loads begin, end and peak alike in the last cycles."""
     for path in _paths(settings):
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
-        seen = np.array([[part[0], part[-1], part.min(), part.max()] for part in parts])
-        if len(seen) and np.ptp(seen, axis=0).max() > REPEATED * np.ptp(path):
+        marks = [[part[0], part[-1], part.min(), part.max()] for part in parts]
+        if marks and np.ptp(marks, axis=0).max() > REPEATED * np.ptp(path):
             return False
     return True
 
 
 def _summed(values: Array, ends: list[int]) -> Array:
-    """Sums over the instants of each cycle, shape (..., n_cycles)."""
+    """Sums over the instants of each cycle, shape (..., n_cycles).
+
+    The values have shape (..., n_instants).
+    """
     parts = [values[..., a + 1 : b + 1].sum(axis=-1) for a, b in pairwise(ends)]
     if parts:
         return np.stack(parts, axis=-1)
@@ -213,22 +223,23 @@ def _summed(values: Array, ends: list[int]) -> Array:
 
 
 def fate_of(cycles: LoadCycles) -> Word | None:
-    """What becomes of slip, in a word.
+    """Long-term fate of slip; None where that is not settled.
 
-    None where that is not settled: with fewer than three cycles, cycles that are not
-    alike, slip that still changes, or no slip ever.
+    The fate is not settled with fewer than three cycles, with cycles that are not
+    alike, with slip that still changes, or without any slip.
     """
     if len(cycles) < LAST or not cycles.is_repeated or not cycles.slip.size:
         return None
-    most = cycles.slip.max(axis=0)
-    if not most.any() and not cycles.before.any():
+    largest = cycles.slip.max(axis=0)
+    if not largest.any() and not cycles.before.any():
         return None
-    if not most[-1]:
+    if not largest[-1]:
         return "elastic shakedown"
     net = cycles.net[np.abs(cycles.net[:, -1]).argmax()]
-    if np.abs(net[-1]) > ONE_WAY * most[-1] and _settled(net[None]):
+    if np.abs(net[-1]) > ONE_WAY * largest[-1] and _settled(net[None]):
         return "ratcheting"
-    if most[-1] <= DIES * most[-2] and _limit(most[-3:]) <= TENDS * most[-3]:
+    is_falling = largest[-1] <= DIES * largest[-2]
+    if is_falling and _limit(largest[-3:]) <= TENDS * largest[-3]:
         return "shakedown with slip that dies"
     if _settled(cycles.slip):
         return "steady slip"
@@ -236,15 +247,18 @@ def fate_of(cycles: LoadCycles) -> Word | None:
 
 
 def _settled(values: Array) -> bool:
-    """Whether values of points, (n_points, n_cycles), are the same in the last cycles."""
+    """Check whether values, (n_points, n_cycles), are equal in the last cycles."""
     last = values[:, -LAST:]
     return bool(np.ptp(last, axis=1).max() <= ALIKE * np.abs(last[:, -1]).max())
 
 
 def _limit(values: Array) -> float:
-    """Limit of three values of a geometric sequence (Aitken); infinite if they grow."""
+    """Limit of a geometric sequence of three values, shape (3,) (Aitken).
+
+    Infinite if the sequence does not level off.
+    """
     first, second, third = map(float, values)
-    bend = first + third - 2.0 * second
-    if bend > 0.0:
-        return (first * third - second**2) / bend
+    curvature = first + third - 2.0 * second
+    if curvature > 0.0:
+        return (first * third - second**2) / curvature
     return np.inf

@@ -1,4 +1,4 @@
-"""A run that has ended: what its quantities are taken from, and its key figures."""
+"""A finished run: the source of all quantities, and the key figures of its loop."""
 
 from __future__ import annotations
 
@@ -33,22 +33,23 @@ from solver.study.quantities.cycles import LoadCycles, cycles_of, slips_of
 
 REFUSED = "refused"
 BROKEN = "broken"
-"""How a run ends that never was one: by refused settings, by a fault of the engine."""
+"""Endings of a run without a result: refused settings, or a fault of the engine."""
 TINY: dict[str, dict[str, object]] = {
     "bar": {"elements": 4, "substructures": 2, "instants": 3},
     "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
 }
-"""Runs that go before others: to bring in code is no part of a run's time."""
+"""Tiny runs that precede timed ones: importing code is no part of a run's time."""
 ALONE = 60
-"""Iterations that take as long as a run of its own, with all beside them. A status step
-from a neighbour may take a third of that, which is 4 systems an instant on 50 elements
-and 13 on 1600; it takes 1 to 3 and 3 to 9 (measured)."""
+"""Iterations, with everything beside them, that take as long as a usual run.
+
+A status step from a neighbour may take a third of that: 4 systems an instant on 50
+elements and 13 on 1600. It takes 1 to 3 and 3 to 9 (measured)."""
 ZERO = 1e-9
 """Share of the largest value in a run below which a key figure is zero."""
 EQUAL = 1e-6
 """Relative difference up to which two values count as equally large."""
 Axes = tuple[tuple[str, str], tuple[str, str]]
-"""Titles and units of the two axes of a loop."""
+"""Title and unit of each of the two axes of a loop."""
 OF_UNITS = {
     "m": "displacement",
     "N": "force",
@@ -57,22 +58,29 @@ OF_UNITS = {
     "°": "slope",
     "1/m": "curvature",
 }
-"""Names of the key figures of a loop, by unit."""
+"""Names of the key figures of a loop by their units."""
 DRIVES = {
     "Strain without force": "strain",
     "Settlement": "settlement",
     "Body force": "body_force",
 }
-"""Names by title of what drives a loop without being its displacement."""
+"""Names of drives of a loop other than displacements, by their titles."""
 
 
 @dataclass(frozen=True, eq=False)
 class FinishedRun:
-    """A run from its settings to its end, from another run if it was warm.
+    """A run from its settings to its end.
 
-    `made_loop` is its loop, where that is at hand: in the plane it takes a while to
-    make one. `known_loss` is the first instant that a reference knows to have no
-    solution.
+    Attributes
+    ----------
+    settings, solution
+        Settings of the run, and its solution.
+    was_warm
+        Whether the run started from the states of another run.
+    made_loop
+        Loop of the run where it is at hand: in the plane it takes a while to make one.
+    known_loss
+        First instant that a reference knows to have no solution.
     """
 
     settings: Settings
@@ -83,11 +91,11 @@ class FinishedRun:
 
     @property
     def lost_from(self) -> int | None:
-        """First instant that is known to have no solution; None where there is none such.
+        """First instant that is known to have no solution; None without any.
 
-        With it the run has no quantities: all instants are iterated together, and those
-        that have no solution keep the others from theirs. A certified run has a
-        solution at all of them.
+        A run with such an instant has no quantities: all instants are iterated
+        together, and those without a solution keep the others from converging. A
+        certified run has a solution at all instants.
         """
         if self.solution.is_certified:
             return None
@@ -96,12 +104,12 @@ class FinishedRun:
 
     @property
     def iterate(self) -> Iterate:
-        """Its last good iterate."""
+        """Last good iterate of the run."""
         return self.solution.iterate
 
     @property
     def problem(self) -> Problem:
-        """What it solves."""
+        """Discrete problem that the run solves."""
         return self.iterate.problem
 
     @cached_property
@@ -111,51 +119,54 @@ class FinishedRun:
 
     @cached_property
     def _along_loop(self) -> tuple[Array, Array]:
+        """Displacement and force of the loop, shape (n_instants,) each, m and N."""
         return self.loop.along(self.iterate)
 
     @property
     def displacement(self) -> Array:
-        """Displacement of the loop that the scene shows, m, or what it goes over; (n_instants,)."""
+        """Displacement of the loop, or its other abscissa, shape (n_instants,), m."""
         return self._along_loop[0]
 
     @property
     def force(self) -> Array:
-        """Force of that loop, shape (n_instants,), N."""
+        """Force of the loop, shape (n_instants,), N."""
         return self._along_loop[1]
 
     @cached_property
     def dissipated(self) -> Array:
-        """Energy that friction takes between each instant and the one before, (n_instants,), J."""
-        works = (
-            law.copies * work.sum(axis=0) for law, _, work in slips_of(self.iterate)
-        )
-        return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
+        """Energy dissipated since the instant before, shape (n_instants,), J."""
+        energy = np.zeros(self.problem.n_instants)
+        for law, _, work in slips_of(self.iterate):
+            energy = energy + law.copies * work.sum(axis=0)
+        return energy
 
     @cached_property
     def cycles(self) -> LoadCycles:
-        """The run, cycle by cycle of its load."""
+        """Slip and friction work of the run, cycle by cycle of its load."""
         return cycles_of(self.settings, self.iterate)
 
     @cached_property
     def peak_stress(self) -> tuple[float, float, float]:
-        """Largest von Mises stress in the plane, Pa, and x and y of the element that has it, m."""
+        """Largest von Mises stress in the plane, Pa, and x and y of its element, m."""
         inside = self.problem.inside
         values = self.settings.values()
         assert inside is not None
         largest = 0.0
-        place = np.full(2, np.nan)
+        centre = np.full(2, np.nan)
         for instant in range(self.problem.n_instants):
-            moved = inside.displacement(self.iterate.displacement, [instant])[:, :, 0]
-            stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
+            vectors = inside.displacement(self.iterate.displacement, [instant])[:, :, 0]
+            components = inside.stress(vectors)
+            stress = von_mises(components, values["poisson"], values["plane"])
             element = first_largest(stress)
+            # Rounding must not move the largest stress to a later instant.
             if stress[element] > (1.0 + EQUAL) * largest:
                 largest = float(stress[element])
-                place = inside.nodes[inside.elements[element]].mean(axis=0)
-        return largest, float(place[0]), float(place[1])
+                centre = inside.nodes[inside.elements[element]].mean(axis=0)
+        return largest, float(centre[0]), float(centre[1])
 
 
 def first_largest(values: Array) -> int:
-    """Instant at which values, shape (n_instants,), first are largest in size, up to rounding."""
+    """First instant at which values, (n_instants,), are largest but for rounding."""
     size = np.abs(values)
     return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
 
@@ -163,16 +174,15 @@ def first_largest(values: Array) -> int:
 def largest_load(run: FinishedRun) -> int:
     """Instant of the largest load: where the loop's force is largest in size.
 
-    While the same load stands, displacement may go on to grow, as where friction falls.
-    So of all instants of that force, that counts at which the displacement first is
-    largest in size.
+    While the load is held, the displacement may go on growing, as where friction falls.
+    So of all instants of that force, the first with the largest displacement counts.
     """
     force = run.force
-    first = first_largest(force)
-    stands = np.flatnonzero(
-        np.abs(force - force[first]) <= EQUAL * np.abs(force[first])
-    )
-    return int(stands[first_largest(run.displacement[stands])])
+    largest = force[first_largest(force)]
+    is_held = np.abs(force - largest) <= EQUAL * np.abs(largest)
+    # Of the instants at which the load is held, the displacement decides.
+    held = np.flatnonzero(is_held)
+    return int(held[first_largest(run.displacement[held])])
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +196,7 @@ class KeyFigure:
 
     @cached_property
     def instant(self) -> int:
-        """Instant at which it first is largest in size."""
+        """First instant at which the number is largest in size."""
         return first_largest(self.values)
 
     @property
@@ -202,14 +212,16 @@ class KeyFigure:
     def at(self, instant: int) -> float:
         """Value at an instant; zero where rounding alone leaves something."""
         value = float(self.values[instant])
-        return value if abs(value) > ZERO * abs(self.largest) else 0.0
+        if abs(value) > ZERO * abs(self.largest):
+            return value
+        return 0.0
 
 
 def key_figures(axes: Axes, loop: Iterable[NDArray[Any]]) -> list[KeyFigure]:
-    """Key figures of a loop: of its axes, and of both its sides, shape (2, n_instants).
+    """Key figures of a loop of shape (2, n_instants), with the names of its axes.
 
     A displacement has the name `displacement`, a force `force`; other numbers have
-    others.
+    names by their units or titles.
     """
     figures = []
     for (title, unit), values in zip(axes, loop, strict=True):
@@ -219,23 +231,24 @@ def key_figures(axes: Axes, loop: Iterable[NDArray[Any]]) -> list[KeyFigure]:
 
 
 def figures_of(run: FinishedRun) -> list[KeyFigure]:
-    """Key figures of the loop of a run."""
+    """Key figures of the loop of a run: of its displacement and of its force."""
     return key_figures(run.loop.axes, (run.displacement, run.force))
 
 
 def slipping_shares(status: NDArray[np.int8]) -> Array:
-    """Share of the points that slip at each instant, (n_instants,).
+    """Share of the points that slip at each instant, shape (n_instants,).
 
-    Of the status of all contact points, shape (n_points, n_instants).
+    The status is that of all contact points, shape (n_points, n_instants).
     """
     if not len(status):
         return np.zeros(status.shape[1])
-    return np.asarray(((status != 0) & (status != OPEN)).mean(axis=0))
+    slips = (status != 0) & (status != OPEN)
+    return np.asarray(slips.mean(axis=0))
 
 
 @cache
 def settle() -> None:
-    """Make tiny runs, once in a process, after which a run brings in no code any more."""
+    """Make the tiny runs, once in a process, so that later runs import no code."""
     for scene, tiny in TINY.items():
         finished_run(CATALOGUE[scene].checked(tiny))
 
@@ -248,12 +261,23 @@ def finished_run(
     cancelled: Callable[[], bool] = lambda: False,
     before: States | None = None,
 ) -> FinishedRun:
-    """Run a scene to its stop rule, unless it is cancelled.
+    """Run a scene to its stop rule.
 
-    Errors, where there is a reference, and indicators of every iteration take their
-    time. `before` is what stuck, slipped and opened in a run of like settings, to start
-    from where that holds.
+    Parameters
+    ----------
+    settings
+        Settings of the scene.
+    errors
+        Whether to compute the errors of every iteration, where there is a reference.
+    indicators
+        Whether to compute the indicators of every iteration.
+    cancelled
+        Asked again and again whether to give up.
+    before
+        States (stick, slip, open) of a run of similar settings, which the run starts
+        from if the solution of these settings is found from there.
     """
+    # The time of a run includes its discretisation.
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
@@ -280,9 +304,16 @@ def finished_run(
 
 
 class Known(NamedTuple):
-    """The reference, if there is one, and why it is not the one solution, if it is not.
+    """Reference of a problem, and what is known of its existence and uniqueness.
 
-    `lost_from` is the first instant that is known to have no solution.
+    Attributes
+    ----------
+    reference
+        Reference solution, if there is one.
+    doubt
+        Reason why there is no reference, or why it is not the only solution.
+    lost_from
+        First instant that is known to have no solution.
     """
 
     reference: Reference | None = None
@@ -291,34 +322,38 @@ class Known(NamedTuple):
 
 
 def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) -> Known:
-    """Find what is known without a run; `stop` is asked again and again whether to give up."""
+    """Find the reference without a run; `stop` is asked again and again to give up."""
     try:
         reference = reference_of(problem, stop)
     except Interrupted:
         return Known(doubt="the reference takes longer")
     except NoReferenceError as refusal:
         return Known(doubt=str(refusal))
-    if lost := np.count_nonzero(~reference.converged):
-        lost_from = None
-        message = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
-        if reference.collapse is not None:
-            lost_from = reference.collapse.instant
-            message += (
-                f": there is no equilibrium {limit_of(problem, reference.collapse)}"
-            )
-        elif reference.jumps_at is not None:
-            # That none is found is no proof: a run may converge to one.
-            message += ": friction softens until the structure jumps"
-        return Known(None, message, lost_from)
+    if not reference.converged.all():
+        return _without_solution(problem, reference)
     if reference.jumps_at is not None:
         where = jump_of(problem, reference.jumps_at)
         return Known(reference, f"at {where} it jumps to another equilibrium")
     several = np.count_nonzero(reference.ambiguous)
     if several:
-        message = f"there are several solutions at {several} instants"
-    else:
-        message = ""
-    return Known(reference, message)
+        return Known(reference, f"there are several solutions at {several} instants")
+    return Known(reference)
+
+
+def _without_solution(problem: Problem, reference: Reference) -> Known:
+    """Doubt about a problem whose reference has no solution at some instants."""
+    lost = np.count_nonzero(~reference.converged)
+    lost_from = None
+    message = (
+        f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+    )
+    if reference.collapse is not None:
+        lost_from = reference.collapse.instant
+        message += f": there is no equilibrium {limit_of(problem, reference.collapse)}"
+    elif reference.jumps_at is not None:
+        # A jump of the reference is no proof: a run may converge at that instant.
+        message += ": friction softens until the structure jumps"
+    return Known(None, message, lost_from)
 
 
 def neighbour(
@@ -327,13 +362,15 @@ def neighbour(
     states: States,
     stop: Callable[[], bool] | None = None,
 ) -> Solution | None:
-    """Solution by a status step from what stuck, slipped and opened in a run of like settings.
+    """Solution by a status step from the states of a run of similar settings.
 
-    It counts only if it is the one of the discrete problem, which does not depend on
-    the start; None where it is not found soon, or `stop` returns True before. A run on
-    separated bases is its own, as it has these too.
+    The solution counts only if it is certified for the discrete problem, so that it
+    does not depend on the start. None where it is not found soon, or where `stop`
+    returns True before. A run on separated bases never starts from another one, since
+    its bases are part of its result.
     """
     began = time.perf_counter()
+    # States of another mesh, or of other instants, are no start.
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
     if settings.finish != "at-once" or settings.linear_stage == "pgd" or not fits:
         return None
@@ -342,8 +379,8 @@ def neighbour(
         return None
     try:
         solver = incremental_solver(problem, stop)
-        most = costs.systems(ALONE)
-        _, certificate = status_step(solver, problem, states, most, stop)
+        limit = costs.systems(ALONE)
+        _, certificate = status_step(solver, problem, states, limit, stop)
     except (NoReferenceError, Interrupted):
         return None
     if certificate is None or certificate.residual > settings.accuracy:

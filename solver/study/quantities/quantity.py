@@ -1,4 +1,4 @@
-"""What a quantity of a run is, and the number that it may be asked with."""
+"""Definition of a quantity of a run, and of the number that it may be asked with."""
 
 from __future__ import annotations
 
@@ -13,10 +13,16 @@ from solver.study.quantities.finished import FinishedRun
 
 @dataclass(frozen=True)
 class Parameter:
-    """The number that a quantity may be asked with, or has to, if it is needed.
+    """Number that a quantity may be asked with, or has to be where it is `needed`.
 
-    `words` is what it adds to the title, with a place for the number; the smallest and
-    the largest are integers where only whole numbers have a meaning.
+    Attributes
+    ----------
+    words
+        Words that the number adds to the title, with a place for it.
+    bounds
+        Smallest and largest value: integers where only whole numbers have a meaning.
+    needed
+        Whether the quantity has no value without the number.
     """
 
     words: str
@@ -36,27 +42,28 @@ class Quantity:
     Attributes
     ----------
     name, title, unit
-        By which it is asked for, what it is called, and its SI unit, empty for a pure
-        number.
+        Name by which the quantity is asked for, its title, and its SI unit, empty for a
+        pure number.
     of
-        Takes it of a run, and of the instant if there is a `when`, or else of the
-        parameter or None if there is one: NaN where the run has none, infinity where
-        what is waited for never comes. What a run came to is NaN where some of its
-        instants are known to have no solution.
+        Function that computes the quantity. Its arguments are the run, and then the
+        instant if there is a `when`, or else the parameter or None if there is a
+        parameter. NaN means that the run has no such value, infinity that an event
+        never comes. A quantity of the result is NaN where some instants of the run are
+        known to have no solution.
     when
-        Instant at which it is taken of a run, and of the parameter or None if there is
-        one.
+        Function that finds the instant at which the quantity is taken, of the run, and
+        of the parameter or None if there is one.
     parameter, at
-        What it may be asked with, and what it is asked with.
+        Parameter that the quantity may be asked with, and its value here.
     reads
-        What of how the run went it follows from, so that a run that starts elsewhere
-        has another: distances to a reference or the indicators of every iteration,
-        which take their time, or neither of them. None where it is of what the run came
-        to.
+        Part of the course of a run that the quantity depends on, so that a run with
+        another start has another value: distances to a reference or the indicators of
+        every iteration, which take their time, or neither of them. None for a quantity
+        of the result alone.
     is_share
-        Whether it is a share of a whole, which is told in per cent.
+        Whether the quantity is a share of a whole, which is shown in per cent.
     applies
-        Whether runs of these settings may have it; others have NaN.
+        Whether runs of these settings may have the quantity; others have NaN.
     """
 
     name: str
@@ -85,5 +92,10 @@ class Quantity:
 
 
 def quantity(title: str, unit: str = "", **options: Any) -> Callable[..., Quantity]:
-    """Decorator of a function of a run that makes it the quantity of its name."""
+    """Decorator: a function of a run becomes the quantity of its name."""
     return lambda of: Quantity(of.__name__, title, unit, of, **options)
+
+
+def by_name(*quantities: Quantity) -> dict[str, Quantity]:
+    """Table of quantities by their names, in the order given."""
+    return {each.name: each for each in quantities}

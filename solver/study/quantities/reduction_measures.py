@@ -1,4 +1,4 @@
-"""Quantities of how compactly a field is kept: separated bases, singular vectors, clips."""
+"""Quantities of compact fields: separated bases, singular vectors, clips."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin import Iterate
 from solver.reduction.clips import Clips, clips_of
 from solver.reduction.sizes import Sizes, of_clips, of_products
@@ -15,46 +17,56 @@ from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import WITHIN, Quantity, quantity
 
 LOADED = "right x"
-"""The side at which rods are pulled."""
+"""Side and direction of the load that pulls rods."""
 
 
 def can_be_clipped(settings: Settings) -> bool:
-    """Whether friction bounds are known, and what is pulled drives all slip: on rods.
+    """Check that friction bounds are known and an end load drives all slip: on rods.
 
-    Wires of a strand that is bent slip as its curvature has them, which is no force at
-    an end.
+    The wires of a bent strand are driven by its curvature, not by a force at an end.
     """
     return settings.kind in ("rod", "wires")
 
 
 def clips_in(settings: Settings, iterate: Iterate) -> Clips:
-    """Clips with memory fitted to the friction of an iterate of rods, at all points that rub.
+    """Clips with memory, fitted to the friction of an iterate of rods at all points.
 
-    What drives it is the load, or without any all friction together, which a support
-    that moves has to overcome.
+    The clips are driven by the load, or without a load by the sum of the friction
+    forces, which a moving support has to overcome.
     """
     problem = iterate.problem
     laws = problem.rubbing.values()
     lengths = np.concatenate([law.by_point(law.weights) for law in laws])
-    bounds = [
-        law.by_point(law.tangential.highest) * problem.scales.force for law in laws
-    ]
-    widest = max(bound.shape[1] for bound in bounds)
-    bound = np.concatenate([np.broadcast_to(own, (len(own), widest)) for own in bounds])
-    acts = settings.structure().described().acts
-    pulls = (act.values for act in acts if act.where == LOADED)
-    load = next(pulls, iterate.friction_force.sum(axis=0))
     return clips_of(
         iterate.friction_force / lengths[:, None],
-        bound / lengths[:, None],
-        load,
+        _friction_bounds(problem) / lengths[:, None],
+        _driving_load(settings, iterate),
         lengths,
         problem.time_weights * problem.scales.time,
     )
 
 
+def _friction_bounds(problem: Problem) -> Array:
+    """Friction bounds of all points, (n_points, n_instants) or (n_points, 1), N."""
+    bounds = []
+    for law in problem.rubbing.values():
+        bounds.append(law.by_point(law.tangential.highest) * problem.scales.force)
+    n_columns = max(bound.shape[1] for bound in bounds)
+    return np.concatenate(
+        [np.broadcast_to(bound, (len(bound), n_columns)) for bound in bounds]
+    )
+
+
+def _driving_load(settings: Settings, iterate: Iterate) -> Array:
+    """Load at the loaded side, or else the sum of the friction, (n_instants,), N."""
+    for act in settings.structure().described().acts:
+        if act.where == LOADED:
+            return act.values
+    return np.asarray(iterate.friction_force.sum(axis=0))
+
+
 def products_in(clips: Clips) -> Sizes:
-    """Sizes of the field that clips were fitted to, as singular vectors."""
+    """Sizes of singular vectors of the field that clips were fitted to."""
     return of_products(decompose(clips.given, clips.space_weights, clips.time_weights))
 
 
@@ -64,12 +76,12 @@ def products_in(clips: Clips) -> Sizes:
     applies=lambda settings: settings.applies("pgd_modes"),
 )
 def modes(run: FinishedRun) -> float:
-    """Modes of the largest separated basis of a substructure at the end; NaN without bases."""
+    """Modes of the largest separated basis of any substructure; NaN without bases."""
     return max((basis.n_modes for basis in run.iterate.bases), default=math.nan)
 
 
 def _svd_modes(field: str, words: str) -> Quantity:
-    """Singular vectors that leave an error, in the substructure that needs most."""
+    """Singular vectors of a field for an error, in the substructure that needs most."""
 
     def of(run: FinishedRun, at: float) -> float:
         values = getattr(run.iterate, f"boundary_{field}")
@@ -95,7 +107,7 @@ svd_modes_force = _svd_modes("force", "friction force")
     applies=can_be_clipped,
 )
 def svd_numbers(run: FinishedRun, at: float) -> float:
-    """How many numbers singular vectors within an error are."""
+    """Number of values to store for singular vectors within an error."""
     return products_in(clips_in(run.settings, run.iterate)).within(at)
 
 
@@ -105,11 +117,14 @@ def svd_numbers(run: FinishedRun, at: float) -> float:
     applies=can_be_clipped,
 )
 def clip_numbers(run: FinishedRun, at: float) -> float:
-    """How many numbers clips and singular vectors of what they leave are, within an error."""
+    """Number of values to store for clips within an error.
+
+    Singular vectors of the residual of the clips are counted, too.
+    """
     return of_clips(clips_in(run.settings, run.iterate)).within(at)
 
 
 @quantity("Error of the friction force as clips", is_share=True, applies=can_be_clipped)
 def clip_error(run: FinishedRun) -> float:
-    """Error of clips alone."""
+    """Relative error of clips alone, without singular vectors of their residual."""
     return float(clips_in(run.settings, run.iterate).errors[0])

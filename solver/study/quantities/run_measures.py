@@ -19,7 +19,7 @@ def _record(
     *,
     is_share: bool = False,
 ) -> Quantity:
-    """Scalar of the records, at an iteration or at the end."""
+    """Scalar of the records of a run, at an iteration or at the end."""
 
     def of(run: FinishedRun, at: float | None) -> float:
         records = run.solution.records
@@ -34,18 +34,19 @@ def _record(
     )
 
 
-def _until(spent: str, field: str, words: str) -> Quantity:
-    """What a run spends until an error is as small as it is asked to be."""
+def _until(spent: Literal["iterations", "seconds"], field: str, words: str) -> Quantity:
+    """Iterations or seconds of a run until the error of a field is small enough."""
 
     def of(run: FinishedRun, at: float | None) -> float:
-        errors = [
-            (entry, getattr(entry, f"error_{field}")) for entry in run.solution.records
-        ]
-        if all(math.isnan(error) for _, error in errors):
+        records = run.solution.records
+        errors = [getattr(entry, f"error_{field}") for entry in records]
+        if all(math.isnan(error) for error in errors):
             return math.nan
-        for entry, error in errors:
+        for entry, error in zip(records, errors, strict=True):
             if error <= (at or 0.0) and not entry.is_answer:
-                return float(entry.seconds if spent == "seconds" else entry.iteration)
+                if spent == "seconds":
+                    return float(entry.seconds)
+                return float(entry.iteration)
         return math.inf
 
     if spent == "seconds":
@@ -54,9 +55,13 @@ def _until(spent: str, field: str, words: str) -> Quantity:
     else:
         title = "Iterations"
         unit = ""
-    title = f"{title} to an error of the {words} of"
     return Quantity(
-        f"{spent}_to_{field}", title, unit, of, None, WITHIN, reads="errors"
+        name=f"{spent}_to_{field}",
+        title=f"{title} to an error of the {words} of",
+        unit=unit,
+        of=of,
+        parameter=WITHIN,
+        reads="errors",
     )
 
 
@@ -77,7 +82,7 @@ def seconds(run: FinishedRun) -> float:
 
 @quantity("Whether it converged", reads="course")
 def converged(run: FinishedRun) -> float:
-    """1 where the run came to its stop rule, 0 where something else ended it."""
+    """1 for a run that met its stop rule, 0 for a run that ended in another way."""
     return float(run.solution.status.ending is Ending.CONVERGED)
 
 

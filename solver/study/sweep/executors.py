@@ -1,7 +1,7 @@
-"""What runs many calls at once: processes of this machine, or the workers of a Dask cluster.
+"""Executors of many calls at once: processes of this machine, or a Dask cluster.
 
 All are executors as of `concurrent.futures`. A call that is cancelled while it runs is
-ended with its process, where that is one of this machine.
+ended with its process, where the process is one of this machine.
 """
 
 from __future__ import annotations
@@ -29,21 +29,22 @@ from threadpoolctl import threadpool_limits
 from solver.settings.definitions import SettingError
 
 LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-"""What `python -m solver` sets to 1 before it imports NumPy, unless its user said
-otherwise."""
+"""Variables that `python -m solver` sets to 1 before it imports NumPy.
+
+A variable that the user has set is left alone."""
 ONE_THREAD = dict.fromkeys(LIMITS, "1")
 FORMS = "processes, processes:COUNT, or dask://HOST:PORT"
 DASK = "dask://"
 MOST_PROCESSES = 256
 NICENESS = 10
-"""Below everything that somebody waits for, a page's own runs among them."""
+"""Niceness of processes: below all that people wait for, such as a page's own runs."""
 PATIENCE = 10.0
 """Seconds that a Dask scheduler has to answer."""
 PRELOADED = "solver.study.sweep.run"
 """Module that a fork server imports once for all processes."""
 
 left_alone = ExitStack()
-"""What a process of `Processes` does before it ends because its parent is gone."""
+"""Callbacks of a process of `Processes` that ends because its parent is gone."""
 
 
 def processors() -> int:
@@ -56,19 +57,30 @@ def processors() -> int:
 def machine() -> str:
     """Processors, BLAS threads and versions in a line."""
     limits = {os.environ[name] for name in LIMITS if name in os.environ}
+    threads = ", ".join(sorted(limits)) or "not limited"
+    python = sys.version.split()[0]
     return (
-        f"{processors()} processors; BLAS threads: {', '.join(sorted(limits)) or 'not limited'}; "
-        f"Python {sys.version.split()[0]}, NumPy {np.__version__}, SciPy {scipy.__version__}"
+        f"{processors()} processors; BLAS threads: {threads}; "
+        f"Python {python}, NumPy {np.__version__}, SciPy {scipy.__version__}"
     )
 
 
 class Processes(Executor):
-    """Niced processes of this machine with one BLAS thread each, which end with this process.
+    """Niced processes of this machine with one BLAS thread each.
 
-    A call that takes longer than `limit` seconds raises `TimeoutError`, and its process
-    is ended. After `n_calls` a process is replaced by a new one; 0 is never. One that
-    is killed fails its call with `pebble.ProcessExpired`. If none did a call, all that
-    wait fail with `BrokenProcessPool`, and can be submitted again.
+    They end with this process. A process that is killed fails its call with
+    `pebble.ProcessExpired`. If it had no call, all calls that wait fail with
+    `BrokenProcessPool`, and can be submitted again.
+
+    Parameters
+    ----------
+    count
+        Number of processes.
+    limit
+        Time of a call, s, after which its process is ended and the call raises
+        `TimeoutError`.
+    n_calls
+        Number of calls after which a process is replaced by a new one; 0 is never.
     """
 
     def __init__(
@@ -84,7 +96,7 @@ class Processes(Executor):
     def submit(
         self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any
     ) -> Future[Any]:
-        """Do a call in the next process that is free; all of it is picklable."""
+        """Submit a call, of picklable parts, to the next process that is free."""
         if not (self._pool.active or self._is_shut_down):
             # A pool is broken once a process is killed while none does a call.
             self._pool.stop()
@@ -93,7 +105,7 @@ class Processes(Executor):
         return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Begin no other call; if futures are to be cancelled, end the processes at once."""
+        """Begin no other call; with `cancel_futures` end the processes at once."""
         self._is_shut_down = True
         if cancel_futures:
             self._pool.stop()
@@ -104,19 +116,20 @@ class Processes(Executor):
 
 
 def _context() -> BaseContext:
+    """Context that starts processes: from a fork server where there is one."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([PRELOADED])
-    # Ctrl-C reaches all processes of a terminal. The server and what it forks inherit
-    # that they are deaf to it: who submits the calls ends them. The tracker, which it
-    # starts if there is none, would have this thread hear it again.
+    # Ctrl-C reaches all processes of a terminal. The server and its processes inherit
+    # that they ignore it: the process that submits the calls ends them. The tracker
+    # runs before, since starting it later would unblock the signal in this thread.
     resource_tracker.ensure_running()
-    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    unblocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         forkserver.ensure_running()
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, heard)
+        signal.pthread_sigmask(signal.SIG_SETMASK, unblocked)
     return context
 
 
@@ -129,6 +142,7 @@ def _begin() -> None:
 
 
 def _end_with_parent() -> None:
+    """Wait for the end of the parent process, and end this one."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
@@ -138,7 +152,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Executor]:
-    """Open the executor that a text names, and close it in the end with all that still runs.
+    """Open the executor that a text names; at the end it is closed with all its calls.
 
     `limit` and `n_calls` are those of `Processes`; a cluster does not take them.
 
@@ -148,6 +162,7 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
         For a text that names none, or a cluster that cannot be reached.
     """
     kind, colon, rest = on.partition(":")
+    # A colon without a number gives 0, which is refused below.
     if rest.isdecimal():
         count = int(rest)
     elif colon:
@@ -171,18 +186,17 @@ def opened(on: str, limit: float | None = None, n_calls: int = 0) -> Iterator[Ex
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """Executor of a Dask scheduler, which does the calls of lost workers again."""
+    """Executor of a Dask scheduler, which repeats the calls of lost workers."""
     try:
         from distributed import Client
     except ModuleNotFoundError as missing:
         remedy = f"{missing.name} is not here: pip install 'slipfront[cluster]'"
         raise SettingError("--on", DASK + address, FORMS, remedy) from None
-    # A scheduler that is gone is told in a line; the client logs it with its traceback
-    # besides.
+    # The client logs a scheduler that is gone with its traceback; here it is a line.
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     host, _, port = address.rpartition(":")
     try:
-        # First of all, as a client that finds no scheduler is never closed.
+        # The socket comes first, since a client without a scheduler is never closed.
         socket.create_connection((host, int(port)), PATIENCE).close()
         client = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, OverflowError) as problem:
@@ -190,9 +204,9 @@ def _cluster(address: str) -> Iterator[Executor]:
         reason = f"{type(problem).__name__}: {problem}".splitlines()[0]
         raise SettingError("--on", DASK + address, answers, reason) from None
     try:
-        # Equal calls are not one call: those that were lost are asked for again.
+        # Equal calls are not one call: lost ones are submitted again.
         yield client.get_executor(pure=False)
     finally:
-        # One that is gone takes no leave, whatever its client says to that.
+        # Closing fails in many ways where the scheduler is gone.
         with suppress(Exception):
             client.close()

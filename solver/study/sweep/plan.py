@@ -1,4 +1,4 @@
-"""What a sweep runs, one or two settings over their values, and what comes of a point."""
+"""Plan of a sweep: one or two settings over their values, and the result of a point."""
 
 from __future__ import annotations
 
@@ -29,19 +29,26 @@ from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 
 MOST_POINTS = 20_000
-"""Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
+"""Largest number of runs of a sweep: more fill no chart, and nobody waits for them."""
 STUCK = "stuck"
+"""Ending of a run whose process was ended by its time limit."""
 LOST = "lost"
-"""How a run ends whose process was ended: by its time limit, or by something else."""
+"""Ending of a run whose process was ended by something else."""
 FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 
 
 @dataclass(frozen=True)
 class Varied:
-    """A setting and the values that it takes, each once; numbers ascend.
+    """A setting that varies, and its values.
 
-    The unit is in SI, empty for a pure number; `logarithmic` is whether values are
-    spread evenly over decades.
+    Attributes
+    ----------
+    name, title, unit
+        Name and title of the setting, and its SI unit, empty for a pure number.
+    values
+        Values that the setting takes, each once; numbers ascend.
+    logarithmic
+        Whether values are spread evenly over decades.
     """
 
     name: str
@@ -52,31 +59,38 @@ class Varied:
 
     @property
     def is_numeric(self) -> bool:
-        """Whether the values are numbers, which have a place on a scale."""
+        """Check whether the values are numbers, which stand on a scale."""
         return not isinstance(self.values[0], bool | str)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The values where they are no numbers, none otherwise."""
-        words = {True: "on", False: "off"}
+        """Names of the values; empty where the values are numbers."""
         if self.is_numeric:
             return ()
+        words = {True: "on", False: "off"}
         return tuple(words.get(value, value) for value in self.values)
 
     @property
     def places(self) -> Array:
-        """Where the values stand on an axis: names one after the other."""
-        return np.array(
-            self.values if self.is_numeric else range(len(self.values)), dtype=float
-        )
+        """Positions of the values on an axis, (n_values,): numbers, or 0, 1, ..."""
+        if self.is_numeric:
+            return np.array(self.values, dtype=float)
+        return np.arange(len(self.values), dtype=float)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """One or two axes, everything else fixed; points are numbered, the last axis fastest.
+    """Plan of a sweep over one or two settings, while all others are fixed.
 
-    Of a number and names the number is the first axis. `of` are names of what is taken
-    of every run, at least one.
+    Attributes
+    ----------
+    settings
+        Settings of the sweep.
+    axes
+        Settings that vary; of a number and names the number is first. Points are
+        numbered with the last axis fastest.
+    of
+        Names of the quantities of every run, at least one.
     """
 
     settings: Settings
@@ -85,8 +99,8 @@ class Plan:
 
     @property
     def readings(self) -> tuple[Quantity, ...]:
-        """What is taken of every run."""
-        return tuple(map(reading, self.of))
+        """Quantities that are taken of every run."""
+        return tuple(reading(name) for name in self.of)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -104,45 +118,53 @@ class Plan:
         return self.settings.changed()
 
     def point(self, number: int) -> dict[str, Any]:
-        """Values of what varies at a point, by the setting's name."""
-        places = np.unravel_index(number, self.shape)
+        """Values of the settings that vary, at a point, by their names."""
+        levels = np.unravel_index(number, self.shape)
         return {
-            axis.name: axis.values[place]
-            for axis, place in zip(self.axes, places, strict=True)
+            axis.name: axis.values[level]
+            for axis, level in zip(self.axes, levels, strict=True)
         }
 
     def settings_at(self, number: int) -> Settings:
-        """Settings of a point; they are refused where they do not fit together."""
+        """Settings of a point; settings that do not fit together are refused."""
         return self.settings.checked({**self.fixed, **self.point(number)})
 
     def idle(self) -> list[str]:
-        """Names of the settings that vary and do nothing at any point."""
-        found = {axis.name for axis in self.axes}
+        """Names of the settings that vary and have no effect at any point."""
+        idle = {axis.name for axis in self.axes}
         for number in range(self.size):
             with contextlib.suppress(SettingError):
                 settings = self.settings_at(number)
-                found -= {name for name in found if settings.applies(name)}
-            if not found:
+                idle -= {name for name in idle if settings.applies(name)}
+            if not idle:
                 break
-        return sorted(found)
+        return sorted(idle)
 
 
 @dataclass(frozen=True)
 class Row:
-    """What came of one point; it was warm if it started from the run nearest to it.
+    """Result of a point of a plan.
 
     Attributes
     ----------
-    ending, reason
-        `converged` and the other ways in which a run ends, why, and what to try;
-        `refused` where its settings do not fit together, `broken` where the engine
-        failed, `stuck` and `lost` where its process was ended.
+    number
+        Number of the point.
+    ending
+        Status of the run, such as `converged`; `refused` where its settings do not fit
+        together, `broken` where the engine failed, `stuck` and `lost` where its process
+        was ended.
+    reason
+        Reason of that ending, and what to try.
     values
-        Of the readings of the plan, in their units: NaN where the run has none,
-        infinity for never. Those of a run that has not converged are what it had come
-        to, and NaN where some of its instants have no solution.
+        Values of the readings of the plan, in their units: NaN where the run has none,
+        infinity for never. Those of a run that has not converged are of its last
+        iterate, and NaN where some of its instants have no solution.
+    iterations
+        Number of iterations.
     seconds
-        With its problem, its reference and its readings.
+        Time of the run with its problem, its reference and its readings, s.
+    was_warm
+        Whether the run started from the run nearest to it.
     """
 
     number: int
@@ -155,91 +177,116 @@ class Row:
 
     @property
     def holds(self) -> bool:
-        """Whether the run has converged, so that its values are answers."""
+        """Check whether the run has converged, so that its values are answers."""
         return self.ending == Ending.CONVERGED
 
 
 def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
-    """Plan of texts as `--vary` (one or two of `FORM`) and `--of` take them, or `SettingError`."""
+    """Plan of texts as `--vary` and `--of` take them.
+
+    Parameters
+    ----------
+    settings
+        Settings of the sweep.
+    vary
+        One or two texts in one of the forms `FORM`.
+    of
+        Names of quantities.
+
+    Raises
+    ------
+    SettingError
+        For other texts, one setting twice, and too many points.
+    """
+    given = list(vary)
     if not 1 <= len(vary) <= 2:
-        raise SettingError(
-            "--vary", list(vary), f"one or two of {FORM}", "vary one or two"
-        )
+        raise SettingError("--vary", given, f"one or two of {FORM}", "vary one or two")
     if not of:
         raise SettingError("--of", list(of), "names of quantities", "name at least one")
     axes = [axis_of(settings, text) for text in vary]
     if len({axis.name for axis in axes}) < len(axes):
-        raise SettingError(
-            "--vary", list(vary), "two settings", "vary each of them once"
-        )
+        raise SettingError("--vary", given, "two settings", "vary each of them once")
+    # Numbers stand across, names are curves.
     axes.sort(key=lambda axis: not axis.is_numeric)
-    plan = Plan(
-        settings, tuple(axes), tuple(dict.fromkeys(reading(name).name for name in of))
-    )
+    names = dict.fromkeys(reading(name).name for name in of)
+    plan = Plan(settings, tuple(axes), tuple(names))
     if plan.size > MOST_POINTS:
         few = f"at most {MOST_POINTS} runs"
-        raise SettingError(
-            "--vary", list(vary), few, f"these are {plan.size}: take fewer values"
-        )
+        remedy = f"these are {plan.size}: take fewer values"
+        raise SettingError("--vary", given, few, remedy)
     return plan
 
 
 def axis_of(settings: Settings, text: str) -> Varied:
-    """One setting and its values, of a text as `--vary` takes it."""
+    """Setting that varies, of a text as `--vary` takes it."""
     name, equals, values = text.partition("=")
     definitions = settings.definitions()
     if not equals or not values:
         raise SettingError("--vary", text, FORM, "name a setting and its values")
     if name not in definitions:
         raise unknown(name, values, settings.scene, definitions)
+    definition = definitions[name]
+    logarithmic = False
     if ":" in values:
-        found, logarithmic = _range(definitions[name], name, values)
+        found, logarithmic = _range(definition, name, values)
     else:
         found = [parse(value.strip()) for value in values.split(",")]
-        logarithmic = False
     for end in (found[-1], found[0]):
-        # What was typed is refused before what lies between.
-        checked_value(definitions[name], name, end)
-    checked = dict.fromkeys(
-        checked_value(definitions[name], name, value) for value in found
-    )
-    ordered = list(checked)
-    if isinstance(definitions[name], param.Number):
+        # A value that was typed is refused before those that lie between.
+        checked_value(definition, name, end)
+    checked = [checked_value(definition, name, value) for value in found]
+    ordered = list(dict.fromkeys(checked))
+    if isinstance(definition, param.Number):
         ordered.sort()
-    title = title_of(definitions[name])
-    unit = about(definitions[name]).unit
-    return Varied(name, title, unit, tuple(ordered), logarithmic)
+    unit = about(definition).unit
+    return Varied(name, title_of(definition), unit, tuple(ordered), logarithmic)
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:
-    """Values spread over a range, and whether over decades."""
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError(
-            name, text, f"LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, {within}", remedy
-        )
-
-    within = f"within {allowed(definition)}"
+    """Values spread over a range LOW:HIGH:COUNT, and whether over decades."""
     if not isinstance(definition, param.Number):
-        raise SettingError(
-            name, text, allowed(definition), "list its values, commas between them"
-        )
+        remedy = "list its values, commas between them"
+        raise SettingError(name, text, allowed(definition), remedy)
     *numbers, last = text.split(":")
     logarithmic = last == "log"
+    if not logarithmic:
+        numbers.append(last)
     try:
-        low, high, count = map(float, numbers if logarithmic else [*numbers, last])
+        low, high, count = map(float, numbers)
     except ValueError:
-        raise refuse("write three numbers, colons between them") from None
-    if not (math.isfinite(low) and math.isfinite(high)):
-        raise refuse("write finite numbers")
-    if not 2 <= count <= MOST_POINTS or count != int(count):
-        raise refuse(f"the count is a whole number from 2 to {MOST_POINTS}")
-    if low == high:
-        raise refuse("the two ends differ")
-    if logarithmic and min(low, high) <= 0.0:
-        raise refuse("decades need ends above zero")
-    spread = np.geomspace if logarithmic else np.linspace
+        remedy = "write three numbers, colons between them"
+        raise _range_error(definition, name, text, remedy) from None
+    remedy = _remedy(low, high, count, logarithmic)
+    if remedy:
+        raise _range_error(definition, name, text, remedy)
+    if logarithmic:
+        spread = np.geomspace(low, high, int(count))
+    else:
+        spread = np.linspace(low, high, int(count))
     # Through text, so that 0.1:0.6:6 holds 0.3 and not 0.30000000000000004.
-    values = [float(f"{value:.12g}") for value in spread(low, high, int(count))]
-    is_whole = isinstance(definition, param.Integer)
-    return [round(value) if is_whole else value for value in values], logarithmic
+    values: list[object] = [float(f"{value:.12g}") for value in spread]
+    if isinstance(definition, param.Integer):
+        values = [round(float(f"{value:.12g}")) for value in spread]
+    return values, logarithmic
+
+
+def _range_error(
+    definition: Parameter, name: str, text: str, remedy: str
+) -> SettingError:
+    """Refusal of a range."""
+    within = f"within {allowed(definition)}"
+    can = f"LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, {within}"
+    return SettingError(name, text, can, remedy)
+
+
+def _remedy(low: float, high: float, count: float, logarithmic: bool) -> str:
+    """Remedy for the numbers of a range; empty where they are right."""
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return "write finite numbers"
+    if not 2 <= count <= MOST_POINTS or count != int(count):
+        return f"the count is a whole number from 2 to {MOST_POINTS}"
+    if low == high:
+        return "the two ends differ"
+    if logarithmic and min(low, high) <= 0.0:
+        return "decades need ends above zero"
+    return ""

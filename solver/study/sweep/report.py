@@ -1,4 +1,4 @@
-"""What came of a sweep: charts as plain data, a page, and a CSV file from which it goes on."""
+"""Reports of a sweep: charts as plain data, a page, and the CSV file to resume."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ from solver.study.quantities.quantity import Quantity
 from solver.study.sweep.plan import Plan, Row, Varied
 
 MOST_CURVES = 6
-"""Numbers of a second setting that have a curve each; more of them make a map."""
+"""Largest number of curves, one for each value of a second setting; more are a map."""
 DECADES = 30.0
 """Ratio of the largest to the smallest value from which a chart is logarithmic."""
 MARGIN = 0.06
-"""Share of an axis that lies beyond the values on either side."""
+"""Share of the values' range that is added to an axis on either side."""
 NEVER = "never"
 NONE = "none: a run with these settings has no such value"
 Text = Callable[[float, str], str]
@@ -46,12 +46,12 @@ AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
 OWN = "own"
 NEIGHBOURS = "neighbour's"
 CAPTION = (
-    "Hollow points and hatched cells are of runs that have not converged, crosses of runs without "
-    "a value."
+    "Hollow points and hatched cells are of runs that have not converged, "
+    "crosses of runs without a value."
 )
 GROWTH = (
-    "Powers by least squares of the logarithms; small sizes, at which other things cost, make them "
-    "lower."
+    "Powers by least squares of the logarithms; small sizes, at which other things "
+    "cost, make them lower."
 )
 
 
@@ -63,82 +63,120 @@ def plainly(value: float, unit: str) -> str:
 def chart_of(
     plan: Plan,
     rows: Sequence[Row],
-    place: int = 0,
+    index: int = 0,
     text: Text = plainly,
     *,
     logarithmic: bool | None = None,
 ) -> Chart:
-    """Chart of the reading at a place, whatever has come of the plan so far, in SI.
+    """Chart of a reading, of all rows so far, in SI.
 
-    Its values are on a logarithmic scale as is said, or where they go over several
-    decades.
+    Parameters
+    ----------
+    plan, rows
+        The plan, and the rows of the runs so far.
+    index
+        Index of the reading.
+    text
+        Text of a value with its unit.
+    logarithmic
+        Whether the values stand on a logarithmic scale; by default if they go over
+        several decades.
     """
-    across, *up = plan.axes
-    quantity = plan.readings[place]
-    runs = _runs(plan, rows, place, text)
-    z = _measure(plan, place)[0] * grid(plan, rows, place).T
+    runs = _runs(plan, rows, index, text)
     if is_map(plan):
-        known = z[np.isfinite(z)]
-    else:
-        known = runs.y[np.isfinite(runs.y)]
+        return _map(plan, rows, index, runs, logarithmic)
+    return _panel(plan, index, text, runs, logarithmic)
+
+
+def _scale(
+    plan: Plan, index: int, values: Array, logarithmic: bool | None
+) -> PanelAxis:
+    """Axis of a reading with these values, of any shape, NaN where there is none."""
+    known = values[np.isfinite(values)]
     if logarithmic is None:
         wide = bool(known.size and 0.0 < DECADES * known.min() < known.max())
     else:
         # Nothing that is zero or less stands on a logarithmic axis.
         wide = logarithmic and bool((known > 0.0).any())
-    scale = PanelAxis(quantity.title, _measure(plan, place)[1], wide)
-    axes = [
-        PanelAxis(of.title, of.unit, of.logarithmic, names=of.names) for of in plan.axes
-    ]
-    if is_map(plan):
-        if wide:
-            z = np.where(z > 0.0, z, np.nan)
-        else:
-            z = z
-        return Map(
-            quantity.title,
-            axes[0],
-            axes[1],
-            across.places,
-            up[0].places,
-            scale,
-            z,
-            runs,
-        )
-    curves = []
-    for hue, label in enumerate(_texts(up[0], text) if up else [""], start=1):
-        own = np.flatnonzero(runs.hues == hue)
-        # Nothing lies between names.
-        if across.is_numeric:
-            own = own[np.argsort(runs.x[own])]
-        else:
-            own = own[:0]
-        y = np.where(runs.holds[own], runs.y[own], np.nan)
-        curves.append(PanelCurve(label, runs.x[own], y, hue))
-    x_axis = replace(axes[0], limits=_limits(across.places, axes[0]))
-    y_axis = replace(scale, limits=_limits(runs.y, scale))
-    return Panel(quantity.title, x_axis, y_axis, tuple(curves), runs)
+    _, unit = _measure(plan, index)
+    return PanelAxis(plan.readings[index].title, unit, wide)
 
 
-def is_map(plan: Plan) -> bool:
-    """Whether a plan makes a map: two numbers, the second one of many values."""
-    across, *up = plan.axes
-    return across.is_numeric and any(
-        one.is_numeric and len(one.values) > MOST_CURVES for one in up
+def _axis(varied: Varied) -> PanelAxis:
+    """Axis of a setting that varies."""
+    return PanelAxis(varied.title, varied.unit, varied.logarithmic, names=varied.names)
+
+
+def _map(
+    plan: Plan, rows: Sequence[Row], index: int, runs: Runs, logarithmic: bool | None
+) -> Map:
+    """Map of a reading over two settings."""
+    across, up = plan.axes
+    factor, _ = _measure(plan, index)
+    z = factor * grid(plan, rows, index).T
+    scale = _scale(plan, index, z, logarithmic)
+    if scale.logarithmic:
+        z = np.where(z > 0.0, z, np.nan)
+    return Map(
+        title=plan.readings[index].title,
+        x=_axis(across),
+        y=_axis(up),
+        x_values=across.places,
+        y_values=up.places,
+        scale=scale,
+        z=z,
+        runs=runs,
     )
 
 
-def grid(plan: Plan, rows: Sequence[Row], place: int) -> Array:
-    """Finite values of a reading of runs that have converged, of the plan's shape; else NaN."""
+def _panel(
+    plan: Plan, index: int, text: Text, runs: Runs, logarithmic: bool | None
+) -> Panel:
+    """Curves of a reading over the first setting, one for each value of the second."""
+    across, *up = plan.axes
+    labels = [""]
+    if up:
+        labels = _texts(up[0], text)
+    curves = []
+    for hue, label in enumerate(labels, start=1):
+        members = np.flatnonzero(runs.hues == hue)
+        # Nothing lies between names.
+        if across.is_numeric:
+            members = members[np.argsort(runs.x[members])]
+        else:
+            members = members[:0]
+        y = np.where(runs.holds[members], runs.y[members], np.nan)
+        curves.append(PanelCurve(label, runs.x[members], y, hue))
+    x_axis = _axis(across)
+    y_axis = _scale(plan, index, runs.y, logarithmic)
+    return Panel(
+        plan.readings[index].title,
+        replace(x_axis, limits=_limits(across.places, x_axis)),
+        replace(y_axis, limits=_limits(runs.y, y_axis)),
+        tuple(curves),
+        runs,
+    )
+
+
+def is_map(plan: Plan) -> bool:
+    """Check whether a plan makes a map: two numbers, the second of many values."""
+    across, *up = plan.axes
+    if not up or not across.is_numeric:
+        return False
+    return up[0].is_numeric and len(up[0].values) > MOST_CURVES
+
+
+def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
+    """Finite values of a reading of converged runs, of the plan's shape, else NaN."""
     good = np.full(plan.size, np.nan)
     for row in rows:
-        if row.holds and math.isfinite(row.values[place]):
-            good[row.number] = row.values[place]
+        if row.holds and math.isfinite(row.values[index]):
+            good[row.number] = row.values[index]
     return good.reshape(plan.shape)
 
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
-    """Ends of an axis: all values with a margin, from zero where that is as near."""
+    """Ends of an axis: all values, (n,), with a margin, from zero if that is near."""
     known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
         return (0.0, 1.0)
@@ -147,140 +185,180 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
     if axis.names:
         return (low - 0.5, high + 0.5)
     if axis.logarithmic:
-        by = max(high / low, 1.0 + MARGIN) ** MARGIN
-        return (low / by, high * by)
-    by = MARGIN * (high - low) or abs(high) / 2.0 or 1.0
-    return (0.0 if 0.0 <= low < by else low - by, high + by)
+        factor = max(high / low, 1.0 + MARGIN) ** MARGIN
+        return (low / factor, high * factor)
+    margin = MARGIN * (high - low) or abs(high) / 2.0 or 1.0
+    if 0.0 <= low < margin:
+        return (0.0, high + margin)
+    return (low - margin, high + margin)
 
 
-def _runs(plan: Plan, rows: Sequence[Row], place: int, text: Text) -> Runs:
-    """Where the runs stand on the chart of a reading, and what they came to."""
-    axes = plan.axes
+def _runs(plan: Plan, rows: Sequence[Row], index: int, text: Text) -> Runs:
+    """Points of the runs on the chart of a reading, with their messages."""
     numbers = np.array([row.number for row in rows], dtype=int)
     levels = np.unravel_index(numbers, plan.shape)
-    factor, unit = _measure(plan, place)
-    values = factor * np.array([row.values[place] for row in rows], dtype=float)
-    texts = [_texts(axis, text) for axis in axes]
+    factor, _ = _measure(plan, index)
+    values = factor * np.array([row.values[index] for row in rows], dtype=float)
+    messages = _messages(plan, rows, index, values, text)
+    is_finite = np.isfinite(values)
+    values[~is_finite] = np.nan
+    y = values
+    if is_map(plan):
+        y = plan.axes[1].places[levels[1]]
+    # Each value of the second setting has a hue, from 1 on.
+    hues = np.ones_like(numbers)
+    if len(plan.axes) > 1:
+        hues = levels[1] + 1
+    return Runs(
+        numbers=numbers,
+        x=plan.axes[0].places[levels[0]],
+        y=y,
+        hues=hues,
+        holds=np.array([row.holds for row in rows], dtype=bool) & is_finite,
+        said=messages,
+    )
+
+
+def _messages(
+    plan: Plan, rows: Sequence[Row], index: int, values: Array, text: Text
+) -> list[str]:
+    """Messages on runs: their settings, the value of a reading, and how they ended.
+
+    The values are those of the reading, shape (n_rows,), in its unit.
+    """
+    _, unit = _measure(plan, index)
+    texts = [_texts(axis, text) for axis in plan.axes]
+    numbers = np.array([row.number for row in rows], dtype=int)
+    points = np.transpose(np.unravel_index(numbers, plan.shape))
     messages = []
-    for row, value, at in zip(rows, values, zip(*levels, strict=True), strict=True):
-        point = ", ".join(
-            of_axis[level] for of_axis, level in zip(texts, at, strict=True)
-        )
+    for row, value, point in zip(rows, values, points, strict=True):
+        words = [names[level] for names, level in zip(texts, point, strict=True)]
+        number = ""
         if math.isfinite(value):
             number = text(value, unit)
-        else:
-            number = ""
-        reason = ": ".join(filter(None, (row.ending, row.reason)))
-        if row.holds:
-            if math.isinf(value):
-                reason = NEVER
-            elif math.isnan(value):
-                reason = NONE
-            else:
-                reason = ""
-        messages.append(f"{point}: {'; '.join(filter(None, (number, reason)))}")
-    values[~np.isfinite(values)] = np.nan
-    return Runs(
-        numbers,
-        axes[0].places[levels[0]],
-        axes[1].places[levels[1]] if is_map(plan) else values,
-        levels[1] + 1 if len(axes) > 1 else np.ones_like(numbers),
-        np.array([row.holds for row in rows], dtype=bool) & np.isfinite(values),
-        messages,
-    )
+        outcome = filter(None, (number, _reason(row, value)))
+        messages.append(f"{', '.join(words)}: {'; '.join(outcome)}")
+    return messages
+
+
+def _reason(row: Row, value: float) -> str:
+    """Reason why a run has no value that is an answer; empty where it has one."""
+    if not row.holds:
+        return ": ".join(filter(None, (row.ending, row.reason)))
+    if math.isinf(value):
+        return NEVER
+    if math.isnan(value):
+        return NONE
+    return ""
 
 
 def _texts(axis: Varied, text: Text) -> list[str]:
     """Title of a setting with each of its values."""
-    values = axis.names or [text(value, axis.unit) for value in axis.values]
+    values: Sequence[str] = axis.names
+    if axis.is_numeric:
+        values = [text(value, axis.unit) for value in axis.values]
     return [f"{axis.title} {value}" for value in values]
 
 
-def _measure(plan: Plan, place: int) -> tuple[float, str]:
+def _measure(plan: Plan, index: int) -> tuple[float, str]:
     """Factor and unit of a reading: shares are in per cent."""
-    quantity = plan.readings[place]
+    quantity = plan.readings[index]
     if quantity.is_share:
         return (100.0, "%")
     return (1.0, quantity.unit)
 
 
 def counts(plan: Plan, rows: Sequence[Row]) -> str:
-    """What became of the runs, in a sentence."""
+    """Sentence on the endings of the runs."""
     endings = Counter(row.ending for row in rows)
     message = ", ".join(f"{count} {ending}" for ending, count in endings.most_common())
     return f"{len(rows)} of {plan.size} runs: {message or 'none yet'}."
 
 
 def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
-    """With which power of a setting over decades each reading grows, a line for every curve."""
-    (along, *others) = plan.axes
-    lines = []
+    """Power of a logarithmic setting with which readings grow, a line per curve."""
+    along, *others = plan.axes
     if not along.logarithmic or any(axis.is_numeric for axis in others):
         return []
-    which = [f", {axis.name}={value}" for axis in others for value in axis.values] or [
-        ""
-    ]
-    for place, name in enumerate(plan.of):
-        curves = grid(plan, rows, place).T.reshape(len(which), -1)
-        for words, curve in zip(which, curves, strict=True):
-            is_known = curve > 0.0
-            if (count := is_known.sum()) > 1:
-                size, value = np.log(
-                    [np.array(along.values)[is_known], curve[is_known]]
-                )
-                power = np.polyfit(size, value, 1)[0]
-                lines.append(
-                    f"{name}{words}: {along.name}^{power:.2f}, of {count} runs"
-                )
+    labels = [""]
+    if others:
+        names = others[0]
+        labels = [f", {names.name}={value}" for value in names.values]
+    lines = []
+    for index, name in enumerate(plan.of):
+        curves = grid(plan, rows, index).T.reshape(len(labels), -1)
+        for label, curve in zip(labels, curves, strict=True):
+            count = int((curve > 0.0).sum())
+            if count > 1:
+                power = _power(np.array(along.values), curve)
+                text = f"{along.name}^{power:.2f}, of {count} runs"
+                lines.append(f"{name}{label}: {text}")
     return lines
 
 
+def _power(sizes: Array, values: Array) -> float:
+    """Power of sizes with which values grow, (n,) each; only values above 0 count."""
+    is_known = values > 0.0
+    size, value = np.log([sizes[is_known], values[is_known]])
+    return float(np.polyfit(size, value, 1)[0])
+
+
 def title_of(plan: Plan) -> str:
-    """What is asked for, over what."""
-    asked, over = (
-        [one.title[0].lower() + one.title[1:] for one in several]
-        for several in (plan.readings, plan.axes)
-    )
-    return f"{plan.settings.scene.capitalize()}: {', '.join(asked)} over {' and '.join(over)}"
+    """Title of a sweep: its readings over its settings."""
+    asked = ", ".join(_uncapitalised(one.title) for one in plan.readings)
+    over = " and ".join(_uncapitalised(axis.title) for axis in plan.axes)
+    return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
+
+
+def _uncapitalised(title: str) -> str:
+    """Title with a small first letter."""
+    return title[0].lower() + title[1:]
 
 
 def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
-    """Page of some rows, in the order of their points."""
-    laws = growth(plan, rows)
-    charts = [chart_of(plan, rows, place) for place in range(len(plan.of))]
-    table = [
-        heads(plan),
-        *([text_of(cell, 6) for cell in cells(plan, row)] for row in rows),
-    ]
-    return [
+    """Sections of the page of a sweep, of rows in the order of their points."""
+    charts = [chart_of(plan, rows, index) for index in range(len(plan.of))]
+    report: list[Section] = [
         f"<p><b>{escape(counts(plan, rows))}</b></p>",
         PlotSection(f"Charts of {len(rows)} runs", charts),
-        *(
-            []
-            if all(row.holds for row in rows)
-            else [f'<p class="caption">{CAPTION}</p>']
-        ),
-        *([f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}"] if laws else []),
-        f"<h2>Every run</h2>\n{html_table(table)}",
-        f"<h2>Settings</h2>\n{bullets(head(plan))}",
     ]
+    if not all(row.holds for row in rows):
+        report.append(f'<p class="caption">{CAPTION}</p>')
+    laws = growth(plan, rows)
+    if laws:
+        report.append(f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}")
+    table = [heads(plan)]
+    for row in rows:
+        table.append([text_of(cell, 6) for cell in cells(plan, row)])
+    report.append(f"<h2>Every run</h2>\n{html_table(table)}")
+    report.append(f"<h2>Settings</h2>\n{bullets(head(plan))}")
+    return report
 
 
 def heads(plan: Plan) -> list[str]:
-    """Names of the columns: the run, what varies, what is asked for, and how the run ended."""
+    """Names of the columns: the run, its settings, its readings, and its ending."""
     return ["run", *(axis.name for axis in plan.axes), *plan.of, *AFTER]
 
 
 def cells(plan: Plan, row: Row) -> list[object]:
     """Entries of a row, in SI units."""
-    ending = [row.ending, NEIGHBOURS if row.was_warm else OWN, row.iterations]
-    reason = " ".join(row.reason.split())
-    values = [*plan.point(row.number).values(), *row.values]
-    return [row.number, *values, *ending, round(row.seconds, 6), reason]
+    start = OWN
+    if row.was_warm:
+        start = NEIGHBOURS
+    return [
+        row.number,
+        *plan.point(row.number).values(),
+        *row.values,
+        row.ending,
+        start,
+        row.iterations,
+        round(row.seconds, 6),
+        " ".join(row.reason.split()),
+    ]
 
 
 def csv_of(plan: Plan, rows: Sequence[Row]) -> str:
-    """Rows as CSV, with what is fixed in front, in comments that begin with #."""
+    """Rows as CSV, after comments that begin with # and give the fixed settings."""
     comments = "".join(f"# {line}\n" for line in head(plan))
     return f"{comments}{','.join(heads(plan))}\n{lines_of(plan, rows)}"
 
@@ -293,30 +371,34 @@ def lines_of(plan: Plan, rows: Sequence[Row]) -> str:
 
 
 def head(plan: Plan) -> list[str]:
-    """What the columns are, with all values of what varies, and what is fixed, in SI units."""
-    shown: list[Varied | Quantity] = [*plan.axes, *plan.readings]
-    columns = [
-        f"{c.name}: {c.title}" + (f" ({c.unit})" if c.unit else "") for c in shown
-    ]
-    for place, axis in enumerate(plan.axes):
-        columns[place] += ": " + ", ".join(map(str, axis.values))
+    """Lines on the columns, the values of the axes, and the fixed settings, in SI."""
+    columns = []
+    for axis in plan.axes:
+        values = ", ".join(map(str, axis.values))
+        columns.append(f"{_column(axis)}: {values}")
+    for quantity in plan.readings:
+        columns.append(_column(quantity))
     varied = {axis.name for axis in plan.axes}
+    lines = dump(plan.settings).splitlines()
     return [
         f"Slipfront, {plan.settings.scene}: {plan.size} runs; SI units",
         *columns,
         "settings of all runs:",
-        *(
-            line
-            for line in dump(plan.settings).splitlines()
-            if line.split(" ")[0] not in varied
-        ),
+        *(line for line in lines if line.split(" ")[0] not in varied),
     ]
 
 
-def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
-    """Rows of a plan by their number, as a file holds them; a line without an end is left out.
+def _column(shown: Varied | Quantity) -> str:
+    """Name, title and unit of a column."""
+    if shown.unit:
+        return f"{shown.name}: {shown.title} ({shown.unit})"
+    return f"{shown.name}: {shown.title}"
 
-    The table of another sweep is refused.
+
+def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
+    """Read the rows of a plan from a file, by their numbers.
+
+    A last line without an end is left out. The table of another sweep is refused.
     """
     if not file.exists():
         return {}
@@ -325,12 +407,22 @@ def rows_in(file: Path, plan: Plan) -> dict[int, Row]:
     if not text.startswith(empty):
         folder = "a folder of the same sweep, or a new one"
         raise SettingError("--out", str(file.parent), folder, "name another")
+    # A line without an end was cut off as the sweep was ended.
     whole = text[len(empty) : text.rfind("\n") + 1]
-    rows = {}
-    for number, *rest in csv.reader(io.StringIO(whole)):
-        *values, ending, start, iterations, seconds, reason = rest[len(plan.axes) :]
-        numbers = tuple(map(float, values))
-        is_warm = start == NEIGHBOURS
-        how = int(iterations), float(seconds), is_warm
-        rows[int(number)] = Row(int(number), ending, reason, numbers, *how)
-    return rows
+    rows = [_row_of(plan, each) for each in csv.reader(io.StringIO(whole))]
+    return {row.number: row for row in rows}
+
+
+def _row_of(plan: Plan, texts: list[str]) -> Row:
+    """Row of a plan from the texts of its cells, in the order of `heads`."""
+    number, *rest = texts
+    *values, ending, start, iterations, seconds, reason = rest[len(plan.axes) :]
+    return Row(
+        number=int(number),
+        ending=ending,
+        reason=reason,
+        values=tuple(map(float, values)),
+        iterations=int(iterations),
+        seconds=float(seconds),
+        was_warm=start == NEIGHBOURS,
+    )

@@ -1,4 +1,4 @@
-"""The runs of a sweep: what a process does for one point, and rows as they come."""
+"""The runs of a sweep: the work of a process for one point, and rows as they come."""
 
 from __future__ import annotations
 
@@ -41,33 +41,39 @@ WORKER = "versions of a worker"
 TOO_LONG = "It took longer than a run may; allow more with --limit."
 KEPT = 500
 """Runs that a process keeps to start others from: a dozen lines of a chart of 41 x 41.
-Of the scenes as they are each takes 5 to 30 kB."""
+
+With the default sizes of the scenes each takes 5 to 30 kB."""
 _kept: dict[str, deque[tuple[tuple[float, ...], States]]] = {}
-"""Places of the runs of this process, of the last sweep, and what stuck, slipped and
-opened."""
+"""Points of the runs of this process in the last sweep, and their states."""
 AHEAD = 500
-"""Runs under way at once, done and waiting: more than there are workers, soon asked
-for."""
+"""Runs submitted at once: more than there are workers, and soon submitted."""
 PATIENCE = 0.2
 """Seconds between two looks at whether a sweep is still wanted."""
 
 
 @cache
 def versions() -> str:
-    """Versions of all that results depend on."""
-    names = ("slipfront", "numpy", "scipy")
-    return ", ".join(
-        [*(f"{name} {version(name)}" for name in names), platform.python_version()]
-    )
+    """Versions of the packages and of the Python that results depend on."""
+    packages = [f"{name} {version(name)}" for name in ("slipfront", "numpy", "scipy")]
+    return ", ".join([*packages, platform.python_version()])
 
 
 def run(
     plan: Plan, limit: float, warm: bool, sweep: str, asked_by: str, number: int
 ) -> Row:
-    """Row of a point of a plan, with options of `sweep` and a name that no other sweep has.
+    """Run a point of a plan in this process.
 
-    `asked_by` are the versions of who asks; others are refused, as a result would be
-    that of other code.
+    Parameters
+    ----------
+    plan, limit, warm
+        Plan and options, as of `sweep`.
+    sweep
+        Name of the sweep, which no other sweep has.
+    asked_by
+        Versions of the process that asks. Others than those of this process are
+        refused, since the result would be that of other code.
+    number
+        Number of the point.
     """
     if asked_by != versions():
         raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
@@ -75,54 +81,66 @@ def run(
         settle()
     began = time.perf_counter()
     nothing = (math.nan,) * len(plan.of)
-    # A run that diverges is told by its status.
+    # The status of a run says that it diverges: NumPy need not warn of it.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
             finished = _from_nearest(plan, sweep, number, warm, began + limit)
-            values = tuple(reading(finished) for reading in plan.readings)
-            status = finished.solution.status
-            iterations = finished.iterate.number
-            ending = str(status.ending)
-            reason = status.advice
-            if status.ending is Ending.CANCELLED:
-                ending = STUCK
-                reason = TOO_LONG
-            elif status.ending is Ending.CONVERGED:
-                reason = ""
-            row = Row(
-                number, ending, reason, values, iterations, was_warm=finished.was_warm
-            )
+            row = _row_of(plan, number, finished)
         except RefusedError as refusal:
             row = Row(number, REFUSED, str(refusal), nothing)
-        except Exception as trouble:  # whatever it is belongs in the table
+        except Exception as trouble:  # any fault of the engine belongs in the table
             row = Row(number, BROKEN, f"{type(trouble).__name__}: {trouble}", nothing)
     return replace(row, seconds=time.perf_counter() - began)
+
+
+def _row_of(plan: Plan, number: int, finished: FinishedRun) -> Row:
+    """Row of a finished run, without its time."""
+    values = tuple(reading(finished) for reading in plan.readings)
+    status = finished.solution.status
+    ending = str(status.ending)
+    reason = status.advice
+    if status.ending is Ending.CANCELLED:
+        ending = STUCK
+        reason = TOO_LONG
+    elif status.ending is Ending.CONVERGED:
+        reason = ""
+    return Row(
+        number=number,
+        ending=ending,
+        reason=reason,
+        values=values,
+        iterations=finished.iterate.number,
+        was_warm=finished.was_warm,
+    )
 
 
 def _from_nearest(
     plan: Plan, sweep: str, number: int, warm: bool, end: float
 ) -> FinishedRun:
-    """Run a point, from the nearest that this process has done of a sweep; keep its states."""
+    """Run a point, from the nearest run of this process in a sweep; keep its states."""
+    # States of an earlier sweep are no start for this one.
     if sweep not in _kept:
         _kept.clear()
     kept = _kept.setdefault(sweep, deque(maxlen=KEPT))
-    place = tuple(np.unravel_index(number, plan.shape) / np.array(plan.shape))
-    nearest = min(list(kept), key=lambda own: math.dist(place, own[0]), default=None)
+    point = tuple(np.unravel_index(number, plan.shape) / np.array(plan.shape))
+    before = None
+    if kept:
+        _, before = min(list(kept), key=lambda other: math.dist(point, other[0]))
     reads = {reading.reads for reading in plan.readings}
     finished = finished_run(
         plan.settings_at(number),
         errors="errors" in reads,
         indicators="indicators" in reads,
         cancelled=lambda: time.perf_counter() > end,
-        before=nearest and nearest[1],
+        before=before,
     )
     if warm and finished.solution.status.ending is Ending.CONVERGED:
-        kept.append((place, states_of(finished.iterate)))
+        kept.append((point, states_of(finished.iterate)))
     return finished
 
 
 def patience(limit: float) -> float:
-    """Seconds after which a process that has a run is stuck: no run ends itself."""
+    """Seconds after which a process is ended whose run has not ended by itself."""
     return 1.5 * limit + 10.0
 
 
@@ -135,16 +153,28 @@ def sweep(
     warm: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Iterator[Row]:
-    """Run points of a plan, from neighbour to neighbour, but for those that are done.
+    """Run the points of a plan, from neighbour to neighbour.
 
-    A run may take `limit` seconds, and starts, if `warm`, from the nearest one where no
-    reading is of how it went. `cancelled` is asked several times a second whether to
-    end the sweep.
+    Parameters
+    ----------
+    plan
+        Plan of the sweep.
+    executor
+        Executor of the runs.
+    done
+        Numbers of points that are left out.
+    limit
+        Time that a run may take, s.
+    warm
+        Whether runs start from the nearest one; no run does so where a reading depends
+        on the course of a run.
+    cancelled
+        Asked several times a second whether to end the sweep.
 
     Yields
     ------
-    One row for every point, as they come, in any order. Closing the generator ends the sweep: what
-    is not begun is not done, and what runs in processes of this machine is ended.
+    Rows, one for every point, in any order. Closing the generator ends the sweep: runs
+    that have not begun are left out, and runs in processes of this machine are ended.
 
     Raises
     ------
@@ -159,6 +189,7 @@ def sweep(
     under_way: dict[Future[Row], int] = {}
     try:
         while not cancelled():
+            # Calls are submitted as others end, so that a sweep can end soon.
             for number in islice(path, AHEAD - len(under_way)):
                 under_way[executor.submit(call, number)] = number
             if not under_way:
@@ -171,14 +202,14 @@ def sweep(
 
 
 def snake(shape: Sequence[int]) -> list[int]:
-    """Numbers of the points of a grid, where each line goes back the way of the one before."""
+    """Numbers of the points of a grid, where each line goes back along the last one."""
     grid = np.arange(math.prod(shape)).reshape(-1, shape[-1])
     grid[1::2] = grid[1::2, ::-1]
     return [int(number) for number in grid.ravel()]
 
 
 def _row(future: Future[Row], number: int, n_values: int) -> Row:
-    """Row of a run, whatever became of its process."""
+    """Row of a run; a run whose process was ended has a row, too."""
     try:
         return future.result()
     except (SettingError, BrokenExecutor):

@@ -1,0 +1,182 @@
+"""Quantities of interfaces as a whole: friction that holds them, and its force."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.arrays import RESIDUE, Array, Flags, Indices
+from solver.laws import OPEN
+from solver.reference.distance import determinate_forces
+from solver.settings.scene import Settings
+from solver.study.quantities.finished import EQUAL, FinishedRun
+from solver.study.quantities.quantity import quantity
+
+
+def _rubs_by_mu(settings: Settings) -> bool:
+    """Check whether the friction bound is mu N alone, whatever has slipped."""
+    law = settings.law
+    return law.cohesion == 0.0 and math.isinf(law.cap) and law.strength is None
+
+
+@dataclass(frozen=True, eq=False)
+class _Hold:
+    """Forces of an interface as a whole at every instant: how close it is to sliding.
+
+    Attributes
+    ----------
+    pressing
+        Sum of the pressing forces, shape (n_instants,), N; where mu varies along the
+        interface, weighted by its factors.
+    carried
+        Sum of the friction forces, shape (n_instants,), N.
+    slides
+        Whether all its points slip in one direction, shape (n_instants,).
+    """
+
+    pressing: Array
+    carried: Array
+    slides: Flags
+
+    @property
+    def needed(self) -> Array:
+        """Coefficient of friction in use, (n_instants,); 0 where nothing presses."""
+        nothing = np.zeros_like(self.pressing)
+        return np.divide(
+            np.abs(self.carried), self.pressing, nothing, where=self.pressing > 0.0
+        )
+
+    def sliding(self, friction: float, instants: Array) -> Array:
+        """Pressing forces while the interface slides, and as it begins to, (n,), N.
+
+        Sliding begins between two instants, where the friction, if it goes on growing
+        at its last rate, comes to mu times the pressing force.
+
+        Parameters
+        ----------
+        friction
+            Coefficient of friction mu.
+        instants
+            Instants of the run, shape (n_instants,), s.
+        """
+        pressing = self.pressing
+        begins = np.flatnonzero(self.slides[2:] & ~self.slides[1:-1]) + 2
+        before = begins - 1
+        rise = pressing[begins] - pressing[before]
+        share = self._onset(friction, np.diff(instants), before, rise)
+        at_onset = pressing[before] + np.clip(share, 0.0, 1.0) * rise
+        return np.concatenate([pressing[self.slides], at_onset])
+
+    def _onset(
+        self, friction: float, steps: Array, before: Indices, rise: Array
+    ) -> Array:
+        """Share of a step after which sliding begins, shape (n_onsets,); 1 if in none.
+
+        Parameters
+        ----------
+        friction
+            Coefficient of friction mu.
+        steps
+            Time steps, shape (n_instants - 1,), s.
+        before
+            Last instants before sliding, shape (n_onsets,).
+        rise
+            Growth of the pressing force in the step after those, shape (n_onsets,), N.
+        """
+        carried = np.abs(self.carried)
+        rate = (carried[before] - carried[before - 1]) / steps[before - 1]
+        growth = rate * steps[before]
+        reserve = friction * self.pressing[before] - carried[before]
+        closes = growth - friction * rise
+        return np.divide(reserve, closes, np.ones_like(reserve), where=closes > 0.0)
+
+
+def _holds(run: FinishedRun) -> list[_Hold]:
+    """Forces of every interface with friction as a whole."""
+    # A point that a clamp holds, too, never slips: it counts as free.
+    determinate = determinate_forces(run.problem)
+    holds = []
+    for name in run.problem.surfaces:
+        *_, tangential = run.problem.contact_places[name]
+        holds.append(_hold(run, name, determinate[tangential]))
+    return holds
+
+
+def _hold(run: FinishedRun, name: str, determinate: Flags) -> _Hold:
+    """Forces of an interface as a whole.
+
+    `determinate` says where the friction is determinate, shape (n_points, n_instants).
+    """
+    contact = run.iterate.contact(name)
+    pressing = _pressing_by_friction(run, name)
+    status = contact.status
+    # Points that carry no friction cannot keep the others from sliding.
+    is_free = (status == OPEN) | ~determinate | (pressing <= 0.0)
+    forward = ((status == 1) | is_free).all(axis=0)
+    backward = ((status == -1) | is_free).all(axis=0)
+    slides = (forward | backward) & ~is_free.all(axis=0)
+    carried = contact.tangential_force.sum(axis=0)
+    return _Hold(pressing.sum(axis=0), carried, slides)
+
+
+def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
+    """Pressing force times the factor on mu of each point, (n_points, n_instants), N.
+
+    Where the pressure is given, it follows from the friction bound.
+    """
+    law = run.problem.surfaces[name]
+    contact = run.iterate.contact(name)
+    friction = run.settings.friction
+    if contact.normal_force is None:
+        bound = law.by_point(law.tangential.bound) * run.problem.scales.force
+        return np.broadcast_to(bound / friction, contact.status.shape)
+    share = law.mean_by_point(law.tangential.friction) / friction
+    return np.asarray(share[:, None] * contact.normal_force)
+
+
+def _largest_needed(holds: list[_Hold]) -> float:
+    """Largest coefficient of friction in use at any interface and instant."""
+    return max(float(hold.needed.max(initial=0.0)) for hold in holds)
+
+
+@quantity("Smallest friction that holds", applies=_rubs_by_mu)
+def holding_friction(run: FinishedRun) -> float:
+    """Smallest coefficient of friction at which no interface slides as a whole.
+
+    The coefficient is the sum of the friction forces over the sum of the pressing
+    forces at the worst instant; where mu varies, the factor on its profile. NaN where
+    an interface slides: the run then cannot tell how much more friction would hold it.
+    """
+    if not run.settings.friction:
+        return math.nan
+    holds = _holds(run)
+    if any(hold.slides.any() for hold in holds):
+        return math.nan
+    needed = _largest_needed(holds)
+    if needed > RESIDUE:
+        return needed
+    return 0.0
+
+
+@quantity("Largest force that friction could hold", "N", applies=_rubs_by_mu)
+def holding_force(run: FinishedRun) -> float:
+    """Largest force, N, that friction could hold at the interface nearest to sliding.
+
+    The force is mu times the sum of the pressing forces. Where interfaces slide as a
+    whole, it is the largest one while they slide, from the onset on. Otherwise it is
+    the one at the interface and the instant at which the largest share of it is in use,
+    and the largest of several such.
+    """
+    friction = float(run.settings.friction)
+    if not friction:
+        return 0.0
+    holds = _holds(run)
+    instants = run.problem.instants
+    # Where an interface slides, its friction is the largest it can hold.
+    forces = [hold.sliding(friction, instants) for hold in holds if hold.slides.any()]
+    if not forces:
+        enough = (1.0 - EQUAL) * _largest_needed(holds)
+        forces = [hold.pressing[hold.needed >= enough] for hold in holds]
+    return friction * float(np.concatenate(forces).max(initial=0.0))
