@@ -379,7 +379,7 @@ def _written(shape: Sequence[int | None]) -> str:
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
-    """Whether an array has a shape."""
+    """Return whether an array has a shape."""
     if len(shape) != len(wanted):
         return False
     return all(size in (None, own) for own, size in zip(shape, wanted, strict=True))

@@ -54,5 +54,5 @@ def plain(value: float) -> str:
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether it is a number, and no truth value."""
+    """Return whether it is a number, and no truth value."""
     return isinstance(value, Real) and not isinstance(value, bool)

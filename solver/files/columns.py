@@ -278,7 +278,7 @@ class TableColumn:
 
     @property
     def is_known(self) -> bool:
-        """Whether it names a quantity, or has a unit."""
+        """Return whether it names a quantity, or has a unit."""
         return bool(self.quantities[0] or self.unit)
 
     @cached_property
@@ -349,7 +349,7 @@ def column_of(place: int, line: int, head: str) -> TableColumn:
 
 
 def _is_unit_behind(word: str) -> bool:
-    """Whether the last word of a head is its unit; a letter may number a channel instead."""
+    """Return whether the last word of a head is its unit; a letter may number a channel instead."""
     return is_spelt_as_unit(word) and (len(word) > 1 or word in _SYMBOLS)
 
 
@@ -360,7 +360,7 @@ def quantities_of(title: str, units: str) -> Collection[str]:
 
 
 def are_units(cells: list[str]) -> bool:
-    """Whether a line is one of units; symbols of quantities, as t, s and F, are none.
+    """Return whether a line is one of units; symbols of quantities, as t, s and F, are none.
 
     Half of its cells are units at least: in prose there may be an "in", too.
     """
@@ -409,7 +409,7 @@ def _factors(text: str) -> Iterable[tuple[int, str, str]]:
 
 
 def is_spelt_as_unit(text: str) -> bool:
-    """Whether a word is a unit, as it is written or spelt (KN, inches), or one not taken (kg)."""
+    """Return whether a word is a unit, as it is written or spelt (KN, inches), or one not taken (kg)."""
     symbols = [symbol for _, symbol, _ in _factors(text)]
     return any(symbol not in "1-" for symbol in symbols) and all(
         symbol in "1-" or symbol.lower() in _SPELT for symbol in symbols

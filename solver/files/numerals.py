@@ -81,7 +81,7 @@ _PATTERNS = {
 
 
 def is_gap(cell: str) -> bool:
-    """Whether a cell says that there is no number."""
+    """Return whether a cell says that there is no number."""
     return cell.lower() in GAPS or (cell.startswith("*") and not cell.strip("*"))
 
 
@@ -96,7 +96,7 @@ def decimal_signs(cell: str) -> str:
 
 
 def is_numeral(cell: str) -> bool:
-    """Whether a cell is a number, whatever its decimal sign is."""
+    """Return whether a cell is a number, whatever its decimal sign is."""
     return _PLAIN.fullmatch(cell) is not None or bool(decimal_signs(cell))
 
 

@@ -49,7 +49,7 @@ class Line(NamedTuple):
 
     @property
     def has_words(self) -> bool:
-        """Whether a cell is neither a number nor a gap."""
+        """Return whether a cell is neither a number nor a gap."""
         return True in self.are_words
 
     @property
@@ -64,7 +64,7 @@ class Line(NamedTuple):
 
     @property
     def is_text(self) -> bool:
-        """Whether it may be a head, units, as in `s;1;kN`, or a title: words without numbers."""
+        """Return whether it may be a head, units, as in `s;1;kN`, or a title: words without numbers."""
         if not self.has_words:
             return False
         pairs = list(zip(self.cells, self.are_numbers, strict=True))
@@ -121,7 +121,7 @@ class Block:
 
     @cached_property
     def is_known(self) -> bool:
-        """Whether a line above may be a head that names a quantity."""
+        """Return whether a line above may be a head that names a quantity."""
         near = self.above[-FARTHEST:]
         return any(len(line.cells) > 1 and _is_known(line.cells) for line in near)
 
@@ -185,7 +185,7 @@ def _separator_of(texts: Sequence[str]) -> str:
 
 
 def _has_two(line: Line) -> bool:
-    """Whether two cells of a line are numbers, or one and a gap that is written."""
+    """Return whether two cells of a line are numbers, or one and a gap that is written."""
     gaps = sum(bool(cell) and is_gap(cell) for cell in line.cells)
     return not line.is_comment and line.n_numbers > 0 and line.n_numbers + gaps > 1
 
@@ -206,7 +206,7 @@ def _line(number: int, text: str, separator: str) -> Line:
 
 
 def _is_comment(text: str, first: str, separator: str) -> bool:
-    """Whether a text begins with the mark of a comment; `#N/A` is a gap, and % alone a unit."""
+    """Return whether a text begins with the mark of a comment; `#N/A` is a gap, and % alone a unit."""
     mark = _MARK.match(text)
     if mark is None or mark[0] == separator or is_gap(first):
         return False
@@ -309,7 +309,7 @@ def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
 
 
 def _is_head_of(line: Line, row: Line, separator: str) -> bool:
-    """Whether a line of words may be the head of rows: a name for each column.
+    """Return whether a line of words may be the head of rows: a name for each column.
 
     Between blanks, and in comments, there is prose, too: there two names are known.
     """
@@ -323,12 +323,12 @@ def _is_head_of(line: Line, row: Line, separator: str) -> bool:
 
 
 def _is_known(words: Sequence[str]) -> bool:
-    """Whether a name of a line is that of a quantity, or has a unit."""
+    """Return whether a name of a line is that of a quantity, or has a unit."""
     return any(column_of(0, 0, word).is_known for word in words)
 
 
 def _is_first(line: Line, between: Sequence[Line]) -> bool:
-    """Whether a line may be the first row: `N1,0,7` below a head, but not `Range,0,100`."""
+    """Return whether a line may be the first row: `N1,0,7` below a head, but not `Range,0,100`."""
     if not line.has_words:
         return len(line.cells) > 1
     is_below_head = bool(between) and between[-1].is_text and len(between[-1].cells) > 1
@@ -336,7 +336,7 @@ def _is_first(line: Line, between: Sequence[Line]) -> bool:
 
 
 def _is_next(line: Line, block: Block | None, separator: str) -> bool:
-    """Whether a line may be a further row; one that begins with a word is often of the text."""
+    """Return whether a line may be a further row; one that begins with a word is often of the text."""
     if block is None or not line.n_numbers:
         return not line.has_words
     first = block.rows[0]
@@ -409,12 +409,12 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
 
 
 def _has_numbers(words: Sequence[str]) -> bool:
-    """Whether a line of words has numbers, other than the unit 1."""
+    """Return whether a line of words has numbers, other than the unit 1."""
     return any(is_numeral(word) and word != "1" for word in words)
 
 
 def _fits(named: Sequence[TableColumn], block: Block, separator: str) -> bool:
-    """Whether there is a column for each name; the last ones may be empty, or have words alone."""
+    """Return whether there is a column for each name; the last ones may be empty, or have words alone."""
     if len(named) <= block.width:
         return len(named) == block.width
     has_words = any(any(row.are_words[block.width :]) for row in block.rows)

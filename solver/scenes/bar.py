@@ -369,7 +369,7 @@ class BarSettings(Settings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Whether an end is pulled or moved."""
+        """Return whether an end is pulled or moved."""
         acting = {name for name in self.paths if self.acts(name)}
         driven = {path for paths in PATHS.values() for path in paths.values()}
         return bool(acting & driven)

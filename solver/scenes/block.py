@@ -345,37 +345,42 @@ class BlockSettings(SideSettings):
     )
 
     def drives(self) -> tuple[Drive, ...]:
-        """Loads and motions over time that are not zero, both components of the body force too."""
-        found = list(super().drives())
+        """Non-zero loads and motions over time, with the components of the body force."""
+        drives = list(super().drives())
         force = self._body_force()
         if force is None:
-            return tuple(found)
+            return tuple(drives)
         for name, values in zip(("body_force_x", "body_force_y"), force, strict=True):
             if np.any(values):
-                found.append(Drive(name, about(self.definitions()[name]).unit, values))
-        return tuple(found)
+                unit = about(self.definitions()[name]).unit
+                drives.append(Drive(name, unit, values))
+        return tuple(drives)
 
     def left_out(self) -> Iterator[str]:
-        """Yield what a run does not see of its tables, the gap among them."""
+        """Yield sentences on the parts of tables that a run leaves out, such as of the gap."""
         yield from super().left_out()
         if isinstance(self.gap, str):
             return
         off = off_nodes(self.gap, self.length, self.elements)
-        most = UNSEEN * float(np.ptp(np.array(self.gap)[:, 1]))
-        if off.max() <= most:
+        tolerance = UNSEEN * float(np.ptp(np.array(self.gap)[:, 1]))
+        if off.max() <= tolerance:
             return
-        largest = self.definitions()["elements"].bounds[1]
-        sees = (
-            str(n)
-            for n in range(self.elements + 1, largest + 1)
-            if off_nodes(self.gap, self.length, n).max() <= most
-        )
+        count = np.count_nonzero(off > tolerance)
+        farthest = plain(float(f"{off.max():.3g}"))
         yield (
-            f"gap: {np.count_nonzero(off > most)} of {len(self.gap)} points lie between nodes, up "
-            f"to {plain(float(f'{off.max():.3g}'))} m off the line through them; what is lower "
+            f"gap: {count} of {len(self.gap)} points lie between nodes, up "
+            f"to {farthest} m off the line through them; what is lower "
             "than both nodes counts at the nearer one, for all of its share; "
-            f"{next(sees, f'more than {largest}')} elements would see it"
+            f"{self._enough_elements(tolerance)} elements would see it"
         )
+
+    def _enough_elements(self, tolerance: float) -> str:
+        """Smallest number of elements whose nodes follow the table of the gap."""
+        largest: int = self.definitions()["elements"].bounds[1]
+        for count in range(self.elements + 1, largest + 1):
+            if off_nodes(self.gap, self.length, count).max() <= tolerance:
+                return str(count)
+        return f"more than {largest}"
 
     def check_together(self) -> None:
         """Refuse loads under which contact alone cannot hold the body."""
@@ -397,62 +402,60 @@ class BlockSettings(SideSettings):
 
     def structure(self) -> Stack:
         """Make the block; one metre thick."""
-        sides = {side: self.side(side) for side in ("left", "right", "top")}
-        is_preset = isinstance(self.gap, str)
-        if is_preset:
+        sides = {side: self.side(side) for side in LOADED_SIDES}
+        if isinstance(self.gap, str):
             gap = self.gap_at(self.places)
         else:
             gap = gap_at(self.gap, self.places)
+        spring = None
+        if self.has("spring"):
+            spring = Spring(0.0, self.spring)
         return replace(
             self.stack(),
             support=Support(gap, self.friction_at_nodes()),
             sides=sides,
             body_force=self._body_force(),
-            spring=Spring(0.0, self.spring) if self.has("spring") else None,
+            spring=spring,
         )
 
     def sentence(self) -> str:
-        """The block in a sentence."""
+        """Describe the block in a sentence."""
+        block = "A steel block" if shared.is_steel(self.young) else "An elastic block"
         support = {"flat": "flat", "parabola": "round"}.get(str(self.gap), "uneven")
         rough = "rough" if self.is_rough else "smooth"
-        acts: list[str] = []
+        clauses = [*self._side_clauses(), *self._other_clauses()]
+        done = shared.listed(clauses) if clauses else "left alone"
+        return f"{block} lies on a {support} {rough} support; it is {done}."
+
+    def _side_clauses(self) -> Iterator[str]:
+        """Yield clauses on the loads and motions of the sides."""
         for side in LOADED_SIDES:
             if getattr(self, side) in AT_REST:
                 continue
+            actions = []
             inward = -self.path(f"{side}_normal_load")
-            along = self.path(f"{side}_tangential_load")
             if inward.any():
-                own = [shared.acting(inward, "pressed", "pulled")]
-            else:
-                own = []
+                actions.append(shared.acting(inward, "pressed", "pulled"))
+            along = self.path(f"{side}_tangential_load")
             if along.any():
-                own += [shared.acting(along, "moved", "moved back")]
-            else:
-                own += []
-            if own:
-                acts += [f"{shared.listed(own)} at its {side}"]
-            else:
-                acts += []
+                actions.append(shared.acting(along, "moved", "moved back"))
+            if actions:
+                yield f"{shared.listed(actions)} at its {side}"
+
+    def _other_clauses(self) -> Iterator[str]:
+        """Yield clauses on the body force, the spring and clamped sides."""
         if self._body_force() is not None:
-            acts.append("loaded all through")
+            yield "loaded all through"
         if self.has("spring"):
-            acts.append("pulled back by a spring")
-        held = [side for side in LOADED_SIDES if getattr(self, side) == "clamped"]
-        acts += [f"held at its {side}" for side in held]
-        if acts:
-            does = shared.listed(acts)
-        else:
-            does = "left alone"
-        if shared.is_steel(self.young):
-            block = "A steel block"
-        else:
-            block = "An elastic block"
-        return f"{block} lies on a {support} {rough} support; it is {does}."
+            yield "pulled back by a spring"
+        for side in LOADED_SIDES:
+            if getattr(self, side) == "clamped":
+                yield f"held at its {side}"
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
-        """Tractions on a parabola, once there are forces for them, or the slide on a spring."""
+        """Tractions on a parabola, of the forces of a solution, or the slide on a spring."""
         body = self.structure()
         if self.gap != "parabola":
             return exact_on_spring(body)
@@ -461,12 +464,13 @@ class BlockSettings(SideSettings):
         return exact_parabola(body, self.radius, problem, solution)
 
     def gap_at(self, x: Array) -> Array:
-        """Gap of a preset at places along the lowest side, m."""
+        """Gap of a preset at positions x along the lowest side, (n_nodes,), both in m."""
         if self.gap == "flat":
             return np.zeros_like(x)
         return np.asarray((x - 0.5 * self.length) ** 2 / (2.0 * self.radius))
 
     def _body_force(self) -> Array | None:
+        """Body force over time, shape (2, n_instants), N/m^3; None without one."""
         sizes = np.array([self.body_force_x, self.body_force_y])
         if not sizes.any():
             return None

@@ -86,13 +86,13 @@ def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
 
 
 def _is_even(bar: Rods) -> bool:
-    """Whether nothing but a force at its end moves the bar, which is the same throughout."""
+    """Return whether nothing but a force at its end moves the bar, which is the same throughout."""
     is_uniform = bar.section is None and bar.bound.ndim == 1 and not np.ptp(bar.bound)
     return bar.is_only_pulled and is_uniform
 
 
 def _is_coulombs(body: Stack) -> bool:
-    """Whether friction on the support is mu N and no more, with one mu."""
+    """Return whether friction on the support is mu N and no more, with one mu."""
     assert body.support is not None
     return body.friction_law == FrictionLaw() and not np.ptp(body.support.friction)
 

@@ -179,7 +179,7 @@ class LayersSettings(PlaneSettings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Whether it is not that of a moment, over a rotation."""
+        """Return whether it is not that of a moment, over a rotation."""
         return bool(self.bending != "moment")
 
     def check_together(self) -> None:

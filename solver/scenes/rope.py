@@ -173,7 +173,7 @@ class RopeSettings(Settings):
 
     @property
     def is_clamped(self) -> bool:
-        """Whether the curvature falls away from a clamp."""
+        """Return whether the curvature falls away from a clamp."""
         return bool(self.bending == "clamp")
 
     @property

@@ -300,5 +300,5 @@ def listed(parts: Sequence[str]) -> str:
 
 
 def is_steel(young: float) -> bool:
-    """Whether something is about as stiff as steel."""
+    """Return whether something is about as stiff as steel."""
     return 190e9 <= young <= 220e9

@@ -131,7 +131,7 @@ class CurveParameter(Parameter):
 
     @property
     def is_path(self) -> bool:
-        """Whether it has an abscissa, which increases, and one value."""
+        """Return whether it has an abscissa, which increases, and one value."""
         return len(self.columns) == 2
 
 
@@ -153,7 +153,7 @@ def title_of(definition: Parameter) -> str:
 
 
 def is_logarithmic(definition: Any) -> bool:
-    """Whether a slider over a number is logarithmic: where it goes over far more than a decade."""
+    """Return whether a slider over a number is logarithmic: where it goes over far more than a decade."""
     low, high = definition.softbounds
     return bool(
         low > 0.0

@@ -118,7 +118,7 @@ class LoadSettings(FrictionSettings):
         return float(getattr(self, name))
 
     def acts(self, path: str) -> bool:
-        """Whether a path over time has any size, of its preset or of its own."""
+        """Return whether a path over time has any size, of its preset or of its own."""
         return not isinstance(getattr(self, path), str) or self.size_of(path) != 0.0
 
     def size_or_table(self, path: str) -> str:
@@ -145,7 +145,7 @@ class LoadSettings(FrictionSettings):
 
     @property
     def is_repeatable(self) -> bool:
-        """Whether any load path is a preset that comes back to where it began."""
+        """Return whether any load path is a preset that comes back to where it began."""
         presets = map(self.preset, self.paths)
         return any(
             preset is not None and preset.repeats is not None for preset in presets

@@ -312,7 +312,7 @@ class MethodSettings(param.Parameterized):
         return SettingError(name, getattr(self, name), allowed, remedy)
 
     def applies(self, name: str) -> bool:
-        """Whether a setting does anything under the present values."""
+        """Return whether a setting does anything under the present values."""
         record = about(self.definitions()[name])
         if record.path and not isinstance(getattr(self, record.path), str):
             return False

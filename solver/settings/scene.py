@@ -63,10 +63,9 @@ class Settings(LoadSettings):
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
     opens: ClassVar[bool] = False
-    """Whether contact may open, so that what presses is an unknown."""
+    """Contact may open, so that the contact pressure is an unknown."""
     has_joints: ClassVar[bool] = False
-    """Whether bodies touch each other at joints, and do not lie on the next all
-    along."""
+    """Bodies touch each other at joints, and not along the whole of the next one."""
 
     def structure(self) -> Structure:
         """Bodies, with all that acts on them."""
@@ -110,7 +109,7 @@ class Settings(LoadSettings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Whether the force of its loop stands over a displacement, m."""
+        """Return whether the force of its loop stands over a displacement, m."""
         return True
 
     @property
@@ -119,7 +118,7 @@ class Settings(LoadSettings):
         return self.n_bodies - 1
 
     def has(self, name: str) -> bool:
-        """Whether there is such a setting, which does something and is not 0."""
+        """Return whether there is such a setting, which does something and is not 0."""
         return bool(self.values().get(name)) and self.applies(name)
 
     def changed_meanings(self) -> Mapping[str, str]:
