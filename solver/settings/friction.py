@@ -10,12 +10,12 @@ from solver.settings.definitions import ANY, CONTACT, Rows, TablePreset, about
 from solver.settings.method import MethodSettings
 
 SHORTEST_SLIP = 1e-12
-"""Between points of a strength, m."""
+"""Smallest slip between two points of a strength, m."""
 LARGEST_FACTOR = 1e3
-"""Of a strength."""
+"""Largest factor of a strength."""
 STIFFNESSES = 1e-9, 1e9
-"""Of contacts and springs, over that of bodies: softer or stiffer, no digits are
-left."""
+"""Smallest and largest stiffness of contacts and springs, over the stiffness of bodies.
+Beyond, no digits are left."""
 
 
 STRENGTHS = {
@@ -124,16 +124,14 @@ class FrictionSettings(MethodSettings):
 
     @property
     def law(self) -> FrictionLaw:
-        """Law of friction, beside mu."""
+        """Law of friction, without mu."""
         if self.friction_law == "compliant":
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
-        changes = self.is_linear_in_slip or (
-            self.is_general and self.strength != "constant"
-        )
-        if changes:
-            strength = Strength(*zip(*self.strength_points(), strict=True))
-        else:
-            strength = None
+        is_given = self.is_general and self.strength != "constant"
+        strength = None
+        if self.is_linear_in_slip or is_given:
+            slips, factors = zip(*self.strength_points(), strict=True)
+            strength = Strength(slips, factors)
         if not self.is_general:
             return FrictionLaw(strength=strength)
         return FrictionLaw(
@@ -144,43 +142,51 @@ class FrictionSettings(MethodSettings):
         )
 
     def strength_points(self) -> Rows:
-        """Points of the strength over the slip, or those that stand for its preset."""
+        """Points (slip, factor) of the strength: of its table, or of its preset."""
         table: str | Rows = self.strength
-        if not (self.is_linear_in_slip or isinstance(table, str)):
-            return table
         if self.is_linear_in_slip:
-            last = self.friction_ratio
-        else:
-            last = 1.0
-        return (0.0, 1.0), (self.slip_length, last)
+            return (0.0, 1.0), (self.slip_length, self.friction_ratio)
+        if isinstance(table, str):
+            return (0.0, 1.0), (self.slip_length, 1.0)
+        return table
 
     def check_together(self) -> None:
-        """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
+        """Refuse a strength that does not begin at 1, and too soft or stiff contact."""
         super().check_together()
-        table = self.strength
-        if self.is_general and not isinstance(table, str):
-            begins = len(table) > 1 and table[0] == (0.0, 1.0)
-            if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
-                raise self.refusal(
-                    "strength",
-                    "at least two points (slip, factor), the first (0, 1), and slips that grow by "
-                    f"{plain(SHORTEST_SLIP)} m",
-                    "the factor at slip 0 is 1, as the rest of the law says what friction is there",
-                )
-        if self.is_general:
-            for name in self.definitions().keys() & {
-                "tangential_stiffness",
-                "normal_stiffness",
-            }:
-                remedy = "write 0 where nothing gives way, or take away friction where nothing holds"
-                self.check_digits(name, self.contact_unit, remedy)
+        if not self.is_general:
+            return
+        self._check_strength()
+        stiffnesses = {"tangential_stiffness", "normal_stiffness"}
+        for name in self.definitions().keys() & stiffnesses:
+            self.check_digits(
+                name,
+                self.contact_unit,
+                "write 0 where nothing gives way, or take away friction where nothing "
+                "holds",
+            )
 
-    def check_digits(self, name: str, size: float, remedy: str) -> None:
-        """Refuse a stiffness that leaves no digits beside that of bodies, or of theirs."""
+    def _check_strength(self) -> None:
+        """Refuse a table that does not begin at (0, 1), or whose slips are too close."""
+        table = self.strength
+        if isinstance(table, str):
+            return
+        begins = len(table) > 1 and table[0] == (0.0, 1.0)
+        if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
+            raise self.refusal(
+                "strength",
+                "at least two points (slip, factor), the first (0, 1), and slips that "
+                f"grow by {plain(SHORTEST_SLIP)} m",
+                "the factor at slip 0 is 1, as the rest of the law says what friction is "
+                "there",
+            )
+
+    def check_digits(self, name: str, stiffness: float, remedy: str) -> None:
+        """Refuse a stiffness of which, beside that of the bodies, no digits are left."""
         value = getattr(self, name)
-        unit = about(self.definitions()[name]).unit
-        low, high = (share * size for share in STIFFNESSES)
+        definition = self.definitions()[name]
+        unit = about(definition).unit
+        low, high = (share * stiffness for share in STIFFNESSES)
         if self.applies(name) and value and not low <= value <= high:
-            none = "0, or " if self.definitions()[name].bounds[0] == 0.0 else ""
-            allowed = f"{none}from {plain(low)} {unit} to {plain(high)} {unit} with such bodies"
-            raise self.refusal(name, allowed, remedy)
+            none = "0, or " if definition.bounds[0] == 0.0 else ""
+            ends = f"from {plain(low)} {unit} to {plain(high)} {unit}"
+            raise self.refusal(name, f"{none}{ends} with such bodies", remedy)
