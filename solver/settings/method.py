@@ -22,14 +22,15 @@ STOP = SettingGroup("Stop")
 
 
 def _on_modes(settings: MethodSettings) -> bool:
+    """Return whether the linear stage finds a sum of modes (PGD)."""
     return bool(settings.linear_stage == "pgd")
 
 
 class MethodSettings(param.Parameterized):
-    """Settings of the method, which hold alone and together; a scene adds its own.
+    """Settings of the method; load, friction and scenes add theirs in derived classes.
 
-    `checked` is the one edge at which values are verified; `replace` gives new
-    settings.
+    `checked` is the one place at which values are verified, each alone and all
+    together. Settings never change; `replace` makes new ones.
     """
 
     scene: str = ""
@@ -52,8 +53,8 @@ class MethodSettings(param.Parameterized):
             "tolerance": 1e-10,
         },
     }
-    """What `method` sets at once; a scene that lacks an option keeps its own
-    default."""
+    """Values of the settings that `method` sets at once. A scene without one of these
+    options keeps its own default."""
 
     substructures = DECOMPOSITION.count(
         10,
@@ -201,7 +202,7 @@ class MethodSettings(param.Parameterized):
 
     @property
     def n_bodies(self) -> int:
-        """Number of bodies, each of which is cut."""
+        """Number of bodies, each of which is cut into substructures."""
         return 1
 
     @property
@@ -215,15 +216,20 @@ class MethodSettings(param.Parameterized):
         """Definition of every setting, by name, in the order of their groups."""
         parameters = {name: cls.param[name] for name in cls.param}
         return {
-            n: one for n, one in parameters.items() if "about" in (one.metadata or {})
+            name: parameter
+            for name, parameter in parameters.items()
+            if "about" in (parameter.metadata or {})
         }
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
-        """Settings of plain values by name; what is left out is as by default, or by the method.
+        """Settings of plain values by name; others are set by the method, or by default.
 
-        Refuses an unknown name, a wrong type, a value out of range, and values that do
-        not fit together with a `SettingError`.
+        Raises
+        ------
+        SettingError
+            If a name is unknown, a value has a wrong type or is out of range, or values
+            do not fit together.
         """
         definitions = cls.definitions()
         clean = {}
@@ -231,17 +237,15 @@ class MethodSettings(param.Parameterized):
             if name not in definitions:
                 raise unknown(name, value, cls.scene, definitions)
             clean[name] = checked_value(definitions[name], name, value)
-        values = {
-            **cls.of_method(clean.get("method", definitions["method"].default)),
-            **clean,
+        method = clean.get("method", definitions["method"].default)
+        complete = cls.of_method(method) | clean
+        # To set a value takes param some time, even where it is the default.
+        changed = {
+            name: value
+            for name, value in complete.items()
+            if value is not definitions[name].default
         }
-        # A default that is given takes param as long as anything else.
-        others = {
-            n: value
-            for n, value in values.items()
-            if value is not definitions[n].default
-        }
-        settings = cls(**others)
+        settings = cls(**changed)
         settings.check_together()
         return settings
 
@@ -251,10 +255,8 @@ class MethodSettings(param.Parameterized):
         values = dict(cls.METHODS[method])
         for name, value in values.items():
             definition = cls.definitions()[name]
-            if (
-                isinstance(definition, param.Selector)
-                and value not in definition.objects
-            ):
+            is_choice = isinstance(definition, param.Selector)
+            if is_choice and value not in definition.objects:
                 values[name] = definition.default
         return values
 
@@ -267,7 +269,7 @@ class MethodSettings(param.Parameterized):
         return {**values, **cls.of_method(method)}
 
     def check_together(self) -> None:
-        """Check what no setting can check alone; a scene extends this."""
+        """Refuse values that do not fit together; derived classes extend this."""
 
     def values(self) -> dict[str, Any]:
         """Plain value of every setting, by name."""
@@ -275,14 +277,14 @@ class MethodSettings(param.Parameterized):
 
     @cached_property
     def _values(self) -> Mapping[str, Any]:
-        # To ask param for all of them takes longer than an iteration, and they never
-        # change.
+        # Values never change, and param takes longer for all of them than an iteration.
         return {name: getattr(self, name) for name in self.definitions()}
 
     def changed(self, base: Self | None = None) -> dict[str, Any]:
-        """Settings that differ from others, or from their defaults.
+        """Values that differ from those of other settings, or from the defaults.
 
-        Where the method differs too, those that it sets are compared with what it says.
+        Where the method differs, too, the settings that it sets are compared with the
+        values that it sets.
         """
         if base:
             defaults = base.values()
@@ -297,22 +299,22 @@ class MethodSettings(param.Parameterized):
         }
 
     def replace(self, /, **changes: object) -> Self:
-        """New settings with some values changed, checked as a whole.
+        """Make settings with some values changed, checked as a whole.
 
-        Another method brings its own values of all that it sets.
+        Another method brings its own values of all settings that a method sets.
         """
         values = self.values()
         if changes.get("method", self.method) != self.method:
-            own = self.METHODS[self.method]
-            values = {name: value for name, value in values.items() if name not in own}
+            for name in self.METHODS[self.method]:
+                del values[name]
         return self.checked({**values, **changes})
 
     def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
-        """Refusal of the present value of a setting: what is allowed beside others, what to do."""
+        """Refusal of the present value of a setting, with what is allowed and a remedy."""
         return SettingError(name, getattr(self, name), allowed, remedy)
 
     def applies(self, name: str) -> bool:
-        """Return whether a setting does anything under the present values."""
+        """Return whether a setting changes anything under the present values."""
         record = about(self.definitions()[name])
         if record.path and not isinstance(getattr(self, record.path), str):
             return False
