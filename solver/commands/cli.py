@@ -128,13 +128,15 @@ def _parser() -> argparse.ArgumentParser:
         "--limit",
         type=float,
         metavar="SECONDS",
-        help="end after so long with what there is by then; the reference is given up likewise",
+        help="end after so long with what there is by then; the reference is given up "
+        "likewise",
     )
     run.add_argument(
         "--slab",
         type=int,
         metavar="INSTANTS",
-        help="solve slab after slab of so many instants: those of a cycle, where a load has many",
+        help="solve slab after slab of so many instants: those of a cycle, where a "
+        "load has many",
     )
     run.add_argument(
         "--of", default="", metavar="NAME,...", help="print quantities of the run, too"
@@ -195,8 +197,8 @@ def _run(chosen: argparse.Namespace) -> int:
         loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
     if loose:
         warn(
-            f"at {loose} of {problem.n_instants} instants nothing says where a body lies: its "
-            "displacement is one of many there, and counts in no error"
+            f"at {loose} of {problem.n_instants} instants nothing says where a body "
+            "lies: its displacement is one of many there, and counts in no error"
         )
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
         run = FinishedRun(settings, solution, known_loss=known.lost_from)

@@ -23,8 +23,8 @@ WORDS = {
     "position": "position x pos ort stelle",
     "force": "force load f fx fy fz p kraft last tension zugkraft loadcell",
     "displacement": (
-        "displacement disp displ u ux uy uz weg verschiebung deflection durchbiegung stroke hub "
-        "travel extension ext elongation crosshead traverse"
+        "displacement disp displ u ux uy uz weg verschiebung deflection durchbiegung "
+        "stroke hub travel extension ext elongation crosshead traverse"
     ),
     "pressure": "pressure load p druck last traction stress spannung",
     "friction force": "friction reibung reibkraft reibungskraft",

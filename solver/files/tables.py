@@ -362,8 +362,9 @@ def _notation(
             line, cell = unsure[","][0]
             decimals = cell.replace(",", ".")
             raise refuse(
-                f"line {line} has {cell!r}, which may be {decimals} or {cell.replace(',', '')}: "
-                "write decimals with a point, and thousands without a sign"
+                f"line {line} has {cell!r}, which may be {decimals} or "
+                f"{cell.replace(',', '')}: write decimals with a point, and thousands "
+                "without a sign"
             )
         return ",", []
     decimal = "," if sure[","] else "."

@@ -69,8 +69,9 @@ def _end(side: str, default: str) -> param.Selector[str]:
     return ENDS.choice(
         default,
         KINDS,
-        f"What is at the {side} end. held: it stands still, or is moved. spring: a spring holds it "
-        "to what stands still, or is moved. pulled: by a force. free: nothing.",
+        f"What is at the {side} end. held: it stands still, or is moved. spring: a "
+        "spring holds it to what stands still, or is moved. pulled: by a force. free: "
+        "nothing.",
     )
 
 
@@ -175,7 +176,8 @@ class BarSettings(Settings):
         900.0,
         (-1e15, 1e15),
         (0.0, 2400.0),
-        "Largest force that the preset reaches; 1500 N is where the whole bar of Table 1 slides.",
+        "Largest force that the preset reaches; 1500 N is where the whole bar of Table "
+        "1 slides.",
         "sine",
         applies=_is_end("right", "pulled"),
         title="Peak load",
@@ -244,8 +246,8 @@ class BarSettings(Settings):
         0.0,
         (-1e12, 1e12),
         (0.0, 1e-3),
-        "Largest displacement of the support along the bar, as of soil that settles or a slab that "
-        "shrinks; 0 leaves it where it is. The ends are not on it.",
+        "Largest displacement of the support along the bar, as of soil that settles or "
+        "a slab that shrinks; 0 leaves it where it is. The ends are not on it.",
         "ramp",
         places=("bottom x",),
     )
@@ -274,8 +276,8 @@ class BarSettings(Settings):
         "S",
         "the bar",
         SECTIONS,
-        "a preset, taken at the middle of every element; or points (m, factor), where an element "
-        "is as stiff as all that lies in it.",
+        "a preset, taken at the middle of every element; or points (m, factor), where "
+        "an element is as stiff as all that lies in it.",
         bounds=(ANY, (1.0 / LARGEST_CONTRAST, LARGEST_CONTRAST)),
         group=BAR,
     )
@@ -296,7 +298,8 @@ class BarSettings(Settings):
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise self.refusal(
                 "section_profile",
-                f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the smallest",
+                f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the "
+                "smallest",
                 "bring the factors nearer to each other",
             )
         super().check_together()
@@ -390,8 +393,8 @@ class BarSettings(Settings):
         if total[worst] >= (1.0 - SLACK) * most[worst]:
             raise self.refusal(
                 "left_end",
-                f"held, or spring, where forces reach {plain(float(total[worst]))} N and friction "
-                f"carries less than {plain(float(most[worst]))} N",
+                f"held, or spring, where forces reach {plain(float(total[worst]))} N "
+                f"and friction carries less than {plain(float(most[worst]))} N",
                 "hold an end, lower the forces, or raise friction or pressure",
             )
 

@@ -69,9 +69,10 @@ def _kind_of(side: str) -> param.Selector[str]:
     return group.choice(
         "free",
         PRESCRIBED,
-        "What is given. free: nothing. roller: no normal displacement. clamped: no displacement. "
-        "displacement: both displacements. traction: both tractions. pushed: normal displacement, "
-        "tangential traction. dragged: tangential displacement, normal traction.",
+        "What is given. free: nothing. roller: no normal displacement. clamped: no "
+        "displacement. displacement: both displacements. traction: both tractions. "
+        "pushed: normal displacement, tangential traction. dragged: tangential "
+        "displacement, normal traction.",
         title=f"{side.capitalize()} side",
     )
 
@@ -117,8 +118,9 @@ class SideLoad:
             0.0,
             (-1e6, 1e6),
             (-1.0, 1.0),
-            "How unevenly the value is spread along the side: from the mean times 1 - slope at "
-            "its lower or left end to the mean times 1 + slope at the other, and linear between.",
+            "How unevenly the value is spread along the side: from the mean times 1 - "
+            "slope at its lower or left end to the mean times 1 + slope at the other, "
+            "and linear between.",
             applies=self._is_given,
         )
 
@@ -128,8 +130,8 @@ class SideLoad:
             "hold" if self.component == "normal" else "delayed",
             PRESETS,
             {"time": "s", "value": "Pa or m"},
-            f"{self._title} value over time: a preset that reaches the mean, or points (s, Pa or "
-            "m).",
+            f"{self._title} value over time: a preset that reaches the mean, or points "
+            "(s, Pa or m).",
             title=f"{self._title} path",
             applies=self._is_given,
         )
@@ -150,7 +152,8 @@ class SideLoad:
             0.0,
             bounds,
             slider,
-            f"Mean {self.component} {quantity} of the {self.side} side, positive {towards}.",
+            f"Mean {self.component} {quantity} of the {self.side} side, positive "
+            f"{towards}.",
             unit=unit,
             applies=applies,
             path=f"{self.side}_{self.component}_load",
@@ -272,7 +275,8 @@ class BlockSettings(SideSettings):
             ),
         },
         {"position": "m", "gap": "m"},
-        "Opening between the undeformed body and its support: a preset, or points (m, m).",
+        "Opening between the undeformed body and its support: a preset, or points (m, "
+        "m).",
     )
     radius = CONTACT.quantity(
         5.0,
@@ -287,8 +291,8 @@ class BlockSettings(SideSettings):
         0.0,
         (0.0, 1e18),
         (0.0, 1e8),
-        "Stiffness of a spring that pulls the foot of the right side back as it moves to the left, "
-        "for a metre of thickness. 0: none.",
+        "Stiffness of a spring that pulls the foot of the right side back as it moves "
+        "to the left, for a metre of thickness. 0: none.",
         title="Spring stiffness",
         unit="N/m",
         applies=lambda settings: not any(PRESCRIBED[settings.right]),
@@ -305,8 +309,8 @@ class BlockSettings(SideSettings):
         0.05,
         (0.01, 1.0),
         "Height",
-        "Height of the body. Shear bends one as high as long: its foot tilts, and a contact on a "
-        "parabola rolls.",
+        "Height of the body. Shear bends one as high as long: its foot tilts, and a "
+        "contact on a parabola rolls.",
         BODY,
     )
     body_force_x = BODY_FORCE.quantity(
@@ -395,9 +399,9 @@ class BlockSettings(SideSettings):
             raise self.refusal(
                 "top",
                 "sides and loads that leave the body in equilibrium",
-                f"nothing but contact holds it, and {when} {reason}: "
-                "lower that load, press more, raise friction where it slides, take a longer or "
-                "lower body where it tips, or hold a side",
+                f"nothing but contact holds it, and {when} {reason}: lower that load, "
+                "press more, raise friction where it slides, take a longer or lower "
+                "body where it tips, or hold a side",
             )
 
     def structure(self) -> Stack:

@@ -163,14 +163,15 @@ class FaultSettings(PlaneSettings):
         PlaneSettings.param["duration"],
         86400.0,
         (3600.0, 2.6e6),
-        doc="Length of the time interval. Friction does not feel the rate, but a fluid needs time: "
-        "it spreads over sqrt(4 α t).",
+        doc="Length of the time interval. Friction does not feel the rate, but a fluid "
+        "needs time: it spreads over sqrt(4 α t).",
     )
     normal_stress = CONTACT.quantity(
         1e7,
         (0.0, 1e15),
         (1e6, 1e8),
-        "Pressure σ between both sides of the fault, less that of the fluid there before.",
+        "Pressure σ between both sides of the fault, less that of the fluid there "
+        "before.",
         title="Normal stress σ",
         unit="Pa",
     )
@@ -188,26 +189,27 @@ class FaultSettings(PlaneSettings):
     tangential_stiffness = redefined(
         PlaneSettings.param["tangential_stiffness"],
         0.0,
-        doc="Stiffness of the fault as a joint, in series with friction: shear stress over the "
-        "slip between both of its sides. 0: rigid.",
+        doc="Stiffness of the fault as a joint, in series with friction: shear stress "
+        "over the slip between both of its sides. 0: rigid.",
     )
     contact_stiffness = redefined(
         PlaneSettings.param["contact_stiffness"],
         100.0,
-        doc="Stiffness of that spring, shear stress over the slip between both sides of the fault, "
-        "as a multiple of E / L.",
+        doc="Stiffness of that spring, shear stress over the slip between both sides "
+        "of the fault, as a multiple of E / L.",
     )
     strength = redefined(
         PlaneSettings.param["strength"],
         "constant",
-        doc="Factor on the largest friction force over the accumulated slip between both sides of "
-        "the fault: a preset, or points (m, factor), the first (0, 1), such as a peak, softening "
-        "and a residual; the last one stays.",
+        doc="Factor on the largest friction force over the accumulated slip between "
+        "both sides of the fault: a preset, or points (m, factor), the first (0, 1), "
+        "such as a peak, softening and a residual; the last one stays.",
     )
     slip_length = redefined(
         PlaneSettings.param["slip_length"],
         1e-4,
-        doc="Accumulated slip between both sides of the fault at which its friction is the last.",
+        doc="Accumulated slip between both sides of the fault at which its friction is "
+        "the last.",
     )
     length = shared.size(
         600.0,
@@ -234,8 +236,9 @@ class FaultSettings(PlaneSettings):
             if isinstance(value, float):
                 remedy = f"give {plain(factor * value)} {unit}".rstrip()
             found[name] = (
-                "the file is of a version whose slip was that of one side of the fault; it is that "
-                f"between both sides now, for the run of then {remedy}"
+                "the file is of a version whose slip was that of one side of the "
+                "fault; it is that between both sides now, for the run of then "
+                f"{remedy}"
             )
         return found
 
@@ -283,7 +286,8 @@ class FaultSettings(PlaneSettings):
             raise self.refusal(
                 self.size_or_table("injection_load"),
                 f"at most the normal stress, {plain(float(pressing[worst]))} Pa",
-                "it would open the fault: lower the pressure of the fluid, or press more",
+                "it would open the fault: lower the pressure of the fluid, or press "
+                "more",
             )
 
     def structure(self) -> Fault:

@@ -47,8 +47,8 @@ class InclineSettings(PlaneSettings):
         40.0,
         (0.0, 89.0),
         (0.0, 60.0),
-        "Largest angle of the slope. Up to tan θ = μ the block sticks; unless tan(θ/2) > μ, "
-        "the spring cannot pull it back.",
+        "Largest angle of the slope. Up to tan θ = μ the block sticks; unless tan(θ/2) "
+        "> μ, the spring cannot pull it back.",
         "triangle",
         PULLS,
         title="Slope θ",

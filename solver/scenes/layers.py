@@ -69,9 +69,9 @@ class LayersSettings(PlaneSettings):
     bending = LOAD.choice(
         "deflection",
         ["deflection", "moment", "force"],
-        "What bends the stack at its right end. deflection: a given transverse displacement. "
-        "moment: a given moment, force: a transverse force, which all layers that reach there "
-        "share.",
+        "What bends the stack at its right end. deflection: a given transverse "
+        "displacement. moment: a given moment, force: a transverse force, which all "
+        "layers that reach there share.",
     )
     deflection = LOAD.quantity(
         2e-3,
@@ -108,8 +108,8 @@ class LayersSettings(PlaneSettings):
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or N·m/m or N/m"},
-        "Deflection, moment or force over time: a preset of the largest value, or points (s, m or "
-        "N·m/m or N/m).",
+        "Deflection, moment or force over time: a preset of the largest value, or "
+        "points (s, m or N·m/m or N/m).",
         title="Path of the bending",
     )
     friction_factors = shared.friction_factors("between two layers, from the lowest on")
@@ -128,21 +128,24 @@ class LayersSettings(PlaneSettings):
         {
             "equal": TablePreset("1 of each", lambda own: shared.same_for(own.layers)),
             "graduated": TablePreset(
-                "each is shorter than the one below it by the same step, as in a leaf spring",
+                "each is shorter than the one below it by the same step, as in a leaf "
+                "spring",
                 _graduated,
             ),
         },
         {"layer": "", "share": ""},
-        "Length of each layer, from the lowest on, as a share of the length, to the nearest "
-        "element: a preset, or points (layer, share), one for each. What is given at the right end "
-        "holds for the longest; pressure acts on all that lies open.",
+        "Length of each layer, from the lowest on, as a share of the length, to the "
+        "nearest element: a preset, or points (layer, share), one for each. What is "
+        "given at the right end holds for the longest; pressure acts on all that lies "
+        "open.",
         title="Length of each layer",
     )
     contrast = BODY.quantity(
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
-        "Young's modulus of every second layer over that of the others, the lowest among them.",
+        "Young's modulus of every second layer over that of the others, the lowest "
+        "among them.",
         title="Stiffness contrast",
     )
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
@@ -200,8 +203,8 @@ class LayersSettings(PlaneSettings):
         off = float(np.abs(np.array(self.spans) / self.elements - self._shares).max())
         if off > UNSEEN:
             yield (
-                f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} % of the "
-                "length from where they should; more elements come nearer"
+                f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} "
+                "% of the length from where they should; more elements come nearer"
             )
 
     def structure(self) -> Stack:

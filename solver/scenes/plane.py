@@ -50,16 +50,16 @@ class PlaneSettings(Settings):
         Settings.param["tangential_stiffness"],
         0.0,
         (1e8, 1e14),
-        doc="Stiffness of a spring along the interface, in series with friction, per area: a "
-        "joint, a soft layer. 0: rigid.",
+        doc="Stiffness of a spring along the interface, in series with friction, per "
+        "area: a joint, a soft layer. 0: rigid.",
         unit="N/m^3",
     )
     normal_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e8, 1e14),
-        "Stiffness of a spring across the interface, in series with contact that may open, per "
-        "area. 0: rigid.",
+        "Stiffness of a spring across the interface, in series with contact that may "
+        "open, per area. 0: rigid.",
         unit="N/m^3",
         applies=lambda settings: settings.is_general and settings.opens,
     )
@@ -67,15 +67,16 @@ class PlaneSettings(Settings):
         Settings.param["cohesion"],
         0.0,
         (0.0, 1e7),
-        doc="Friction per area without any pressure, beside μ times that. It is gone for good "
-        "where contact opens, and was never there where a gap was.",
+        doc="Friction per area without any pressure, beside μ times that. It is gone "
+        "for good where contact opens, and was never there where a gap was.",
         unit="Pa",
     )
     friction_cap = redefined(
         Settings.param["friction_cap"],
         0.0,
         (0.0, 1e8),
-        doc="Largest friction per area that pressure and cohesion make, before slip. 0: none.",
+        doc="Largest friction per area that pressure and cohesion make, before slip. "
+        "0: none.",
         unit="Pa",
     )
     plane = BODY.choice(
@@ -119,9 +120,9 @@ class PlaneSettings(Settings):
         1,
         (0, 10),
         (0, 4),
-        "What the coarse problem balances on each side of a substructure. 0: resultants; 1: also "
-        "moments and linear extension. Sides more than three times as long as the substructure is "
-        "deep get more by themselves.",
+        "What the coarse problem balances on each side of a substructure. 0: "
+        "resultants; 1: also moments and linear extension. Sides more than three times "
+        "as long as the substructure is deep get more by themselves.",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
     )
     start = METHOD.choice(
@@ -205,8 +206,10 @@ class PlaneSettings(Settings):
         if not 1.0 / FLATTEST <= ratio <= FLATTEST:
             raise self.refusal(
                 self.across,
-                f"elements of which no side is more than {plain(FLATTEST)} times the other",
-                f"they are {ratio:.3g} times as long as high: change sizes or numbers of elements",
+                f"elements of which no side is more than {plain(FLATTEST)} times the "
+                "other",
+                f"they are {ratio:.3g} times as long as high: change sizes or numbers "
+                "of elements",
             )
 
         super().check_together()

@@ -80,15 +80,15 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
         else:
             when = f"{time} on"
         remarks.append(
-            f"From {when} the body tips: it stands on one end of its base. Take a longer "
-            "or lower body, less friction, or a side that keeps it from turning."
+            f"From {when} the body tips: it stands on one end of its base. Take a "
+            "longer or lower body, less friction, or a side that keeps it from turning."
         )
     growth = contact_growth(iterate)
     if growth > MOST_GROWTH:
         remarks.append(
-            f"The contact grows by up to {growth} points from an instant to the next, so that "
-            "friction jumps from point to point: raise instants until it grows by "
-            f"{MOST_GROWTH} at most."
+            f"The contact grows by up to {growth} points from an instant to the next, "
+            "so that friction jumps from point to point: raise instants until it grows "
+            f"by {MOST_GROWTH} at most."
         )
     return remarks
 
@@ -144,8 +144,8 @@ def beyond_small_strain(
     if strain <= SMALL:
         return None
     return (
-        f"this model does not hold: strains or slopes reach {strain:.3g}, and it is for small "
-        f"ones, up to {SMALL}; lower the loads, or take a stiffer body"
+        f"this model does not hold: strains or slopes reach {strain:.3g}, and it is "
+        f"for small ones, up to {SMALL}; lower the loads, or take a stiffer body"
     )
 
 

@@ -51,8 +51,8 @@ class RopeSettings(Settings):
     source = "closed form: slip spreads from the neutral axis (Papailiou 1997)"
     icon = Icon(
         ground="M5 3V29",
-        body="M5 8C18 8 28 9 42 14L40 24C28 19 18 18 5 18ZM11 8L15 18M18 8L22 19M25 9L29 20"
-        "M32 11L35 22",
+        body="M5 8C18 8 28 9 42 14L40 24C28 19 18 18 5 18ZM11 8L15 18M18 8L22 19M25 "
+        "9L29 20M32 11L35 22",
         load="M44 28C46 24 46 20 45 16M41 19L45 15L48 19",
     )
     kind = "helices"
@@ -66,9 +66,9 @@ class RopeSettings(Settings):
         "mooring",
         {name: TablePreset(line, _rows) for name, line in STRANDS.items()},
         {"wires": "", "diameter": "m", "lay angle": "°", "modulus": "Pa"},
-        "Wires of the strand: a preset, or rows, inside out: wires, their diameter (m), lay angle "
-        "(°, negative the other way round) and Young's modulus (Pa); the first row is the core, 1 "
-        "wire of 0°.",
+        "Wires of the strand: a preset, or rows, inside out: wires, their diameter "
+        "(m), lay angle (°, negative the other way round) and Young's modulus (Pa); "
+        "the first row is the core, 1 wire of 0°.",
         bounds=((1, 500), (1e-6, 1.0), (-75.0, 75.0), (1.0, 1e18)),
     )
     layers = shared.STRAND.count(
@@ -85,9 +85,9 @@ class RopeSettings(Settings):
         0.1,
         (-1e3, 1e3),
         (0.0, 0.5),
-        "Largest curvature that the preset reaches, uniform or at the clamp: 1 over the radius to "
-        "which the strand is bent. Sections stay plane, so each wire is stretched and pressed as "
-        "it goes round.",
+        "Largest curvature that the preset reaches, uniform or at the clamp: 1 over "
+        "the radius to which the strand is bent. Sections stay plane, so each wire is "
+        "stretched and pressed as it goes round.",
         "cycle",
         title="Peak curvature",
         places=("right y",),
@@ -99,9 +99,10 @@ class RopeSettings(Settings):
         250e3,
         (0.0, 1e12),
         (0.0, 1e6),
-        "Tension of the strand, by which wires press on what is below them. About a quarter of "
-        "what they break at: 250 kN of 37 mooring wires, 70 kN seven-wire, 30 kN conductor. It is "
-        "bent without untwisting, and what friction adds to a wire's tension presses no harder.",
+        "Tension of the strand, by which wires press on what is below them. About a "
+        "quarter of what they break at: 250 kN of 37 mooring wires, 70 kN seven-wire, "
+        "30 kN conductor. It is bent without untwisting, and what friction adds to a "
+        "wire's tension presses no harder.",
         "steady",
         PRESSURES,
         bounds=POSITIVE,
@@ -111,16 +112,18 @@ class RopeSettings(Settings):
     bending = shared.STRAND.choice(
         "clamp",
         ["uniform", "clamp"],
-        "uniform: the same curvature all along; wires of a layer are then alike, and one of each "
-        "stands for all. clamp: the curvature falls away from a clamp, and every wire is there.",
+        "uniform: the same curvature all along; wires of a layer are then alike, and "
+        "one of each stands for all. clamp: the curvature falls away from a clamp, and "
+        "every wire is there.",
         title="Where it is bent",
     )
     fall_off = shared.STRAND.quantity(
         0.0,
         (0.0, 1e4),
         (0.0, 1.0),
-        "Distance λ from the clamp at which the curvature is exp(-1) of that at the clamp. 0: "
-        "sqrt(E I / T), of the bending stiffness while nothing slips and the largest tension.",
+        "Distance λ from the clamp at which the curvature is exp(-1) of that at the "
+        "clamp. 0: sqrt(E I / T), of the bending stiffness while nothing slips and the "
+        "largest tension.",
         title="Fall-off λ",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
@@ -129,7 +132,8 @@ class RopeSettings(Settings):
         0.6,
         (1e-3, 1e3),
         (0.1, 5.0),
-        "Length of strand from the clamp on; beyond it nothing slips. Some three times λ.",
+        "Length of strand from the clamp on; beyond it nothing slips. Some three times "
+        "λ.",
         title="Length L",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
@@ -144,8 +148,8 @@ class RopeSettings(Settings):
         60,
         (2, 20_000),
         (10, 400),
-        "Number of linear elements of a wire: of its length, or of half a turn where it is bent "
-        "alike all along.",
+        "Number of linear elements of a wire: of its length, or of half a turn where "
+        "it is bent alike all along.",
         title="Elements per wire",
     )
     substructures = redefined(

@@ -124,8 +124,8 @@ def friction_factors(which: str) -> CurveParameter:
             )
         },
         {"interface": "", "factor": ""},
-        f"Factor on mu of each interface {which}: a preset, or points (interface, factor), one for "
-        "each, numbered from 1 on.",
+        f"Factor on mu of each interface {which}: a preset, or points (interface, "
+        "factor), one for each, numbered from 1 on.",
         bounds=POSITIVE,
         title="μ of each interface",
     )
@@ -164,8 +164,8 @@ def sized_path(
         preset,
         presets,
         {"time": "s", next(named, BY_UNIT.get(unit, "force")): unit},
-        f"{what[:1].upper()}{what[1:]} over time: a preset, whose value is {record['title']}, or "
-        f"points (s, {unit}).",
+        f"{what[:1].upper()}{what[1:]} over time: a preset, whose value is "
+        f"{record['title']}, or points (s, {unit}).",
         bounds=bounds,
         title=f"Path of the {what}",
         applies=lambda settings: (

@@ -56,8 +56,9 @@ class StrandSettings(Settings):
     grip = LOAD.choice(
         "force",
         ["force", "displacement"],
-        "What is given at the right end. force: the same force for every wire. displacement: the "
-        "same displacement for all, that which an unbroken wire needs for this force.",
+        "What is given at the right end. force: the same force for every wire. "
+        "displacement: the same displacement for all, that which an unbroken wire "
+        "needs for this force.",
     )
     friction = shared.friction("mu between neighbouring wires")
     friction_factors = shared.friction_factors("between two wires, from the first on")
@@ -68,7 +69,8 @@ class StrandSettings(Settings):
         3,
         (2, 200),
         (2, 20),
-        "Number of wires side by side; each rubs on the one before it and the one after it.",
+        "Number of wires side by side; each rubs on the one before it and the one "
+        "after it.",
     )
     broken = shared.STRAND.count(
         2,
@@ -81,7 +83,8 @@ class StrandSettings(Settings):
         0.5,
         (0.0, 1.0),
         (0.0, 1.0),
-        "Where the wire is broken, as a share of the length; at the nearest node between the ends.",
+        "Where the wire is broken, as a share of the length; at the nearest node "
+        "between the ends.",
         title="Position of the break",
         applies=lambda settings: settings.broken > 0,
     )
@@ -95,8 +98,8 @@ class StrandSettings(Settings):
     substructures = redefined(
         Settings.param["substructures"],
         6,
-        doc="Number of pieces (substructures) that a wire is cut into, at least two where one is "
-        "broken: all wires are cut at the break, and alike.",
+        doc="Number of pieces (substructures) that a wire is cut into, at least two "
+        "where one is broken: all wires are cut at the break, and alike.",
         title="Substructures per wire",
     )
     length = shared.size(
@@ -203,8 +206,8 @@ class StrandSettings(Settings):
         if largest > capacity or largest == capacity > 0.0:
             raise self.refusal(
                 self.size_or_table("load"),
-                f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
-                "wire beyond its break",
-                "pull less, raise friction or pressure, move the break to the left, or take the "
-                "grip of given displacement",
+                f"tensions below {plain(capacity)} N, all that friction can hold of "
+                "the broken wire beyond its break",
+                "pull less, raise friction or pressure, move the break to the left, or "
+                "take the grip of given displacement",
             )

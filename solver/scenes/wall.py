@@ -31,8 +31,8 @@ class WallSettings(PlaneSettings):
     )
     icon = Icon(
         ground="M3 29H45",
-        body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 17H41V22H34Z"
-        "M7 11H23V16H7ZM25 11H41V16H25Z",
+        body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 "
+        "17H41V22H34ZM7 11H23V16H7ZM25 11H41V16H25Z",
         load="M14 6H34M30 3L34 6L30 9",
     )
     CHIEF = ("top_load", "displacement", "traction", "pressure")
@@ -48,14 +48,15 @@ class WallSettings(PlaneSettings):
     bond = BODY.choice(
         "running",
         ["running", "stack"],
-        "running: bricks lie over the joints of the course below, and every second course begins "
-        "and ends with a half. stack: joints lie one above the other.",
+        "running: bricks lie over the joints of the course below, and every second "
+        "course begins and ends with a half. stack: joints lie one above the other.",
     )
     opening = BODY.count(
         0,
         (0, 198),
         (0, 6),
-        "Width of an opening in the middle, in bricks, under a lintel; 0 leaves it out.",
+        "Width of an opening in the middle, in bricks, under a lintel; 0 leaves it "
+        "out.",
     )
     opening_height = BODY.count(
         3,
@@ -85,8 +86,8 @@ class WallSettings(PlaneSettings):
     top = LOAD.choice(
         "moved",
         ["moved", "pulled"],
-        "What drives the top of the wall. moved: a displacement along it, with which all of it "
-        "goes. pulled: a traction along it.",
+        "What drives the top of the wall. moved: a displacement along it, with which "
+        "all of it goes. pulled: a traction along it.",
     )
     displacement = LOAD.quantity(
         1e-4,
@@ -112,8 +113,8 @@ class WallSettings(PlaneSettings):
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or Pa"},
-        "Displacement or traction of the top over time: a preset of the largest value, or points "
-        "(s, m or Pa).",
+        "Displacement or traction of the top over time: a preset of the largest value, "
+        "or points (s, m or Pa).",
         title="Path of the top",
     )
     slope, slope_load = shared.sized_path(
@@ -156,8 +157,9 @@ class WallSettings(PlaneSettings):
         MOST_BRICKS,
         (1, MOST_BRICKS),
         (1, 80),
-        "Groups of bricks between which macro forces are in balance; within a group none are. With "
-        "as many as there are bricks the coarse problem is whole, with one there is none.",
+        "Groups of bricks between which macro forces are in balance; within a group "
+        "none are. With as many as there are bricks the coarse problem is whole, with "
+        "one there is none.",
         title="Groups of bricks",
         applies=lambda settings: settings.multiscale,
     )
@@ -238,7 +240,8 @@ class WallSettings(PlaneSettings):
             raise self.refusal(
                 "courses",
                 f"a wall of at most {MOST_BRICKS} bricks, of 2 GB",
-                f"these are {self.n_substructures}: take fewer courses, or bricks of a course",
+                f"these are {self.n_substructures}: take fewer courses, or bricks of a "
+                "course",
             )
 
     def structure(self) -> Stack:

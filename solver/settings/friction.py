@@ -35,27 +35,28 @@ class FrictionSettings(MethodSettings):
     friction_law = CONTACT.choice(
         "coulomb",
         ["coulomb", "compliant", "slip-dependent", "general"],
-        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
-        "way like a spring before it slips (Jenkins' element), as in joints and fretting. "
-        "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
-        "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
-        "and a cap.",
+        "coulomb: a point sticks until the friction force reaches its bound. "
+        "compliant: it gives way like a spring before it slips (Jenkins' element), as "
+        "in joints and fretting. slip-dependent: its bound grows or falls with the "
+        "slip that has gone by, as when surfaces run in. general: all of that "
+        "together, with its stiffness in absolute units, and cohesion and a cap.",
     )
     contact_stiffness = CONTACT.quantity(
         100.0,
         (1e-3, 1e9),
         (1.0, 1e4),
-        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
-        "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
-        "multiple of the stiffest E S over the square of the longest L.",
+        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the "
+        "harmonic mean S of its elements, or of E / L in the plane; of all wires of a "
+        "rope alike, as a multiple of the stiffest E S over the square of the longest "
+        "L.",
         applies=lambda settings: settings.friction_law == "compliant",
     )
     tangential_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e4, 1e9),
-        "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
-        "bond, a soft layer. 0: rigid.",
+        "Stiffness of a spring along the interface, in series with friction, per "
+        "length of rod: a bond, a soft layer. 0: rigid.",
         unit="N/m^2",
         applies=lambda settings: settings.is_general,
     )
@@ -72,8 +73,8 @@ class FrictionSettings(MethodSettings):
         0.0,
         (0.0, 1e15),
         (0.0, 5000.0),
-        "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
-        "none.",
+        "Largest friction force per length of rod that pressure and cohesion make, "
+        "before slip. 0: none.",
         unit="N/m",
         applies=lambda settings: settings.is_general,
     )
@@ -81,9 +82,9 @@ class FrictionSettings(MethodSettings):
         "constant",
         STRENGTHS,
         {"slip": "m", "factor": ""},
-        "Factor on the largest friction force over the accumulated slip of a point: a preset, or "
-        "points (m, factor), the first (0, 1), such as a peak, softening and a residual; the last "
-        "one stays.",
+        "Factor on the largest friction force over the accumulated slip of a point: a "
+        "preset, or points (m, factor), the first (0, 1), such as a peak, softening "
+        "and a residual; the last one stays.",
         bounds=(ANY, (0.0, LARGEST_FACTOR)),
         title="Strength over slip",
         applies=lambda settings: settings.is_general,
@@ -176,8 +177,8 @@ class FrictionSettings(MethodSettings):
                 "strength",
                 "at least two points (slip, factor), the first (0, 1), and slips that "
                 f"grow by {plain(SHORTEST_SLIP)} m",
-                "the factor at slip 0 is 1, as the rest of the law says what friction is "
-                "there",
+                "the factor at slip 0 is 1, as the rest of the law says what friction "
+                "is there",
             )
 
     def check_digits(self, name: str, stiffness: float, remedy: str) -> None:

@@ -43,15 +43,17 @@ class LoadSettings(FrictionSettings):
         1,
         (1, 5000),
         (1, 20),
-        "How often what the presets of load paths do, after their beginning, is done in the "
-        "interval; a preset that does not come back (ramp, hold, random) stays as it is.",
+        "How often what the presets of load paths do, after their beginning, is done "
+        "in the interval; a preset that does not come back (ramp, hold, random) stays "
+        "as it is.",
         applies=lambda settings: settings.is_repeatable,
     )
     duration = LOAD.quantity(
         1.0,
         (1e-9, 1e9),
         (0.1, 10.0),
-        "Length of the time interval. Friction does not feel the rate: only the time axis changes.",
+        "Length of the time interval. Friction does not feel the rate: only the time "
+        "axis changes.",
         title="Duration T",
         unit="s",
     )
@@ -59,8 +61,8 @@ class LoadSettings(FrictionSettings):
         101,
         (1, 20_001),
         (11, 401),
-        "Number of instants at which the problem is solved, at least: points at which a path turns "
-        "or bends are instants too, and the load is linear between them.",
+        "Number of instants at which the problem is solved, at least: points at which "
+        "a path turns or bends are instants too, and the load is linear between them.",
     )
     seed = LOAD.count(
         1,
@@ -234,8 +236,9 @@ class LoadSettings(FrictionSettings):
             if self.instants > 1 and count and difference > STRAIGHT * span:
                 share = f"{100.0 * difference / span:.2g} %"
                 yield (
-                    f"{name}: {count} of {len(values)} points are left out; they differ "
-                    f"from the path that is solved by at most {share} of their range"
+                    f"{name}: {count} of {len(values)} points are left out; they "
+                    f"differ from the path that is solved by at most {share} of their "
+                    "range"
                 )
 
     def path(self, name: str) -> Array:

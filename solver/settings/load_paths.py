@@ -156,29 +156,32 @@ PRESETS: dict[str, Preset] = {
         wave=_sine,
     ),
     "decaying": _lines(
-        "goes to and fro, to 1, -0.85, 0.7, -0.55, 0.4, -0.25 and 0.1 times the value, and to 0",
+        "goes to and fro, to 1, -0.85, 0.7, -0.55, 0.4, -0.25 and 0.1 times the value, "
+        "and to 0",
         *(0.0, *DECAY, 0.0),
         repeats=0.0,
     ),
     "random": Preset(
-        "a random walk of 12 straight lines, as the seed has it, whose largest size is the value",
+        "a random walk of 12 straight lines, as the seed has it, whose largest size is "
+        "the value",
         _walk,
     ),
     "hold": Preset(
-        "rises evenly to the value in the first quarter of the interval, and stays there",
+        "rises evenly to the value in the first quarter of the interval, and stays "
+        "there",
         lambda seed: (np.array([0.0, HELD, 1.0]), np.array([0.0, 1.0, 1.0])),
     ),
     "delayed": _lines(
-        "0 for the first quarter of the interval, then a wave of a sine: to the value, to its "
-        "opposite, and back to 0",
+        "0 for the first quarter of the interval, then a wave of a sine: to the value, "
+        "to its opposite, and back to 0",
         *QUARTERS,
         begins=HELD,
         repeats=HELD,
         wave=_sine,
     ),
     "cycles": _lines(
-        "0 for the first quarter of the interval, then six times to the value, to its opposite "
-        "and back to 0, in straight lines",
+        "0 for the first quarter of the interval, then six times to the value, to its "
+        "opposite and back to 0, in straight lines",
         *(0.0, *QUARTERS[1:] * CYCLES),
         begins=HELD,
         repeats=HELD,
@@ -188,7 +191,8 @@ PRESETS: dict[str, Preset] = {
 PULLS: dict[str, Preset] = {
     **PRESETS,
     "cycle": _lines(
-        "goes to the value, to 0, to the value, to 0 and to the value again, in straight lines",
+        "goes to the value, to 0, to the value, to 0 and to the value again, in "
+        "straight lines",
         *(0.0, 1.0, 0.0, 1.0, 0.0, 1.0),
         repeats=0.2,
     ),
@@ -199,25 +203,27 @@ PULLS: dict[str, Preset] = {
         wave=lambda phase: _sine(phase) ** 2,
     ),
     "decaying": _lines(
-        "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the value, and to 0",
+        "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the "
+        "value, and to 0",
         *(0.0, *(0.5 + 0.5 * DECAY), 0.0),
         repeats=0.0,
     ),
     "random": Preset(
-        "the size of a random walk of 12 straight lines, as the seed has it, at most the value",
+        "the size of a random walk of 12 straight lines, as the seed has it, at most "
+        "the value",
         _size_of_walk,
     ),
     "delayed": _lines(
-        "0 for the first quarter of the interval, then two waves of a sine squared, from 0 to the "
-        "value and back",
+        "0 for the first quarter of the interval, then two waves of a sine squared, "
+        "from 0 to the value and back",
         *QUARTERS,
         begins=HELD,
         repeats=HELD,
         wave=lambda phase: _sine(phase) ** 2,
     ),
     "cycles": _lines(
-        "0 for the first quarter of the interval, then six times to the value and back to 0, in "
-        "straight lines",
+        "0 for the first quarter of the interval, then six times to the value and back "
+        "to 0, in straight lines",
         *(0.0, *[1.0, 0.0] * CYCLES),
         begins=HELD,
         repeats=HELD,
@@ -228,20 +234,20 @@ PULLS: dict[str, Preset] = {
 PRESSURES: dict[str, Preset] = {
     "steady": _lines("the value from the beginning to the end", 1.0, 1.0),
     "loosening": _lines(
-        "the value for the first quarter of the interval, then falls evenly to a fifth of it, as "
-        "of a bolt",
+        "the value for the first quarter of the interval, then falls evenly to a fifth "
+        "of it, as of a bolt",
         *(1.0, LOOSE),
         begins=HELD,
     ),
     "tightening": _lines(
-        "a fifth of the value for the first quarter of the interval, then rises evenly to the "
-        "value",
+        "a fifth of the value for the first quarter of the interval, then rises evenly "
+        "to the value",
         *(LOOSE, 1.0),
         begins=HELD,
     ),
     "shaken": _lines(
-        "the value for the first quarter of the interval, then six times down to a fifth of it and "
-        "back, in straight lines",
+        "the value for the first quarter of the interval, then six times down to a "
+        "fifth of it and back, in straight lines",
         *(1.0, *[LOOSE, 1.0] * CYCLES),
         begins=HELD,
         repeats=HELD,
