@@ -280,11 +280,15 @@ def instants_of(
 ) -> Array:
     """Instants of a time interval, (n_instants,), s, with the knots of paths among them.
 
-    Between knots instants are evenly spaced. No step is longer than one of `number`
-    equidistant instants from 0 to the end; a number of 1 is the end alone.
+    Between knots instants are evenly spaced.
 
     Parameters
     ----------
+    duration
+        Length of the interval, s.
+    number
+        Number of equidistant instants from 0 to the end, whose step no step of the
+        result exceeds; 1 is the end alone.
     knots
         Points of tables, (n_knots,), s; knots outside the interval do not count.
     corners

@@ -30,10 +30,7 @@ middle."""
 def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indices]:
     """Divide shares into pieces on which all tables are linear.
 
-    Parameters
-    ----------
-    edges
-        Ends of the shares, (n_shares + 1,), m.
+    `edges` are the ends of the shares, (n_shares + 1,), m.
 
     Returns
     -------
