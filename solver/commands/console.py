@@ -114,14 +114,8 @@ def announce(
 ) -> None:
     """Print the expected time and memory of a long or large run, before it begins.
 
-    Parameters
-    ----------
-    run
-        Name of the run in the message.
-    reference
-        Whether a reference is computed, too.
-    limit
-        Time limit of the run, s.
+    `run` is its name in the message, `limit` its time limit, s; a `reference` may be
+    computed, too.
     """
     cost = run_cost(
         problem, method_of(settings), settings.max_iterations, with_reference=reference

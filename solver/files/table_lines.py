@@ -463,13 +463,16 @@ def _check_nearest(
     refuse: Refuse,
 ) -> None:
     """Refuse a head right above the rows that has too few names, or too many."""
-    for line, words in texts[-1:]:
-        known = [column_of(0, 0, text).is_known for text in words]
-        # A comment, or words between blanks, may be prose that names a quantity.
-        may_be_prose = line.is_comment or _is_blank(separator)
-        if sum(known) > may_be_prose:
-            count = f"{len(words)} names for {block.width} columns"
-            raise refuse(f"line {line.number} has {count}: give one for each")
+    if not texts:
+        return
+    line, words = texts[-1]
+    known = [word for word in words if _is_known([word])]
+    # A comment, or words between blanks, may be prose that names a quantity.
+    may_be_prose = line.is_comment or _is_blank(separator)
+    needed = 2 if may_be_prose else 1
+    if len(known) >= needed:
+        count = f"{len(words)} names for {block.width} columns"
+        raise refuse(f"line {line.number} has {count}: give one for each")
 
 
 def _names_in(line: Line, width: int, separator: str) -> list[str]:
