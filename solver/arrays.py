@@ -17,8 +17,8 @@ Flags = NDArray[np.bool_]
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 """Error by rounding of the sum of some dozens of numbers, over the largest of them."""
 RESIDUE = 1e-12
-"""Size of a sum, over that of its terms, up to which the sum is shown as zero: a solution
-has no more digits."""
+"""Size of a sum, over that of its terms, up to which the sum is shown as zero: a
+solution has no more digits."""
 
 
 def space_time(n_rows: int, n_instants: int) -> Array:
@@ -51,7 +51,7 @@ def read_only(field: Array) -> Array:
 
 
 def as_slice(rows: Indices) -> slice | Indices:
-    """Rows, (n_rows,), as a slice if they are consecutive, so that reading copies nothing."""
+    """Rows, (n_rows,), as a slice if they are consecutive: reading copies nothing."""
     if not np.all(np.diff(rows) == 1):
         return rows
     first = int(rows[0]) if len(rows) else 0
@@ -59,7 +59,7 @@ def as_slice(rows: Indices) -> slice | Indices:
 
 
 def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """Fields one below the other: all (n_rows,), or (n_rows, n_instants) and (n_rows, 1).
+    """Fields one below the other: (n_rows,), or (n_rows, n_instants) and (n_rows, 1).
 
     Fields that do not change with time have a single column; so has the result if none
     of them changes.

@@ -17,7 +17,7 @@ import numpy as np
 from solver.refusal import RefusedError, Words, is_number, plain
 
 ALIKE = 1e-9
-"""Largest difference of two equal numbers by rounding, over the largest of some numbers."""
+"""Largest difference of two equal numbers by rounding, over the largest number."""
 
 
 class Flaw(NamedTuple):
@@ -40,7 +40,7 @@ class Kind(Protocol):
 
 
 def check(part: object, **kinds: Kind) -> None:
-    """Refuse attributes of a part that are not of their kind; a default of None is fine.
+    """Refuse attributes of a part that are not of their kind; a default None is fine.
 
     Raises
     ------
@@ -341,7 +341,7 @@ class Each:
 
 @dataclass(frozen=True)
 class Named:
-    """Mappings from names to values of one kind; without `names` any names are allowed."""
+    """Mappings from names to values of one kind; without `names` all are allowed."""
 
     kind: Kind
     names: tuple[str, ...] = ()

@@ -15,7 +15,7 @@ class Words(str):
 
 
 class RefusedError(ValueError):
-    """Refused value: the message has its name, the value, what is allowed and a remedy."""
+    """Refused value: a message of its name, the value, what is allowed and a remedy."""
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
         shown = _shown(value)

@@ -236,7 +236,7 @@ def _solved(
 def _warn_of_loose_bodies(solution: Solution) -> None:
     """Warn of instants at which the position of a body is not determined."""
     iterate = solution.iterate
-    # Matrices are small: threads that wait for each other would take longer than the run.
+    # Matrices are small: threads that wait for each other take longer than the run.
     with one_blas_thread:
         held = held_instants(iterate.problem, iterate.contact_force)
     count = int((~held).sum())
@@ -317,7 +317,7 @@ def _in_words(run: FinishedRun, figure: KeyFigure) -> str:
 
 
 def _key_figure_entry(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
-    """Entry of a key figure in JSON: its largest value with its time, s, and its last."""
+    """Entry of a key figure in JSON: largest value, its time, s, and last value."""
     return {
         "title": figure.title,
         "unit": figure.unit,
@@ -335,7 +335,7 @@ def _number(value: float, unit: str) -> str:
 
 
 def _known(problem: Problem, limit: float) -> Known:
-    """Reference within a time limit, s, with warnings of its doubts, or that it lacks."""
+    """Reference within a time limit, s; warn of its doubts, or that it is missing."""
     end = time.perf_counter() + limit
     known = known_reference(problem, lambda: time.perf_counter() > end)
     if known.reference is None:

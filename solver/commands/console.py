@@ -94,7 +94,7 @@ def print_json(values: Mapping[str, Any]) -> None:
 
 
 def _finite(value: Any) -> Any:
-    """Value with None in place of infinite numbers and NaN, in dictionaries and lists."""
+    """Value with None in place of infinite numbers and NaN, at any depth."""
     if isinstance(value, dict):
         return {name: _finite(entry) for name, entry in value.items()}
     if isinstance(value, list):
@@ -125,7 +125,8 @@ def announce(
     line = f"{run} will take about {cost}"
     if cost.reference > 0.2 * cost.seconds:
         share = round(100.0 * cost.reference / cost.seconds)
-        line += f", {share} % of the time for the reference, which --no-reference leaves out"
+        line += f", {share} % of the time for the reference, "
+        line += "which --no-reference leaves out"
     if limit < cost.seconds:
         line += f"; --limit ends it after {limit:g} s"
     warn(line)
@@ -144,7 +145,7 @@ def refusing(out: Path, allowed: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def writing(folder: Path, *files: str) -> Iterator[None]:
-    """Make a folder for files; refuse at once a folder that cannot be made or written to.
+    """Make a folder for files; refuse at once one that cannot be made or written to.
 
     A new folder that is empty at the end is removed.
     """

@@ -129,7 +129,7 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 
 def _study(chosen: argparse.Namespace) -> int:
-    """Measure the error over the run time of all methods, and the time over the size."""
+    """Measure error over run time of all methods, and run time over size."""
     if chosen.repeats < 1:
         raise SettingError(
             "--repeats", chosen.repeats, "a whole number from 1", "give 1 or more"
@@ -263,7 +263,7 @@ class _Progress:
         self._printed = self._began
 
     def show(self, done: int) -> None:
-        """Print the number of runs that are done, and the time left, unless just printed."""
+        """Print the number of runs done, and the time left, unless just printed."""
         now = time.monotonic()
         if now - self._printed <= OFTEN:
             return

@@ -87,7 +87,7 @@ def add_checks(commands: Any) -> None:
 
 
 def _mesh(chosen: argparse.Namespace) -> int:
-    """Print a quantity on three meshes and three numbers of instants, and the errors."""
+    """Print a quantity on three meshes and three numbers of instants, and errors."""
     settings, _ = given(chosen)
     asked = reading(chosen.of)
     if not decides(settings, asked):
@@ -153,7 +153,7 @@ def _compare(chosen: argparse.Namespace) -> int:
 def _comparison(
     chosen: argparse.Namespace, results: OtherResults, problem: Problem
 ) -> Comparison:
-    """Comparison with another program along an interface; refuse one without its points."""
+    """Compare with another program along an interface; refuse too few common points."""
     interface = chosen.interface
     if interface and interface not in problem.rubbing:
         can = ", ".join(problem.rubbing)

@@ -86,8 +86,8 @@ Dimensions = tuple[int, ...]
 INCH = Fraction("0.0254")
 KILOPOND = Fraction("9.80665")
 POUND = Fraction("0.45359237") * KILOPOND
-"""Sizes of an inch, m, of a kilopond and of a pound of force, N, by definition. A pound of
-mass is not known, as no table that is read here has masses."""
+"""Sizes of an inch, m, of a kilopond and of a pound of force, N, by definition. A pound
+of mass is not known, as no table that is read here has masses."""
 _POWERS = {
     "n": -9,
     "µ": -6,
@@ -262,7 +262,7 @@ _NOT_TAKEN = {
     "volts",
     "mv",
 }
-"""Units that are recognised, so that they are refused, but measure nothing read here."""
+"""Units that are recognised, and refused, as no quantity that is read has them."""
 _SPELT = {
     *(symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")),
     *SPELLINGS,
@@ -297,7 +297,7 @@ _EXAMPLES = {
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column of a table: its number from 0, its name and unit, and the line of these."""
+    """A column of a table: its number from 0, its name, unit, and the line of these."""
 
     place: int
     line: int = 0
@@ -316,7 +316,7 @@ class TableColumn:
 
     @cached_property
     def quantities(self) -> tuple[frozenset[str], bool]:
-        """Quantities that the name may mean, and whether the whole name is a word for them."""
+        """Quantities that the name may mean, and whether all of it means them."""
         name = self.key.replace("_", " ").rstrip(" .:")
         joined = name.replace(" ", "")
         last = name.rstrip("0123456789 ").rpartition(" ")[2]
@@ -451,14 +451,14 @@ def _factors(text: str) -> Iterable[tuple[int, str, str]]:
 
 
 def is_spelt_as_unit(text: str) -> bool:
-    """Return whether a word is a unit in any spelling (KN, inches), even as kg not taken."""
+    """Return whether a word is a unit in any spelling (KN, inches), or kg."""
     symbols = [symbol for _, symbol, _ in _factors(text)]
     letters = [symbol for symbol in symbols if symbol not in "1-"]
     return bool(letters) and all(symbol.lower() in _SPELT for symbol in letters)
 
 
 def size_in(text: str, units: str) -> float | None:
-    """Size of a unit in one of some others, as `Pa or m`; None if of no such dimension."""
+    """Size of a unit in one of others, as `Pa or m`; None if of other dimension."""
     given = parse_unit(text)
     for unit in units.split(" or "):
         wanted = parse_unit(unit)

@@ -28,13 +28,13 @@ def _names_of_curves() -> set[str]:
 
 
 _SETTINGS = _names_of_curves()
-"""Names of curves that are no common words: a curve never takes the column of another."""
+"""Names of curves that are no common words: no other curve takes such a column."""
 
 
 def curve_of(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> tuple[list[list[float]], str]:
-    """Points of a curve in a table, in units as of `Settings.curve_units`, and a message.
+    """Points of a curve in a table, in units of `Settings.curve_units`, and a message.
 
     Columns that cannot be chosen, units of another dimension, cells without a number,
     and an abscissa that does not increase are refused.
@@ -56,7 +56,7 @@ def curve_of(
 def columns_for(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> Sequence[TableColumn]:
-    """Columns of a curve in a table: by its head, or in order if the head names none."""
+    """Columns of a curve in a table: by the head, or in order if that names none."""
     columns = table.columns
     names_quantities = any(column.is_known for column in columns)
     names_settings = any(column.key in _SETTINGS for column in columns)
@@ -74,7 +74,7 @@ def columns_for(
 def path_doubts(
     table: Table, settings: Settings, name: str, points: Sequence[Sequence[float]]
 ) -> list[str]:
-    """Words on columns without a unit whose numbers are some thousand times off the scene.
+    """Words on columns without a unit, some thousand times off the scene.
 
     Positions are compared with the length of the scene, values with the path by
     default, where it is of the same quantity. Times are not doubted, as runs last as
@@ -135,7 +135,7 @@ def _chosen(
 def read_tables(
     kind: type[Settings], values: dict[str, object], folder: Path
 ) -> dict[str, Table]:
-    """Read the CSV files that curves name; their points replace the names in the values.
+    """Read the CSV files that curves name; points replace the names in the values.
 
     Only fronts whose user owns the machine call this: elsewhere no file may be read.
     """

@@ -16,8 +16,8 @@ from solver.settings.definitions import SettingError
 Refuse = Callable[[str], SettingError]
 """Function from a remedy to a refusal."""
 LARGEST = 4_000_000
-"""Largest size of a file of settings, a table or a lesson, in bytes: some 200 000 points
-of a load path."""
+"""Largest size of a file of settings, a table or a lesson, in bytes: some 200 000
+points of a load path."""
 TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
@@ -96,7 +96,7 @@ def check_place(path: Path) -> None:
 
 
 def _target_and_part(path: Path) -> tuple[Path, Path]:
-    """Path of a file, with links followed, and the path that it has until it is complete."""
+    """Path of a file, with links followed, and its path until it is complete."""
     target = Path(os.path.realpath(path))
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))

@@ -86,7 +86,7 @@ def is_gap(cell: str) -> bool:
 
 
 def decimal_signs(cell: str) -> str:
-    """Decimal signs under which a cell is a number: both (`1,234`, `12`), one, or none."""
+    """Decimal signs under which a cell is a number: both (`1,234`), one, or none."""
     if _PLAIN.fullmatch(cell):
         if not ("." in cell or "," in cell) or _GROUP.fullmatch(cell):
             return SIGNS

@@ -74,7 +74,7 @@ def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:
 
 
 def format_in(values: dict[str, Any]) -> int:
-    """Take the number of the format out of a settings file's values; 1 without a number."""
+    """Take the number of the format out of a settings file's values; 1 if missing."""
     number = values.pop("format", 1)
     require(
         isinstance(number, int) and 1 <= number <= FORMAT,
@@ -89,7 +89,7 @@ def format_in(values: dict[str, Any]) -> int:
 def meant_before(
     settings: Settings, given: Collection[str], number: int
 ) -> Mapping[str, str]:
-    """Messages on given settings that meant something else in a format, by their names."""
+    """Messages on given settings of another meaning in a format, by their names."""
     if number >= FORMAT:
         return {}
     changed = settings.changed_meanings()
@@ -108,7 +108,7 @@ def dump(settings: Settings) -> str:
 def settings_from_command(
     scene: str, assignments: Sequence[str]
 ) -> tuple[Settings, Mapping[str, str]]:
-    """Settings of a scene or a saved file with `NAME=VALUE` changes, and messages on them.
+    """Settings of a scene or a saved file with `NAME=VALUE` changes, and messages.
 
     CSV files that a saved file names are sought beside that file, and those that an
     assignment names in the working folder. Messages stand under the names of settings:
@@ -139,7 +139,7 @@ def settings_from_command(
 
 
 def _changes_in(assignments: Sequence[str], kind: type[Settings]) -> dict[str, object]:
-    """Values of `NAME=VALUE` texts by name; the value of an unknown name stays a text."""
+    """Values of `NAME=VALUE` texts by name; that of an unknown name is a text."""
     changes: dict[str, object] = {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
@@ -217,7 +217,7 @@ def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, 
 
 
 def _texts_in(values: Sequence[object], name: str) -> tuple[str, ...]:
-    """Texts of a list under a key; refuse an empty list, and anything but filled texts."""
+    """Texts of a list under a key; refuse an empty list, and other values."""
     texts = [value for value in values if isinstance(value, str) and value]
     require(
         len(values) > 0 and len(texts) == len(values),
@@ -236,7 +236,7 @@ def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -
 
 
 def check_controls(names: Sequence[str], settings: Settings) -> None:
-    """Refuse controls that are no settings, or do nothing with the others as they are."""
+    """Refuse controls that are no settings, or do not apply."""
     applying = [name for name in settings.definitions() if settings.applies(name)]
     for name in names:
         remedy = "name a setting that does something here"
@@ -308,7 +308,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
 
 
 def _body_arrays(iterate: Iterate) -> dict[str, Any]:
-    """Arrays of the bodies: of nodes along rods, or of nodes and elements in the plane."""
+    """Arrays of bodies: of nodes along rods, or of nodes and elements in the plane."""
     problem = iterate.problem
     inside = problem.inside
     if inside is None:

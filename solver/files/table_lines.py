@@ -36,7 +36,7 @@ _RULE = re.compile(r"[\s;,|+]*([-=_*~.])\1{2,}[-=_*~.\s;,|+]*")
 
 
 class Line(NamedTuple):
-    """A line of a file: its number, from 1, its text, and its cells up to the last filled one.
+    """A line of a file: its number, from 1, its text, and its cells.
 
     A cell is a number, a gap, or else a word.
     """
@@ -188,7 +188,7 @@ def _separator_of(texts: Sequence[str]) -> str:
 
 
 def _has_two(line: Line) -> bool:
-    """Return whether a line has two numbers, or a number and a gap that is no empty cell."""
+    """Return whether a line has two numbers, or a number and a gap that is written."""
     gaps = [cell for cell in line.cells if cell and is_gap(cell)]
     has_number = line.n_numbers > 0
     return not line.is_comment and has_number and line.n_numbers + len(gaps) > 1
@@ -223,7 +223,7 @@ def _is_comment(text: str, first: str, separator: str) -> bool:
 
 
 def _without_comment(text: str, separator: str) -> list[str]:
-    """Cells before a comment behind two numbers or more; empty without such a comment."""
+    """Cells before a comment behind two numbers or more; empty without one."""
     for mark in _MARK.finditer(text):
         before = text[mark.start() - 1 : mark.start()]
         stands_apart = before.isspace() or before == separator
@@ -378,7 +378,7 @@ def _broken_rows(between: Sequence[Line], row: Line) -> list[Line]:
 
 
 def _leave_summary(block: Block) -> None:
-    """Pass over first rows of another width than most rows, where no head is above them."""
+    """Pass over first rows of another width than most rows, if no head is above."""
     if block.above and block.above[-1].is_text:
         return
     first = 0
@@ -394,7 +394,7 @@ def _is_blank(separator: str) -> bool:
 
 
 def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
-    """Columns of a table, by the lowest head that fits, and the line of units beside it."""
+    """Columns of a table, by the lowest head that fits, and its line of units."""
     names: list[TableColumn] = []
     units: tuple[int, list[str]] = (0, [])
     texts = _texts_of_head(block, separator)
@@ -512,7 +512,7 @@ def fitted(block: Block, width: int, separator: str, refuse: Refuse) -> list[lis
 
 
 def _cells_of(row: Line, width: int, refuse: Refuse) -> list[str]:
-    """Cells of a row, as many as there are columns; words behind the last are remarks."""
+    """Cells of a row, as many as there are columns, without words behind the last."""
     cells = list(row.cells)
     lacking = width - len(cells)
     if lacking >= 0:

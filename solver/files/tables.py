@@ -158,7 +158,7 @@ class Table:
         unit: str = "",
         key: str = "",
     ) -> TableColumn | None:
-        """Column of a quantity among some, by the rules above; refuse equally likely ones.
+        """Column of a quantity, by the rules above; refuse equally likely ones.
 
         Parameters
         ----------
@@ -219,7 +219,7 @@ class Table:
         key: str = "",
         remedy: str = "add that column",
     ) -> TableColumn:
-        """Column of a quantity among some, as `find`; refuse a table without a likely one."""
+        """Column of a quantity, as `find`; refuse a table without a likely one."""
         column = self.find(columns, kinds, unit, key)
         if column is None:
             others = {STANDS_IN[kind] for kind in kinds if kind in STANDS_IN}
@@ -273,7 +273,7 @@ class Table:
         units: Sequence[str],
         numbers: Array,
     ) -> str:
-        """Words on columns, on the number of points, and on the range of the last column.
+        """Words on columns, the number of points, and the range of the last column.
 
         Numbers have the units of the columns, shape (n_columns, n_rows).
         """
@@ -287,7 +287,7 @@ class Table:
         return f"{', '.join(heads)}, {numbers.shape[1]} points, {ends}"
 
     def _rows_with(self, columns: Sequence[TableColumn]) -> Flags:
-        """Rows with a number in all of some columns, (n_rows,); refuse words in others."""
+        """Rows with a number in all of some columns, (n_rows,); refuse words."""
         numbers = self.numbers[[column.place for column in columns]]
         is_finite = np.isfinite(numbers)
         has_all = np.asarray(is_finite.all(axis=0))
@@ -376,7 +376,7 @@ def _interruptions(block: Block) -> list[str]:
 def _notation(
     rows: Sequence[Line], separator: str, refuse: Refuse
 ) -> tuple[str, list[str]]:
-    """Decimal sign of a table, and words on signs between thousands, as described above."""
+    """Decimal sign of a table, and words on signs between thousands, as above."""
     if not any(map(_has_doubtful_sign, rows)):
         return ".", []
     sure, unsure = _cells_by_sign(rows)
@@ -409,7 +409,7 @@ CellsBySign = dict[str, list[tuple[int, str]]]
 
 
 def _cells_by_sign(rows: Sequence[Line]) -> tuple[CellsBySign, CellsBySign]:
-    """Numbers under one decimal sign alone, and numbers under both, by the sign they have."""
+    """Numbers under one decimal sign alone, and under both, by their sign."""
     sure: CellsBySign = {sign: [] for sign in SIGNS}
     unsure: CellsBySign = {sign: [] for sign in SIGNS}
     for row in rows:

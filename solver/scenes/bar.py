@@ -125,7 +125,7 @@ def _end_of(settings: Any, side: str) -> End:
 
 
 def _ends_in_words(rods: Rods) -> tuple[str, str]:
-    """Words on ends at rest, and words on ends that are pulled or moved; either is empty."""
+    """Words on ends at rest, and words on ends that are pulled or moved."""
     at_rest: dict[str, list[str]] = {}
     moved = []
     for side, end in rods.ends.items():
@@ -291,7 +291,7 @@ class BarSettings(Settings):
         return float(self.young * self.section * mean / self.length**2)
 
     def check_together(self) -> None:
-        """Refuse too different sections, too soft or stiff springs, and lost equilibrium."""
+        """Refuse unlike sections, too soft or stiff springs, and lost equilibrium."""
         table = self.section_profile
         factors = [1.0]
         if not isinstance(table, str):
@@ -337,7 +337,7 @@ class BarSettings(Settings):
         )
 
     def _strain(self, nodes: Array) -> Array | None:
-        """Strain of elements by heating, (n_elements, n_instants); None without heating.
+        """Strain of elements by heating, (n_elements, n_instants); None without it.
 
         `nodes` are their positions, (n_nodes,), m.
         """
@@ -347,7 +347,7 @@ class BarSettings(Settings):
         return np.outer(self.expansion * along, self.path("temperature_load"))
 
     def _settlement(self, nodes: Array) -> Array | None:
-        """Displacement of the support at nodes, (n_nodes, n_instants), m; None: it rests.
+        """Displacement of the support at nodes, (n_nodes, n_instants), m; None at rest.
 
         `nodes` are their positions, (n_nodes,), m.
         """
@@ -389,7 +389,7 @@ class BarSettings(Settings):
         return bool(acting & driven)
 
     def _check_equilibrium(self) -> None:
-        """Refuse forces that friction cannot balance, if friction alone holds the bar."""
+        """Refuse forces that friction cannot balance where it alone holds the bar."""
         if {self.left_end, self.right_end} & set(HOLDING):
             return
         rods = self.structure()
@@ -414,7 +414,7 @@ class BarSettings(Settings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Friction along the bar and the loop of its end, where closed forms are known."""
+        """Friction along the bar and the loop of its end, by closed forms."""
         return exact_bar(self.structure(), problem)
 
     def _uneven_section(self) -> tuple[float, Array | None]:

@@ -1,4 +1,4 @@
-"""A rectangular body on a rigid rough support: Signorini contact with Coulomb friction."""
+"""A rectangular body on a rigid rough support: Signorini contact, Coulomb friction."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ class SideLoad:
 
     @property
     def _axis(self) -> str:
-        """Axis along which the component acts: the top side runs along x, others along y."""
+        """Axis of the component: the top side runs along x, the others along y."""
         is_along_x = (self.side == "top") == (self.component == "tangential")
         return "x" if is_along_x else "y"
 
@@ -254,7 +254,7 @@ def _gap_points(settings: BlockSettings) -> Rows:
 
 
 class BlockSettings(SideSettings):
-    """Settings of the block; by default it is pressed from above, then sheared to and fro."""
+    """Settings of the block; by default it is pressed, then sheared to and fro."""
 
     scene = "block"
     title = "Block pressed and sheared"
@@ -349,7 +349,7 @@ class BlockSettings(SideSettings):
     )
 
     def drives(self) -> tuple[Drive, ...]:
-        """Non-zero loads and motions over time, with the components of the body force."""
+        """Non-zero loads and motions over time, with those of the body force."""
         drives = list(super().drives())
         force = self._body_force()
         if force is None:
@@ -361,7 +361,7 @@ class BlockSettings(SideSettings):
         return tuple(drives)
 
     def left_out(self) -> Iterator[str]:
-        """Yield sentences on the parts of tables that a run leaves out, such as of the gap."""
+        """Yield sentences on parts of tables that a run leaves out, as of the gap."""
         yield from super().left_out()
         if isinstance(self.gap, str):
             return
@@ -459,7 +459,7 @@ class BlockSettings(SideSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
-        """Tractions on a parabola, of the forces of a solution, or the slide on a spring."""
+        """Tractions on a parabola, by a solution's forces, or the slide on a spring."""
         body = self.structure()
         if self.gap != "parabola":
             return exact_on_spring(body)
@@ -468,7 +468,7 @@ class BlockSettings(SideSettings):
         return exact_parabola(body, self.radius, problem, solution)
 
     def gap_at(self, x: Array) -> Array:
-        """Gap of a preset at positions x along the lowest side, (n_nodes,), both in m."""
+        """Gap of a preset at positions along the lowest side, both (n_nodes,), m."""
         if self.gap == "flat":
             return np.zeros_like(x)
         return np.asarray((x - 0.5 * self.length) ** 2 / (2.0 * self.radius))

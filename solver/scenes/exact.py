@@ -29,8 +29,8 @@ from solver.reference.closed_forms.pulled_bar import (
 )
 
 SMALL = 0.12
-"""Largest half-width of a contact, over the length and the height of its body, for which
-the half-plane holds: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
+"""Largest half-width of a contact, over the length and the height of its body, for
+which a half-plane holds: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
 UNCOUPLED = 0.49
 """Smallest Poisson's ratio for which pressure and friction on a rigid support are taken
 as uncoupled."""
@@ -219,7 +219,7 @@ def exact_layers(
 def _elastic_stiffness(
     body: Stack, problem: Problem, solution: LoopFields | None
 ) -> float | None:
-    """Bending stiffness of layers apart or of one beam, N/m; None where neither holds."""
+    """Bending stiffness of layers apart or of one beam, N/m; None of others."""
     law = body.friction_law
     is_plain = law == replace(FrictionLaw(), strength=law.strength)
     is_graduated = bool(np.any(body.reach < 1.0))
@@ -260,7 +260,7 @@ def _two_leaves(body: Stack) -> TwoLeaves | None:
 
 
 def _leaves(body: Stack) -> float | None:
-    """Stiffness of a leaf spring over that of its longest leaf; None without closed form.
+    """Stiffness of a leaf spring over its longest leaf's; None without closed form.
 
     The closed form is for leaves that grow shorter in the direction of bending, and
     that no pressure holds together.

@@ -130,7 +130,7 @@ class Fault:
 
 
 class FaultSettings(PlaneSettings):
-    """Settings of the fault; by default the fluid's pressure stays, and the front runs on."""
+    """Settings of the fault; by default the fluid's pressure is constant in time."""
 
     scene = "fault"
     title = "Fault driven by a fluid"
@@ -231,7 +231,7 @@ class FaultSettings(PlaneSettings):
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
     def changed_meanings(self) -> Mapping[str, str]:
-        """Describe settings over the slip, which was that of one side in the first format."""
+        """Describe settings over the slip, which was one side's in the first format."""
         meanings = {}
         for name, factor in OF_BOTH_SIDES.items():
             value = getattr(self, name)

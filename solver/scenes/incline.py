@@ -27,7 +27,7 @@ from solver.settings.scene import Icon
 
 
 class InclineSettings(PlaneSettings):
-    """Settings of the block on a slope; by default the spring catches it, and pulls it back."""
+    """Settings of the block on a slope; by default the spring pulls it back."""
 
     scene = "incline"
     title = "Block on an inclined plane"
@@ -124,7 +124,7 @@ class InclineSettings(PlaneSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Force of the spring over the angle: the weight along the slope less friction."""
+        """Force of the spring over the angle: weight along the slope less friction."""
         mu = self.friction_at_nodes()
         if not self.weight or self.law != FrictionLaw() or np.ptp(mu):
             return
@@ -146,6 +146,6 @@ class InclineSettings(PlaneSettings):
         )
         rough = "rough" if self.is_rough else "smooth"
         return (
-            f"A block lies on a {rough} slope that {moves}; a spring catches it when it "
-            "slides down."
+            f"A block lies on a {rough} slope that {moves}; a spring catches it when "
+            "it slides down."
         )

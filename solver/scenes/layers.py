@@ -1,4 +1,4 @@
-"""A stack of layers pressed together, pulled and bent: a leaf spring, a cable laid flat."""
+"""A stack of layers pressed together, pulled and bent: a leaf spring, a flat cable."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _graduated(settings: LayersSettings) -> Rows:
 
 
 class LayersSettings(PlaneSettings):
-    """Settings of the stack; by default it is pressed, then its end is bent up and down."""
+    """Settings of the stack; by default it is pressed, then bent up and down."""
 
     scene = "layers"
     title = "Stack of layers, bent"
@@ -183,7 +183,7 @@ class LayersSettings(PlaneSettings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Return whether the loop is that of a force, not of a moment over a rotation."""
+        """Return whether the loop is a force's, not a moment's over a rotation."""
         return bool(self.bending != "moment")
 
     def check_together(self) -> None:
@@ -199,7 +199,7 @@ class LayersSettings(PlaneSettings):
         shared.factors_of(self)
 
     def left_out(self) -> Iterator[str]:
-        """Yield sentences on parts of tables that a run leaves out, as of the lengths."""
+        """Yield sentences on parts of tables that a run leaves out, as of lengths."""
         yield from super().left_out()
         off = float(np.abs(np.array(self.spans) / self.elements - self._shares).max())
         if off > UNSEEN:
@@ -238,8 +238,8 @@ class LayersSettings(PlaneSettings):
         if self.bending == "force":
             return Side(pull, Given(False, bend / (stack.longest * self.thickness)))
         if self.bending == "moment":
-            # A linear traction with the extreme s at the edges of a layer of thickness h
-            # has the moment s h^2 / 6.
+            # A linear traction with the extreme s at the edges of a layer has the
+            # moment s h^2 / 6, with the thickness h.
             extreme = -6.0 * bend / (stack.longest * self.thickness**2)
             free = Given(False, np.zeros(self.n_instants))
             return Side(replace(pull, slope=extreme), free)

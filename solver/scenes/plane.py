@@ -29,8 +29,8 @@ LARGEST_MATRIX = 30_000_000
 
 FLATTEST = 1e4
 """Largest ratio of the sides of an element. The stiffness of an element varies with the
-square of the ratio: at a ratio of 3e9 no digit of a substructure's stiffness is left, at
-1e5 none beside a search direction k of a millionth (measured)."""
+square of the ratio: at a ratio of 3e9 no digit of a substructure's stiffness is left,
+at 1e5 none beside a search direction k of a millionth (measured)."""
 
 
 class PlaneSettings(Settings):
@@ -156,7 +156,7 @@ class PlaneSettings(Settings):
         return np.linspace(0.0, self.length, self.nodes[0])
 
     def friction_at_nodes(self) -> float | Array:
-        """Coefficient mu of the nodes along a body, (n_nodes,), or one number for all."""
+        """Coefficient mu of the nodes along a body, (n_nodes,), or one for all."""
         if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
         factors = shared.at_nodes(self, self.places, "friction_profile")
@@ -174,7 +174,7 @@ class PlaneSettings(Settings):
 
     @property
     def n_interfaces(self) -> int:
-        """Number of interfaces: between bodies, or of a single body with its support."""
+        """Number of interfaces: between bodies, or of one body with its support."""
         return max(self.n_bodies - 1, 1)
 
     @property
@@ -200,7 +200,7 @@ class PlaneSettings(Settings):
         )
 
     def check_together(self) -> None:
-        """Refuse elements too flat for the digits of a number, and too large matrices."""
+        """Refuse elements too flat for the digits of a number, and large matrices."""
         height: float = getattr(self, self.across)
         ratio = self.length * self.elements_up / (height * self.elements)
         if not 1.0 / FLATTEST <= ratio <= FLATTEST:

@@ -22,8 +22,8 @@ from solver.settings.scene import Settings
 MOST_GROWTH = 2
 """Largest number of points by which a contact may grow from an instant to the next: one
 at each end. If more points close together, they stick without traction beside points
-that were in contact before: with 1, 2 and 4 points at each end, neighbours differ by 0.1,
-0.3 and 0.7 of the largest friction (measured on a parabola, 192 elements)."""
+that were in contact before: with 1, 2 and 4 points at each end, neighbours differ by
+0.1, 0.3 and 0.7 of the largest friction (measured on a parabola, 192 elements)."""
 SMALL = 0.05
 """Largest strain, or slope of a body, for which the theory of small strains holds."""
 AT_ONCE = 2_000_000
@@ -185,7 +185,7 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
 
 
 def _in_plane(inside: Inside, displacement: Array) -> float:
-    """Largest derivative in the plane, from the displacement, (n_dofs, n_instants), m."""
+    """Largest derivative in the plane, from displacement, (n_dofs, n_instants), m."""
     corners = inside.nodes[inside.elements]
     width, height = (corners[:, 2] - corners[:, 0]).T[:, :, None, None]
     # Displacements of all nodes at all instants may exceed the memory.

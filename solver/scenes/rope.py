@@ -32,9 +32,13 @@ MOST_WIRES = 1000
 
 
 STRANDS = {
-    "mooring": "a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire",
+    "mooring": (
+        "a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire"
+    ),
     "seven-wire": "prestressing strand of 15.7 mm",
-    "conductor": "an overhead conductor of 28 mm, 26 aluminium wires on 7 of steel (Drake)",
+    "conductor": (
+        "an overhead conductor of 28 mm, 26 aluminium wires on 7 of steel (Drake)"
+    ),
 }
 """Descriptions of the constructions."""
 
@@ -46,7 +50,7 @@ def _rows(settings: Any) -> Rows:
 
 
 class RopeSettings(Settings):
-    """Settings of the strand; by default 37 wires near a clamp, bent up, down and up again."""
+    """Settings of the strand; by default 37 wires near a clamp, bent to and fro."""
 
     scene = "rope"
     title = "Spiral strand, bent"
@@ -266,7 +270,7 @@ class RopeSettings(Settings):
                 )
 
     def _curvature_at_nodes(self) -> Array:
-        """Curvature of the strand at the nodes of a wire, (n_nodes, n_instants), 1/m."""
+        """Curvature of the strand at a wire's nodes, (n_nodes, n_instants), 1/m."""
         share = np.ones(self.elements + 1)
         if self.is_clamped:
             distance = np.linspace(0.0, self.length, len(share))

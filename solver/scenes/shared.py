@@ -50,7 +50,7 @@ BY_UNIT = {
 }
 """Names of the value of a path by its unit; of all other units it is "force"."""
 AGAIN = 2
-"""Number of times that a load comes and goes from which it does so "again and again"."""
+"""Smallest number of times that a load comes and goes "again and again"."""
 
 
 def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
@@ -194,7 +194,7 @@ def _column_name(what: str, unit: str) -> str:
 
 
 def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParameter]:
-    """Define the pressure of rods, per length, and its path; `slider` is its upper end."""
+    """Define the pressure of rods, per length, up to `slider`, and its path."""
     return sized_path(
         "pressure_load",
         "pressure",
@@ -224,7 +224,7 @@ def bound(settings: Any, factors: Array) -> Array:
 
 
 def factors_of(settings: Any) -> Array:
-    """Factor on mu of each interface, (n_interfaces,); refuse a table of other length."""
+    """Factor on mu of each interface, (n_interfaces,); refuse other tables."""
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
@@ -234,7 +234,7 @@ def same_for(count: int) -> Rows:
 
 
 def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
-    """Values of a table with a row for each of `count` parts, (count,); refuse others."""
+    """Values of a table with a row for each part, (count,); refuse others."""
     table = settings.points(name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):

@@ -1,4 +1,4 @@
-"""Parallel elastic wires with friction between them, one broken (solver/README.md, 6)."""
+"""Parallel elastic wires with friction, one of them broken (solver/README.md, 6)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from solver.settings.scene import Icon, Settings
 
 
 class StrandSettings(Settings):
-    """Settings of the strand; by default its middle wire is broken, under changing tension.
+    """Settings of the strand; by default the middle one of three wires is broken.
 
     The broken wire then regains its force over 0.2 m on either side of the break.
     """
@@ -124,7 +124,7 @@ class StrandSettings(Settings):
         return float(self.young * self.section / self.length**2)
 
     def check_together(self) -> None:
-        """Refuse factors that are not one an interface, and tensions without equilibrium."""
+        """Refuse factors not one an interface, and tensions without equilibrium."""
         super().check_together()
         shared.factors_of(self)
         self._check_equilibrium(self.path("load"))
@@ -162,7 +162,7 @@ class StrandSettings(Settings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Forces of the broken wire and of each neighbour, where a closed form is known."""
+        """Forces of the broken wire and of each neighbour, by a closed form."""
         strand = self.structure()
         exact = broken_wire(strand)
         if exact is not None:

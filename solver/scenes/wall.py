@@ -198,7 +198,7 @@ class WallSettings(PlaneSettings):
 
     @property
     def ends(self) -> dict[str, int]:
-        """Largest numbers of parts under the present values: each brick may be a group."""
+        """Largest numbers of parts as settings are: each brick may be a group."""
         return super().ends | {"brick_groups": self.n_substructures}
 
     @property
@@ -287,6 +287,6 @@ class WallSettings(PlaneSettings):
             bricks = f"{bricks} round an opening"
         touch = "rub on" if self.is_rough else "slide freely on"
         return (
-            f"{bricks}{pressed} only touch, and {touch} each other and {ground}; the top "
-            f"is {driven}."
+            f"{bricks}{pressed} only touch, and {touch} each other and {ground}; the "
+            f"top is {driven}."
         )

@@ -1,4 +1,4 @@
-"""Definitions of settings: which values a setting takes, and how they are read and checked.
+"""Definitions of settings, and functions that read and check their values.
 
 Widgets, address, command line and saved files all derive from these definitions.
 """
@@ -224,7 +224,7 @@ class SettingGroup:
         bounds: Sequence[tuple[float, float]] = (),
         **record: Any,
     ) -> CurveParameter:
-        """Path or table: a preset's name or rows, with unit and bounds of each column."""
+        """Path or table: a preset's name, or rows with units and bounds of columns."""
         bounds = bounds or [ANY] * len(units)
         common = self._common(doc, presets=_lines_on(presets), **record)
         return CurveParameter(default, presets, units, bounds, **common)
@@ -256,7 +256,7 @@ def redefined(
     title: str | None = None,
     **record: Any,
 ) -> Any:
-    """Define a setting anew for some scenes: default, slider, help and `About` may differ."""
+    """Define a setting anew for some scenes, with changes to its definition."""
     again = copy.copy(definition)
     again.default = default
     if slider is not None:
@@ -327,7 +327,7 @@ def unknown(
 
 
 def _likeness(name: str, other: str, definition: Parameter) -> float:
-    """Likeness of a name to a setting: in spelling, in words, in words of its meaning."""
+    """Likeness of a name to a setting in spelling, in words, and in its meaning."""
     spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
     words = set(name.lower().split("_"))
     in_name = words & set(other.split("_"))
@@ -345,7 +345,7 @@ def _meaning(definition: Parameter) -> str:
 
 
 def checked_value(definition: Parameter, name: str, value: object) -> Any:
-    """Value of a setting in its own type; refuse a wrong type, and a value out of range."""
+    """Value of a setting in its own type; refuse a wrong type or range."""
     if isinstance(definition, CurveParameter):
         return _checked_curve(definition, name, value)
     refuse = _refusing(definition, name, value)

@@ -167,7 +167,7 @@ class FrictionSettings(MethodSettings):
             )
 
     def _check_strength(self) -> None:
-        """Refuse a table that does not begin at (0, 1), or whose slips are too close."""
+        """Refuse a table that does not begin at (0, 1), or has too close slips."""
         table = self.strength
         if isinstance(table, str):
             return
@@ -182,7 +182,7 @@ class FrictionSettings(MethodSettings):
             )
 
     def check_digits(self, name: str, stiffness: float, remedy: str) -> None:
-        """Refuse a stiffness of which, beside that of the bodies, no digits are left."""
+        """Refuse a stiffness of which no digits are left beside that of bodies."""
         value = getattr(self, name)
         definition = self.definitions()[name]
         unit = about(definition).unit

@@ -1,4 +1,4 @@
-"""Settings of time and of load paths, which all scenes have, and the instants of a run."""
+"""Settings of time and of load paths of all scenes, and the instants of a run."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from solver.settings.load_paths import (
 
 EVERY_POINT = 2_000_000
 """Nodes times instants up to which every point of a table of a path is an instant: 10 s
-along the bar. Beyond, points are left out as long as the path stays within `THINNED`."""
+along the bar. Beyond, points are left out while the path stays within `THINNED`."""
 THINNED = 1e-3
-"""Largest difference of a thinned path from its table, as a share of the path's range."""
+"""Largest difference of a thinned path from its table, over the path's range."""
 POINTS = 9
-"""Points of a table that stands for a preset which is not linear between its corners."""
+"""Points of a table that stands for a preset with curved parts."""
 STRAIGHT = 1e-9
-"""Deviation of a straight part of a path by rounding, as a share of the path's range."""
+"""Deviation of a straight part of a path by rounding, over the path's range."""
 
 
 class LoadSettings(FrictionSettings):
-    """Settings of time and of load paths, beside those of the method and of friction."""
+    """Settings of time and load paths, beside those of method and friction."""
 
     elements: param.Integer[int]
 
@@ -93,7 +93,7 @@ class LoadSettings(FrictionSettings):
     @classmethod
     @cache
     def _sizes(cls) -> Mapping[str, tuple[str, ...]]:
-        """Names of the settings of the value that presets reach, by the name of the path."""
+        """Names of the settings of the value of presets, by the name of the path."""
         sizes: dict[str, tuple[str, ...]] = {}
         for name, definition in cls.definitions().items():
             path = about(definition).path
@@ -102,7 +102,7 @@ class LoadSettings(FrictionSettings):
         return sizes
 
     def size_setting(self, path: str) -> str | None:
-        """Name of the setting of the value that presets of a path reach; None: it is 1."""
+        """Name of the setting of the value of a path's presets; None: it is 1."""
         sizes = self._sizes().get(path, ())
         definitions = self.definitions()
         for name in sizes:
@@ -118,17 +118,17 @@ class LoadSettings(FrictionSettings):
         return float(getattr(self, name))
 
     def acts(self, path: str) -> bool:
-        """Return whether a path over time is a table, or a preset of a value that is not 0."""
+        """Return whether a path is a table, or a preset of a value that is not 0."""
         return not isinstance(getattr(self, path), str) or self.size_of(path) != 0.0
 
     def size_or_table(self, path: str) -> str:
-        """Name of the setting that a path is made smaller by: its size, or its table."""
+        """Name of the setting that makes a path smaller: its size, or its table."""
         if isinstance(getattr(self, path), str):
             return self.size_setting(path) or path
         return path
 
     def curve_units(self, name: str) -> tuple[str, ...]:
-        """Units of a curve under the present values; the value of a path has its size's."""
+        """Units of a curve as settings are; the value of a path has its size's."""
         units: tuple[str, ...] = self.definitions()[name].units
         size = self.size_setting(name)
         if size is None:
@@ -145,7 +145,7 @@ class LoadSettings(FrictionSettings):
 
     @property
     def is_repeatable(self) -> bool:
-        """Return whether any load path is a preset that comes back to where it began."""
+        """Return whether any load path is a preset that is periodic."""
         presets = [self.preset(name) for name in self.paths]
         return any(
             preset is not None and preset.repeats is not None for preset in presets
@@ -223,7 +223,7 @@ class LoadSettings(FrictionSettings):
         return turning_knots(every, self.path_at(name, every))
 
     def left_out(self) -> Iterator[str]:
-        """Yield sentences on the points of tables that a run leaves out, by thinning."""
+        """Yield sentences on points of tables that a run leaves out by thinning."""
         times = self.times()
         for name in self._tables:
             abscissae, values = np.array(getattr(self, name)).T
@@ -257,7 +257,7 @@ class LoadSettings(FrictionSettings):
         return self.size_of(name) * values
 
     def drives(self) -> tuple[Drive, ...]:
-        """Non-zero loads and motions over time, named by the settings of their sizes."""
+        """Non-zero loads and motions over time, by the settings of their sizes."""
         drives = []
         for path in self.paths:
             values = self.path(path)

@@ -1,4 +1,4 @@
-"""Load paths over time, from a named preset or a table of points, and the instants of a run.
+"""Load paths over time, presets or tables of points, and the instants of a run.
 
 A preset is a path over the phase of an interval, from 0 to 1.
 """
@@ -89,7 +89,7 @@ class Preset:
         return np.interp(after, *self.points(seed))
 
     def corners(self, seed: int, cycles: int = 1) -> Array:
-        """Phases inside the interval at which the path turns back or bends, (n_corners,)."""
+        """Phases inside the interval at which the path turns or bends, (n_corners,)."""
         corners = self.begins + (1.0 - self.begins) * self.points(seed)[0][:-1]
         corners = corners[corners > 0.0]
         if cycles == 1 or self.repeats is None:
@@ -129,7 +129,7 @@ def _size_of_walk(seed: int) -> tuple[Array, Array]:
 
 
 def _sine(phase: Array) -> Array:
-    """Sine of a period of 1, of the shape of the phases, without rounding at its zeros."""
+    """Sine of period 1, of the shape of the phases, without rounding at zeros."""
     wave = np.sin(2.0 * np.pi * phase)
     return np.where(np.abs(wave) < NO_LOAD, 0.0, wave)
 
@@ -278,7 +278,7 @@ INJECTIONS: dict[str, Preset] = {
 def instants_of(
     duration: float, number: int, knots: Array = NO_KNOTS, corners: Array = NO_KNOTS
 ) -> Array:
-    """Instants of a time interval, (n_instants,), s, with the knots of paths among them.
+    """Instants of a time interval, (n_instants,), s, among them knots of paths.
 
     Between knots instants are evenly spaced.
 

@@ -1,4 +1,4 @@
-"""Settings of the method, which all scenes have, and how settings are checked and changed."""
+"""Settings of the method of all scenes, and checks and changes of settings."""
 
 from __future__ import annotations
 
@@ -228,7 +228,7 @@ class MethodSettings(param.Parameterized):
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
-        """Settings of plain values by name; others are set by the method, or by default.
+        """Make settings of values by name; others are set by the method, or by default.
 
         Raises
         ------
@@ -315,7 +315,7 @@ class MethodSettings(param.Parameterized):
         return self.checked({**values, **changes})
 
     def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
-        """Refusal of the present value of a setting, with what is allowed and a remedy."""
+        """Refusal of the value of a setting, with what is allowed and a remedy."""
         return SettingError(name, getattr(self, name), allowed, remedy)
 
     def applies(self, name: str) -> bool:

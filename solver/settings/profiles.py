@@ -13,15 +13,15 @@ from solver.settings.load_paths import interpolate
 
 
 class Profile(NamedTuple):
-    """A preset along a body: its description, and points (share of the length, value)."""
+    """A preset along a body: its description, and points (share of length, value)."""
 
     description: str
     points: Rows
 
 
 UNSEEN = 0.01
-"""Largest difference between a table and the line through nodes that needs no remark, as
-a share of the table's range."""
+"""Largest difference between a table and the line through nodes that needs no remark,
+as a share of the table's range."""
 STEEP = 1e-8
 """Relative change over a piece below which the mean of the inverse is that of the
 middle."""
@@ -44,7 +44,7 @@ def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indic
 
 
 def shares_of(nodes: Array) -> Array:
-    """Ends of the shares of nodes, (n_nodes + 1,), m: halfway between them, (n_nodes,)."""
+    """Ends of the shares of nodes, (n_nodes + 1,), m, halfway between the nodes."""
     return np.concatenate([nodes[:1], nodes[:-1] + 0.5 * np.diff(nodes), nodes[-1:]])
 
 

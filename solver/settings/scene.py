@@ -1,4 +1,4 @@
-"""Base of the settings of a scene, and of the properties that follow from settings alone.
+"""Base of the settings of a scene, with the properties that follow from them.
 
 A settings object is checked once, where it is made, and cannot be changed; `replace`
 gives a new one.
@@ -33,7 +33,7 @@ class Icon(NamedTuple):
 
 
 class Settings(LoadSettings):
-    """Settings of a scene: those of the method, of friction and of time, and its own."""
+    """Settings of a scene: of the method, of friction and of time, and its own."""
 
     length: param.Number[float]
     friction: param.Number[float]
@@ -144,7 +144,7 @@ class Settings(LoadSettings):
         return settings
 
     def with_change(self, name: str, value: object) -> Self:
-        """Make settings with one change; numbers of parts that exceed it are lowered."""
+        """Make settings with one change; lower numbers of parts that exceed it."""
         changes = {name: value}
         for part, whole in self.PARTS.items():
             if name == whole and isinstance(value, int) and value < getattr(self, part):
@@ -153,7 +153,7 @@ class Settings(LoadSettings):
 
     @property
     def ends(self) -> dict[str, int]:
-        """Largest numbers of parts under the present values, by the name of the setting."""
+        """Largest numbers of parts as settings are, by the name of the setting."""
         return {part: getattr(self, whole) for part, whole in self.PARTS.items()}
 
     def check_together(self) -> None:
