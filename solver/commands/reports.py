@@ -60,8 +60,8 @@ def add_reports(commands: Any) -> None:
     _add_stability(commands)
     purpose = "what is known beside what is found, row by row"
     parser = add_command(commands, "proof", purpose, _proof, to_folder=True)
-    own = "cases of one's own (.toml)"
-    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
+    cases = "cases of one's own (.toml)"
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=cases)
     _add_sweep(commands)
 
 

@@ -66,8 +66,8 @@ def add_checks(commands: Any) -> None:
     )
     purpose = "settings that bring a run nearest to a measured loop"
     fitting = add_command(commands, "fit", purpose, _fit, of_scene=True, to_folder=True)
-    most = f"up to {MOST} settings"
-    fitting.add_argument("--vary", required=True, metavar="NAME,...", help=most)
+    count = f"up to {MOST} settings"
+    fitting.add_argument("--vary", required=True, metavar="NAME,...", help=count)
     for parser in (compare, fitting):
         parser.add_argument(
             "--with",
@@ -112,7 +112,7 @@ def _refined(
 
     `values` are those of runs by their size, which are run once.
     """
-    runs, own = three_of(settings, names)
+    runs, given_run = three_of(settings, names)
     for run in runs:
         size = size_of(run)
         if size not in values:
@@ -121,7 +121,7 @@ def _refined(
             line = f"{size:>32}  {values[size]:.6g} {asked.unit}"
             print(line.rstrip(), flush=True)
     coarse, middle, fine = (values[size_of(run)] for run in runs)
-    return Refinement((coarse, middle, fine), own)
+    return Refinement((coarse, middle, fine), given_run)
 
 
 def _compare(chosen: argparse.Namespace) -> int:

@@ -263,11 +263,8 @@ _NOT_TAKEN = {
     "mv",
 }
 """Units that are recognised, and refused, as no quantity that is read has them."""
-_SPELT = {
-    *(symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")),
-    *SPELLINGS,
-    *_NOT_TAKEN,
-}
+_SPELT = {symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")}
+_SPELT |= SPELLINGS.keys() | _NOT_TAKEN
 """All spellings of units, in small letters."""
 DOUBTFUL = 0.8
 """Powers of a thousand from which on numbers without a unit are doubted: 250 times."""

@@ -346,15 +346,18 @@ def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table
     block, others = block_of(lines, separator, refuse)
     columns = headed(block, separator, refuse)
     cells = fitted(block, len(columns), separator, refuse)
-    places = np.array([row.number for row in block.rows])
-    places.flags.writeable = False
+    line_numbers = np.array([row.number for row in block.rows])
+    line_numbers.flags.writeable = False
     decimal, thousands = _notation(block.rows, separator, refuse)
-    numbers = np.array([[number(cell, decimal) for cell in row] for row in cells]).T
+    rows = []
+    for row in cells:
+        rows.append([number(cell, decimal) for cell in row])
+    numbers = np.array(rows).T
     return Table(
         columns=tuple(columns),
         cells=tuple(map(tuple, cells)),
         numbers=read_only(numbers),
-        lines=places,
+        lines=line_numbers,
         remarks=(*remarks, *thousands, *_interruptions(block), *others),
         source=source,
         refuse=refuse,

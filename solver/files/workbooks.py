@@ -37,10 +37,9 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
                 io.BytesIO(data), read_only=True, data_only=True
             )
             sheet = book.worksheets[0]
-            rows = [
-                [_text_of(value) for value in row]
-                for row in sheet.iter_rows(values_only=True)
-            ]
+            rows = []
+            for values in sheet.iter_rows(values_only=True):
+                rows.append([_text_of(value) for value in values])
             names = book.sheetnames
             book.close()
     except Exception as problem:  # whatever a file that is broken makes of its readers

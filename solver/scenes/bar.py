@@ -385,8 +385,8 @@ class BarSettings(Settings):
     def loop_is_over_displacement(self) -> bool:
         """Return whether an end is pulled or moved."""
         acting = {name for name in self.paths if self.acts(name)}
-        driven = {path for paths in PATHS.values() for path in paths.values()}
-        return bool(acting & driven)
+        driven = [*PATHS["left"].values(), *PATHS["right"].values()]
+        return bool(acting.intersection(driven))
 
     def _check_equilibrium(self) -> None:
         """Refuse forces that friction cannot balance where it alone holds the bar."""

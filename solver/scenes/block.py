@@ -145,6 +145,7 @@ class SideLoad:
         slider: tuple[float, float],
         applies: Callable[[Any], bool],
     ) -> param.Number[float]:
+        """Define the mean of a quantity along the side."""
         towards = "outward"
         if self.component == "tangential":
             towards = f"along {self._axis}"
@@ -162,10 +163,12 @@ class SideLoad:
 
     @property
     def _group(self) -> SettingGroup:
+        """Heading of the side."""
         return SettingGroup(self.side.capitalize())
 
     @property
     def _title(self) -> str:
+        """Words on the component."""
         return f"{self._group.name} {self.component}"
 
     @property

@@ -174,8 +174,10 @@ def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
     The closed form holds for a block that slides much farther than it is deformed, and
     that no side holds.
     """
-    held = any(given.prescribed for side in body.sides.values() for given in side)
-    if held or body.spring is None or not _is_coulombs(body):
+    is_held = any(
+        side.x.prescribed or side.y.prescribed for side in body.sides.values()
+    )
+    if is_held or body.spring is None or not _is_coulombs(body):
         return
     slide = rigid_slide(body, body.spring)
     pushed, pressed, _ = wrench(body)

@@ -238,6 +238,7 @@ class SettingGroup:
 
 
 def _lines_on(presets: Mapping[str, Described]) -> dict[str, str]:
+    """Descriptions of presets by name."""
     return {name: preset.description for name, preset in presets.items()}
 
 

@@ -271,7 +271,7 @@ class MethodSettings(param.Parameterized):
         values = {
             name: definition.default for name, definition in cls.definitions().items()
         }
-        return {**values, **cls.of_method(method)}
+        return values | cls.of_method(method)
 
     def check_together(self) -> None:
         """Refuse values that do not fit together; derived classes extend this."""
@@ -282,6 +282,7 @@ class MethodSettings(param.Parameterized):
 
     @cached_property
     def _values(self) -> Mapping[str, Any]:
+        """Value of every setting, by name."""
         # Values never change, and param takes longer for all of them than an iteration.
         return {name: getattr(self, name) for name in self.definitions()}
 
@@ -312,7 +313,7 @@ class MethodSettings(param.Parameterized):
         if changes.get("method", self.method) != self.method:
             for name in self.METHODS[self.method]:
                 del values[name]
-        return self.checked({**values, **changes})
+        return self.checked(values | changes)
 
     def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
         """Refusal of the value of a setting, with what is allowed and a remedy."""
