@@ -349,19 +349,23 @@ def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table
     line_numbers = np.array([row.number for row in block.rows])
     line_numbers.flags.writeable = False
     decimal, thousands = _notation(block.rows, separator, refuse)
-    rows = []
-    for row in cells:
-        rows.append([number(cell, decimal) for cell in row])
-    numbers = np.array(rows).T
     return Table(
         columns=tuple(columns),
         cells=tuple(map(tuple, cells)),
-        numbers=read_only(numbers),
+        numbers=read_only(_numbers_of(cells, decimal)),
         lines=line_numbers,
         remarks=(*remarks, *thousands, *_interruptions(block), *others),
         source=source,
         refuse=refuse,
     )
+
+
+def _numbers_of(cells: list[list[str]], decimal: str) -> Array:
+    """Numbers of rows of cells under a decimal sign, (n_columns, n_rows)."""
+    rows = []
+    for row in cells:
+        rows.append([number(cell, decimal) for cell in row])
+    return np.array(rows).T
 
 
 def _interruptions(block: Block) -> list[str]:
