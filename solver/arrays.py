@@ -1,4 +1,4 @@
-"""Names for arrays, and how space-time fields lie in memory."""
+"""Types of arrays, and functions on space-time fields."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
 ROUNDING = 64.0 * float(np.finfo(float).eps)
-"""Share of the largest of some dozens of numbers that rounding leaves of their sum."""
+"""Error by rounding of the sum of some dozens of numbers, over the largest of them."""
 RESIDUE = 1e-12
-"""Share of what is summed up to which a sum is shown as zero: a solution has no more
-digits."""
+"""Size of a sum, over that of its terms, up to which the sum is shown as zero: a
+solution has no more digits."""
 
 
 def space_time(n_rows: int, n_instants: int) -> Array:
@@ -27,14 +27,14 @@ def space_time(n_rows: int, n_instants: int) -> Array:
 
 
 def sparse_factor(matrix: sparse.csc_array, **how: Any) -> SuperLU:
-    """LU factor of a sparse matrix, (n, n), as `scipy.sparse.linalg.splu` with its arguments.
+    """LU factor of a sparse matrix, (n, n); `how` are arguments of SciPy's `splu`.
 
     Raises
     ------
     LinAlgError
         If the matrix is singular.
     MemoryError
-        If memory is short, which SuperLU tells in several ways.
+        If memory is short; SuperLU has several errors for that.
     """
     try:
         return splu(matrix, **how)
@@ -45,33 +45,34 @@ def sparse_factor(matrix: sparse.csc_array, **how: Any) -> SuperLU:
 
 
 def read_only(field: Array) -> Array:
-    """The same field, which nobody can change any more."""
+    """The same field, of any shape, made read-only in place."""
     field.flags.writeable = False
     return field
 
 
 def as_slice(rows: Indices) -> slice | Indices:
-    """Rows as a slice when they follow each other, so that reading them copies nothing."""
-    if len(rows):
-        first = int(rows[0])
-    else:
-        first = 0
-    if np.all(np.diff(rows) == 1):
-        return slice(first, first + len(rows))
-    return rows
+    """Rows, (n_rows,), as a slice if they are consecutive: reading copies nothing."""
+    if not np.all(np.diff(rows) == 1):
+        return rows
+    first = int(rows[0]) if len(rows) else 0
+    return slice(first, first + len(rows))
 
 
 def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """Fields of space, or of space and time, one below the other.
+    """Fields one below the other: (n_rows,), or (n_rows, n_instants) and (n_rows, 1).
 
-    What does not change with time has a single column, unless another of them does.
+    Fields that do not change with time have a single column; so has the result if none
+    of them changes.
     """
-    shape = np.broadcast_shapes(*(field.shape[1:] for field in fields))
+    columns = np.broadcast_shapes(*[field.shape[1:] for field in fields])
     return np.concatenate(
-        [np.broadcast_to(field, (len(field), *shape)) for field in fields]
+        [np.broadcast_to(field, (len(field), *columns)) for field in fields]
     )
 
 
 def without_residue(values: Array, terms: Array) -> Array:
-    """Sums, (n_instants,), with zero where rounding alone leaves something of terms of a size."""
+    """Sums, (n_instants,), with zero for sums that are rounding errors of their terms.
+
+    `terms` are sizes of the terms, of any shape, in the unit of the sums.
+    """
     return np.where(np.abs(values) <= RESIDUE * np.max(terms, initial=0.0), 0.0, values)

@@ -1,4 +1,4 @@
-"""Checks of the parts of a problem and of a method: which values they allow, and what to do.
+"""Checks of the parts of a problem and of a method: allowed values, flaws and remedies.
 
 A part checks itself once, where it is made: `check(self, length=POSITIVE,
 instants=INSTANTS)`.
@@ -17,11 +17,11 @@ import numpy as np
 from solver.refusal import RefusedError, Words, is_number, plain
 
 ALIKE = 1e-9
-"""Share of the largest of some numbers up to which two of them differ by rounding."""
+"""Largest difference of two equal numbers by rounding, over the largest number."""
 
 
 class Flaw(NamedTuple):
-    """Flaw of a value: what is shown of it, what is allowed, and what to do."""
+    """Flaw of a value: the value as shown, what is allowed, and a remedy."""
 
     shown: object
     allowed: str
@@ -29,7 +29,7 @@ class Flaw(NamedTuple):
 
 
 class Kind(Protocol):
-    """The values that an attribute takes."""
+    """Kind of the values that an attribute takes."""
 
     @property
     def allowed(self) -> str:
@@ -40,12 +40,12 @@ class Kind(Protocol):
 
 
 def check(part: object, **kinds: Kind) -> None:
-    """Refuse attributes of a part that are none of a kind; None is fine where it is the default.
+    """Refuse attributes of a part that are not of their kind; a default None is fine.
 
     Raises
     ------
     RefusedError
-        For the first that is refused.
+        For the first attribute that is refused.
     """
     owner = type(part)
     for name, kind in kinds.items():
@@ -55,7 +55,7 @@ def check(part: object, **kinds: Kind) -> None:
 
 
 def check_value(name: str, value: object, kind: Kind) -> None:
-    """Refuse a value of a name that is none of a kind."""
+    """Refuse a value that is not of a kind; the message has its name."""
     flaw = kind.flaw(value)
     if flaw is not None:
         shown: object = Words(value)
@@ -66,9 +66,16 @@ def check_value(name: str, value: object, kind: Kind) -> None:
 
 @dataclass(slots=True)
 class Number:
-    """A finite number of a range; the lower end is left out if it is to be `above`.
+    """Finite numbers of a range.
 
-    `endless` ones may be infinite, too, whatever the upper end.
+    Attributes
+    ----------
+    low, high
+        Ends of the range.
+    above
+        Whether the lower end is excluded.
+    endless
+        Whether infinity is allowed, too, whatever the upper end.
     """
 
     low: float = -math.inf
@@ -87,17 +94,18 @@ class Number:
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
         if is_number(value):
-            is_in = self.low <= value <= self.high and not (
-                self.above and value == self.low
-            )
-            if (is_in and math.isfinite(value)) or (self.endless and value == math.inf):
+            if self.endless and value == math.inf:
+                return None
+            is_in = self.low <= value <= self.high
+            is_excluded = self.above and value == self.low
+            if is_in and not is_excluded and math.isfinite(value):
                 return None
         return Flaw(value, self.allowed, "give a number in this range")
 
 
 @dataclass(slots=True)
 class Count:
-    """A whole number of a range."""
+    """Whole numbers of a range."""
 
     low: int
     high: float = math.inf
@@ -117,9 +125,18 @@ class Count:
 
 @dataclass(slots=True)
 class Numbers:
-    """An array of finite numbers of a shape, of which None is any size.
+    """Arrays of finite numbers.
 
-    `whole` ones are indices. The lower end is left out if they are to be `above`.
+    Attributes
+    ----------
+    shapes
+        Allowed shapes, in which None is any size.
+    low, high
+        Ends of the range of the numbers.
+    above
+        Whether the lower end is excluded.
+    whole
+        Whether the numbers are whole ones, such as indices.
     """
 
     shapes: tuple[tuple[int | None, ...], ...]
@@ -131,41 +148,40 @@ class Numbers:
     @property
     def allowed(self) -> str:
         """Words on these values."""
+        kind = "whole numbers" if self.whole else "numbers"
+        ends = _range(self.low, self.high, above=self.above)
         shapes = " or ".join(_written(shape) for shape in self.shapes)
-        if self.whole:
-            kind = "whole numbers"
-        else:
-            kind = "numbers"
-        return f"an array of {kind}{_range(self.low, self.high, above=self.above)}, shape {shapes}"
+        return f"an array of {kind}{ends}, shape {shapes}"
 
     def flaw(self, value: Any) -> Flaw | None:
-        """Find the flaw of a value: its kind, its shape, or the first number that is refused."""
+        """Find the flaw of a value: its type, its shape, or its first wrong number."""
         if not isinstance(value, np.ndarray):
             return Flaw(value, self.allowed, "make an array of it, as np.array does")
         if value.dtype.kind not in ("iu" if self.whole else "iuf"):
             return Flaw(
                 Words(f"of {value.dtype}"), self.allowed, "give numbers of this kind"
             )
-        # Most have a shape that is given in full.
+        # Most shapes are given in full, which is quick to see.
         fits = value.shape in self.shapes
         if not fits and not any(_fits(value.shape, shape) for shape in self.shapes):
             shown = Words(f"of shape {_written(value.shape)}")
             return Flaw(shown, self.allowed, "space comes first, then time")
         if not value.size:
             return None
-        # Both are NaN if anything is.
-        least = float(value.min())
-        most = float(value.max())
+        # Both are NaN if any number is.
+        minimum = float(value.min())
+        maximum = float(value.max())
         if self.above:
-            is_above = least > self.low
+            is_above = minimum > self.low
         else:
-            is_above = least >= self.low
-        if is_above and -math.inf < least and most < math.inf and most <= self.high:
+            is_above = minimum >= self.low
+        is_finite = -math.inf < minimum and maximum < math.inf
+        if is_above and is_finite and maximum <= self.high:
             return None
-        return self._first(value)
+        return self._first_flaw(value)
 
-    def _first(self, value: Any) -> Flaw:
-        """The first number that is refused."""
+    def _first_flaw(self, value: Any) -> Flaw:
+        """Find the flaw of the first wrong number of an array."""
         with np.errstate(invalid="ignore"):
             if self.above:
                 is_above = value > self.low
@@ -173,20 +189,20 @@ class Numbers:
                 is_above = value >= self.low
             is_fine = is_above & (value <= self.high) & np.isfinite(value)
         place = np.unravel_index(int(np.argmin(is_fine)), value.shape)
-        entry = float(value[place])
-        where = ", ".join(str(int(index)) for index in place)
-        if entry < 0.0 <= self.low:
-            remedy = f"entry [{where}] is below zero, raise it"
-        elif math.isfinite(entry):
-            remedy = f"entry [{where}] is out of range, change it"
+        number = float(value[place])
+        entry = f"entry [{', '.join(str(int(index)) for index in place)}]"
+        if number < 0.0 <= self.low:
+            remedy = f"{entry} is below zero, raise it"
+        elif math.isfinite(number):
+            remedy = f"{entry} is out of range, change it"
         else:
-            remedy = f"entry [{where}] is no finite number, replace it"
-        return Flaw(entry, self.allowed, remedy)
+            remedy = f"{entry} is no finite number, replace it"
+        return Flaw(number, self.allowed, remedy)
 
 
 @dataclass(frozen=True)
 class Instants:
-    """Instants, shape (n_instants,), s, one or more, that increase."""
+    """Arrays of one or more increasing instants, shape (n_instants,), s."""
 
     allowed = "an array of instants that increase, s, shape [n_instants], one or more"
 
@@ -201,13 +217,14 @@ class Instants:
         if np.all(steps > 0.0):
             return None
         number = int(np.argmax(steps <= 0.0))
-        before, after = (plain(float(one)) for one in value[number : number + 2])
+        before = plain(float(value[number]))
+        after = plain(float(value[number + 1]))
         remedy = f"{after} comes after {before}: sort them, and give each once"
         return Flaw(Words(f"[..., {before}, {after}, ...]"), self.allowed, remedy)
 
 
 class Part:
-    """A value of one of some types."""
+    """Values of some types."""
 
     def __init__(self, *types: type) -> None:
         self._types = types
@@ -215,9 +232,8 @@ class Part:
     @property
     def allowed(self) -> str:
         """Words on these values."""
-        return " or ".join(
-            "None" if one is type(None) else one.__name__ for one in self._types
-        )
+        names = [kind.__name__ for kind in self._types]
+        return " or ".join(names).replace("NoneType", "None")
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
@@ -232,7 +248,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of some names."""
+    """Names out of some."""
 
     names: tuple[str, ...]
 
@@ -261,7 +277,7 @@ class Flag:
 
 
 class Function:
-    """A function, or anything else that can be called."""
+    """Functions, and other objects that can be called."""
 
     allowed = "a function"
 
@@ -273,7 +289,7 @@ class Function:
 
 
 class Either:
-    """A value of one kind or of another; the last one says what is wrong with a value of none."""
+    """Values of one of some kinds; of other values the last kind finds the flaw."""
 
     def __init__(self, *kinds: Kind) -> None:
         self._kinds = kinds
@@ -297,7 +313,7 @@ class Either:
 
 @dataclass(frozen=True)
 class Each:
-    """A sequence, of which each is of one kind; of a length, or of any but none."""
+    """Sequences of values of one kind: of a length, or of any but zero."""
 
     kind: Kind
     length: int | None = None
@@ -305,9 +321,8 @@ class Each:
     @property
     def allowed(self) -> str:
         """Words on these values."""
-        if self.length is None:
-            count = "one or more"
-        else:
+        count = "one or more"
+        if self.length is not None:
             count = str(self.length)
         return f"a sequence of {count}, each {self.kind.allowed}"
 
@@ -317,8 +332,8 @@ class Each:
             return Flaw(_described(value), self.allowed, "give a tuple")
         if len(value) == 0 or self.length not in (None, len(value)):
             return Flaw(Words(f"{len(value)} of them"), self.allowed, "give as many")
-        for number, one in enumerate(value):
-            flaw = self.kind.flaw(one)
+        for number, entry in enumerate(value):
+            flaw = self.kind.flaw(entry)
             if flaw is not None:
                 return Flaw(flaw.shown, self.allowed, f"number {number}: {flaw.remedy}")
         return None
@@ -326,7 +341,7 @@ class Each:
 
 @dataclass(frozen=True)
 class Named:
-    """A mapping from names to values of one kind; the names are any, or some of these."""
+    """Mappings from names to values of one kind; without `names` all are allowed."""
 
     kind: Kind
     names: tuple[str, ...] = ()
@@ -334,20 +349,20 @@ class Named:
     @property
     def allowed(self) -> str:
         """Words on these values."""
+        names = ""
         if self.names:
             names = f" of {', '.join(self.names)}"
-        else:
-            names = ""
         return f"a mapping of names{names} to {self.kind.allowed}"
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
         if not isinstance(value, Mapping):
             return Flaw(_described(value), self.allowed, "give a dictionary")
-        for name, one in value.items():
-            if not isinstance(name, str) or (self.names and name not in self.names):
+        for name, entry in value.items():
+            is_unknown = bool(self.names) and name not in self.names
+            if not isinstance(name, str) or is_unknown:
                 return Flaw(name, self.allowed, "correct the name")
-            flaw = self.kind.flaw(one)
+            flaw = self.kind.flaw(entry)
             if flaw is not None:
                 return Flaw(flaw.shown, self.allowed, f'"{name}": {flaw.remedy}')
         return None
@@ -366,32 +381,33 @@ FUNCTION = Function()
 def _range(low: float, high: float, *, above: bool = False) -> str:
     """Words on a range of numbers."""
     if low == -math.inf:
-        if high < math.inf:
-            return f" up to {plain(high)}"
-        return ""
-    start = f" {'above' if above else 'from'} {plain(low)}"
-    return start + (f" to {plain(high)}" if high < math.inf else "")
+        return f" up to {plain(high)}" if high < math.inf else ""
+    words = f" {'above' if above else 'from'} {plain(low)}"
+    if high < math.inf:
+        words = f"{words} to {plain(high)}"
+    return words
 
 
 def _written(shape: Sequence[int | None]) -> str:
-    """A shape as one writes it."""
-    return "[" + ", ".join("n" if size is None else str(size) for size in shape) + "]"
+    """Text of a shape, with n for any size."""
+    sizes = ["n" if size is None else str(size) for size in shape]
+    return f"[{', '.join(sizes)}]"
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
-    """Whether an array has a shape."""
+    """Return whether a shape is a wanted one, in which None is any size."""
     if len(shape) != len(wanted):
         return False
-    return all(size in (None, own) for own, size in zip(shape, wanted, strict=True))
+    return all(
+        allowed in (None, size) for size, allowed in zip(shape, wanted, strict=True)
+    )
 
 
 def _described(value: object) -> object:
-    """A value in short, where it may be an object of any size."""
+    """Value as it is shown; of an object its type and its length."""
     if value is None or isinstance(value, str | int | float):
         return value
     name = type(value).__name__
     if isinstance(value, Sized):
-        size = f" of {len(value)}"
-    else:
-        size = ""
-    return Words(f"a {name}{size}")
+        return Words(f"a {name} of {len(value)}")
+    return Words(f"a {name}")

@@ -1,4 +1,4 @@
-"""What is refused: one message that names it, its value, what is allowed, and what to do."""
+"""Refusals: messages with the name, the value, what is allowed, and a remedy."""
 
 from __future__ import annotations
 
@@ -9,19 +9,17 @@ from typing import Any, TypeGuard
 
 
 class Words(str):
-    """Words on a value that is too large to show; they stand without quotation marks."""
+    """Words on a value that is too large to show; a message has them without quotes."""
 
     __slots__ = ()
 
 
 class RefusedError(ValueError):
-    """A refused value: the message names it, its value, the allowed range and the remedy."""
+    """Refused value: a message of its name, the value, what is allowed and a remedy."""
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
         shown = _shown(value)
-        if len(shown) <= 60:
-            shown = shown
-        else:
+        if len(shown) > 60:
             shown = shown[:57] + "..."
         super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
         self.name = name
@@ -30,12 +28,12 @@ class RefusedError(ValueError):
         self.remedy = remedy
 
     def __reduce__(self) -> tuple[type[RefusedError], tuple[Any, ...]]:
-        """What another process makes it of again."""
+        """Arguments to make the error again in another process."""
         return type(self), (self.name, self.value, self.allowed, self.remedy)
 
 
 def _shown(value: object) -> str:
-    """A value as one types it."""
+    """Text of a value as one types it."""
     if isinstance(value, Words):
         return value
     try:
@@ -45,14 +43,11 @@ def _shown(value: object) -> str:
 
 
 def plain(value: float) -> str:
-    """A number as one types it: 1e15, and not 1e+15."""
-    if isinstance(value, int):
-        text = str(value)
-    else:
-        text = f"{value:g}"
+    """Text of a number as one types it: 1e15, and not 1e+15."""
+    text = str(value) if isinstance(value, int) else f"{value:g}"
     return re.sub(r"e\+?(-?)0*", r"e\1", text)
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether it is a number, and no truth value."""
+    """Return whether a value is a number, and no truth value."""
     return isinstance(value, Real) and not isinstance(value, bool)

@@ -1,4 +1,4 @@
-"""Commands of `python -m solver`: run a scene, list what there is, measure, draw figures."""
+"""Commands of `python -m solver`: run a scene, list scenes and settings, and others."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
+from typing import Any
 
 from solver.commands.console import (
     INTERRUPTED,
@@ -29,7 +30,7 @@ from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
 from solver.files.disk import check_place, why
 from solver.files.saved import save_result, scene_settings, summary
-from solver.latin import Ending, solve, solve_in_slabs
+from solver.latin import Ending, Solution, solve, solve_in_slabs
 from solver.latin.stages.blocks import one_blas_thread
 from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to, held_instants
@@ -37,6 +38,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.definitions import SettingError, about, allowed
+from solver.settings.scene import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import (
     FinishedRun,
@@ -47,6 +49,10 @@ from solver.study.quantities.finished import (
 )
 from solver.study.quantities.quantity import Quantity
 
+DESCRIPTION = (
+    "Commands of `python -m solver`: run a scene, list what there is, measure, draw "
+    "figures."
+)
 REFUSED = 2
 OUT_OF_MEMORY = 3
 """Exit codes."""
@@ -66,6 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _exit_code(arguments: Sequence[str] | None) -> int:
+    """Run a command; errors that its user can mend become messages and exit codes."""
     parser = _parser()
     chosen, options = parser.parse_known_args(arguments)
     if options and not hasattr(chosen, "passed_on"):
@@ -88,8 +95,7 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
         warn(f"there is nothing to compare with: {refusal}")
         return REFUSED
     except OSError as trouble:
-        # Python must not complain at its own end, as where whoever reads has enough ("|
-        # head").
+        # Python would complain at its exit if the reader is gone, as of "| head".
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(trouble, BrokenPipeError):
             warn(f"nothing can be printed: {why(trouble)}")
@@ -102,13 +108,28 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    is_installed = Path(sys.argv[0]).stem == "slipfront"
-    if is_installed:
+    """Make the parser of all commands, those of other installed packages included."""
+    prog = "python -m solver"
+    if Path(sys.argv[0]).stem == "slipfront":
         prog = "slipfront"
-    else:
-        prog = "python -m solver"
-    parser = argparse.ArgumentParser(prog=prog, description=__doc__)
+    parser = argparse.ArgumentParser(prog=prog, description=DESCRIPTION)
     commands = parser.add_subparsers(required=True)
+    _add_run(commands)
+    add_command(commands, "scenes", "list the scenes", _scenes)
+    settings = add_command(
+        commands, "settings", "list the settings of a scene", _settings
+    )
+    settings.add_argument("scene")
+    add_reports(commands)
+    add_checks(commands)
+    for further in entry_points(group="slipfront.commands"):
+        with contextlib.suppress(ImportError):  # the engine may be there alone
+            further.load()(commands)
+    return parser
+
+
+def _add_run(commands: Any) -> None:
+    """Add `run`."""
     run = add_command(
         commands, "run", "run one scene to its stop rule", _run, of_scene=True
     )
@@ -128,40 +149,28 @@ def _parser() -> argparse.ArgumentParser:
         "--limit",
         type=float,
         metavar="SECONDS",
-        help="end after so long with what there is by then; the reference is given up likewise",
+        help="end after so long with what there is by then; the reference is given up "
+        "likewise",
     )
     run.add_argument(
         "--slab",
         type=int,
         metavar="INSTANTS",
-        help="solve slab after slab of so many instants: those of a cycle, where a load has many",
+        help="solve slab after slab of so many instants: those of a cycle, where a "
+        "load has many",
     )
     run.add_argument(
         "--of", default="", metavar="NAME,...", help="print quantities of the run, too"
     )
-    add_command(commands, "scenes", "list the scenes", _scenes)
-    settings = add_command(
-        commands, "settings", "list the settings of a scene", _settings
-    )
-    settings.add_argument("scene")
-    add_reports(commands)
-    add_checks(commands)
-    for further in entry_points(group="slipfront.commands"):
-        with contextlib.suppress(ImportError):  # the engine may be there alone
-            further.load()(commands)
-    return parser
 
 
 def _run(chosen: argparse.Namespace) -> int:
-    limit = math.inf if chosen.limit is None else chosen.limit
-    if chosen.limit is not None and not 0.0 < limit < math.inf:
-        raise SettingError(
-            "--limit", limit, "seconds above 0", "give more, or leave it out"
-        )
-    asked = [reading(name.strip()) for name in chosen.of.split(",") if name.strip()]
-    place = "a file in an existing folder that can be written"
+    """Run a scene to its stop rule; print its key figures, and write its result."""
+    limit = _limit(chosen)
+    names = [name.strip() for name in chosen.of.split(",")]
+    asked = [reading(name) for name in names if name]
     if chosen.out is not None:
-        with refusing(chosen.out, place):  # before the run, and not after it
+        with refusing(chosen.out, CAN_BE_WRITTEN):  # before the run, not after it
             check_place(chosen.out)
     settings, tables = given(chosen)
     began = time.perf_counter()
@@ -169,43 +178,77 @@ def _run(chosen: argparse.Namespace) -> int:
     spent = time.perf_counter() - began
     if nothing_acts(problem):
         warn("nothing acts on the structure: all loads are zero")
-    method = method_of(settings)
-    method = replace(method, stop=replace(method.stop, seconds=limit))
-    watch = chosen.reference or any(one.reads == "indicators" for one in asked)
     announce(settings, problem, reference=chosen.reference, limit=limit)
-    if chosen.reference:
-        known = _known(problem, limit)
-    else:
-        known = Known()
-    distance = None
-    if known.reference is not None:
-        distance = distance_to(known.reference, problem)
-    if chosen.slab is None:
-        solution = solve(problem, method, distance=distance, watch=watch, spent=spent)
-    else:
-        solution = solve_in_slabs(
-            problem, method, chosen.slab, distance=distance, spent=spent
-        )
+    known = _known(problem, limit) if chosen.reference else Known()
+    solution = _solved(chosen, settings, problem, known, asked, limit, spent)
     if chosen.out is not None:
-        with refusing(chosen.out, place):
+        with refusing(chosen.out, CAN_BE_WRITTEN):
             save_result(chosen.out, settings, solution)
-    # Matrices are small: threads that wait for each other take longer than the whole
-    # run.
-    with one_blas_thread:
-        loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
-    if loose:
-        warn(
-            f"at {loose} of {problem.n_instants} instants nothing says where a body lies: its "
-            "displacement is one of many there, and counts in no error"
-        )
-    with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
+    _warn_of_loose_bodies(solution)
+    with contextlib.suppress(BrokenPipeError):  # the reader needs no more
         run = FinishedRun(settings, solution, known_loss=known.lost_from)
         _print_figures(run, asked, tables, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
+CAN_BE_WRITTEN = "a file in an existing folder that can be written"
+
+
+def _limit(chosen: argparse.Namespace) -> float:
+    """Time limit of a run, s; infinite without one."""
+    if chosen.limit is None:
+        return math.inf
+    limit: float = chosen.limit
+    if not 0.0 < limit < math.inf:
+        raise SettingError(
+            "--limit", limit, "seconds above 0", "give more, or leave it out"
+        )
+    return limit
+
+
+def _solved(
+    chosen: argparse.Namespace,
+    settings: Settings,
+    problem: Problem,
+    known: Known,
+    asked: Sequence[Quantity],
+    limit: float,
+    spent: float,
+) -> Solution:
+    """Solution of a problem, as a whole or in slabs, with errors to a known reference.
+
+    `spent` is the time that the problem took to make, s.
+    """
+    method = method_of(settings)
+    method = replace(method, stop=replace(method.stop, seconds=limit))
+    distance = None
+    if known.reference is not None:
+        distance = distance_to(known.reference, problem)
+    if chosen.slab is not None:
+        return solve_in_slabs(
+            problem, method, chosen.slab, distance=distance, spent=spent
+        )
+    reads_indicators = any(quantity.reads == "indicators" for quantity in asked)
+    watch = chosen.reference or reads_indicators
+    return solve(problem, method, distance=distance, watch=watch, spent=spent)
+
+
+def _warn_of_loose_bodies(solution: Solution) -> None:
+    """Warn of instants at which the position of a body is not determined."""
+    iterate = solution.iterate
+    # Matrices are small: threads that wait for each other take longer than the run.
+    with one_blas_thread:
+        held = held_instants(iterate.problem, iterate.contact_force)
+    count = int((~held).sum())
+    if count:
+        warn(
+            f"at {count} of {iterate.problem.n_instants} instants nothing says where a "
+            "body lies: its displacement is one of many there, and counts in no error"
+        )
+
+
 OF_WHOLE_RUN = ("slipped_share", "dissipation")
-"""Quantities beside the key figures of the loop."""
+"""Quantities of the whole run, which are printed beside the key figures of the loop."""
 
 
 def _print_figures(
@@ -214,7 +257,7 @@ def _print_figures(
     tables: Mapping[str, str],
     as_json: bool,
 ) -> None:
-    """Print what a run came to; nothing of its states where instants are lost."""
+    """Print the results of a run; no key figures where the solution is lost."""
     figures = summary(run.settings, run.solution)
     of_loop: Sequence[KeyFigure] = ()
     of_run: Sequence[Quantity] = ()
@@ -227,28 +270,37 @@ def _print_figures(
         _print_lines(figures)
         for figure in of_loop:
             print(f"{figure.name:<20} {_in_words(run, figure)}")
-        for one in of_run:
-            number = _number(one(run), one.unit)
-            print(f"{one.name:<20} {number} ({one.title}, whole run)")
-        for one in asked:
-            print(f"{one.name:<20} {_number(one(run), one.unit)}")
+        for quantity in of_run:
+            number = _number(quantity(run), quantity.unit)
+            print(f"{quantity.name:<20} {number} ({quantity.title}, whole run)")
+        for quantity in asked:
+            print(f"{quantity.name:<20} {_number(quantity(run), quantity.unit)}")
         return
     figures |= {figure.name: figure.largest for figure in of_loop}
-    figures |= {one.name: one(run) for one in of_run}
-    figures["key_figures"] = {figure.name: _told(run, figure) for figure in of_loop}
+    figures |= {quantity.name: quantity(run) for quantity in of_run}
+    figures["key_figures"] = {
+        figure.name: _key_figure_entry(run, figure) for figure in of_loop
+    }
     if asked:
-        figures["quantities"] = {one.name: one(run) for one in asked}
-    print_json({**figures, "tables": tables, "settings": run.settings.values()})
+        figures["quantities"] = {quantity.name: quantity(run) for quantity in asked}
+    figures["tables"] = tables
+    figures["settings"] = run.settings.values()
+    print_json(figures)
 
 
 def _print_lines(figures: Mapping[str, object]) -> None:
+    """Print figures by name, each entry of a list on a line of its own."""
     for name, value in figures.items():
-        for line in value if isinstance(value, list) else [value]:
-            print(f"{name:<20} {f'{line:.6g}' if isinstance(line, float) else line}")
+        entries = value if isinstance(value, list) else [value]
+        for entry in entries:
+            shown = entry
+            if isinstance(entry, float):
+                shown = f"{entry:.6g}"
+            print(f"{name:<20} {shown}")
 
 
 def _loss(problem: Problem, first: int) -> float:
-    """Tell from when on there is no solution, of its first instant; that time, s."""
+    """Warn that the solution is lost from an instant on; return that time, s."""
     count = problem.n_instants
     time_lost = float(problem.instants[first])
     lost = f"no solution is found at {count - first} of {count} instants"
@@ -257,15 +309,15 @@ def _loss(problem: Problem, first: int) -> float:
 
 
 def _in_words(run: FinishedRun, figure: KeyFigure) -> str:
-    """A key figure in words: its largest value and when that is, and its last."""
+    """Words on a key figure: its largest value with its time, and its last value."""
     at = f"at {run.problem.instants[figure.instant]:.6g} s"
     largest = _number(figure.largest, figure.unit)
     last = _number(figure.last, figure.unit)
     return f"{largest} ({figure.title}, largest, {at}; last {last})"
 
 
-def _told(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
-    """A key figure for scripts: its largest value and when that is, s, and its last."""
+def _key_figure_entry(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
+    """Entry of a key figure in JSON: largest value, its time, s, and last value."""
     return {
         "title": figure.title,
         "unit": figure.unit,
@@ -276,13 +328,14 @@ def _told(run: FinishedRun, figure: KeyFigure) -> dict[str, object]:
 
 
 def _number(value: float, unit: str) -> str:
+    """Words on a number with its unit."""
     if math.isnan(value):
         return "none"
     return f"{value:.6g} {unit}".strip()
 
 
 def _known(problem: Problem, limit: float) -> Known:
-    """The reference, or none where there is none in time, and what is said of it."""
+    """Reference within a time limit, s; warn of its doubts, or that it is missing."""
     end = time.perf_counter() + limit
     known = known_reference(problem, lambda: time.perf_counter() > end)
     if known.reference is None:
@@ -293,21 +346,23 @@ def _known(problem: Problem, limit: float) -> Known:
 
 
 def _scenes(_chosen: argparse.Namespace) -> int:
+    """List the scenes."""
     for name, kind in CATALOGUE.items():
         print(f"{name:<10} {kind.title} ({kind.source})")
     return 0
 
 
 def _settings(chosen: argparse.Namespace) -> int:
+    """List the settings of a scene, with units, defaults, values and help."""
     kind = scene_settings(chosen.scene)
     definitions = kind.definitions()
-    papers = kind.defaults("paper")
-    width = max(map(len, definitions)) + 1
+    of_paper = kind.defaults("paper")
+    width = max(len(name) for name in definitions) + 1
     for name, definition in definitions.items():
         unit = about(definition).unit or "-"
         default = json.dumps(definition.default)
-        if papers[name] != definition.default:
-            default += f" (method=paper: {json.dumps(papers[name])})"
+        if of_paper[name] != definition.default:
+            default += f" (method=paper: {json.dumps(of_paper[name])})"
         print(f"{name:<{width}} {unit:<5} default {default:<10} {allowed(definition)}")
         print(f"{'':<{width}} {definition.doc}")
         for preset, line in about(definition).presets.items():

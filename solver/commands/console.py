@@ -1,4 +1,4 @@
-"""What commands share: the scene that they are given, what they print beside results, and files."""
+"""Parts that commands share: settings from arguments, messages, JSON, and folders."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def add_command(
     of_scene: bool = False,
     to_folder: bool = False,
 ) -> argparse.ArgumentParser:
-    """Add a command; one of a scene takes that and its settings, one with files their folder."""
+    """Add a command, with arguments for a scene and its settings, or for a folder."""
     parser: argparse.ArgumentParser = commands.add_parser(name, help=purpose)
     parser.set_defaults(command=command)
     if of_scene:
@@ -51,9 +51,9 @@ def add_command(
 
 
 def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
-    """Settings that a command is given, and what was understood of their tables, by name.
+    """Settings that a command is given, and messages on their tables by name.
 
-    Prints the latter, and what of the former does nothing.
+    The messages are printed, too, and a warning of settings that do not apply.
     """
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
     print_tables(tables)
@@ -70,32 +70,38 @@ def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
 
 
 def warn(*messages: str) -> None:
-    """Print messages to stderr, a line each."""
+    """Print messages to stderr, one a line."""
     for message in messages:
         print(f"slipfront: {message}", file=sys.stderr, flush=True)
 
 
 def print_tables(tables: Mapping[str, str]) -> None:
-    """Print to stderr what was understood of tables, by what they were given for."""
-    warn(*(f"{name}: {message}" for name, message in tables.items()))
+    """Print messages on tables to stderr; they stand under the name of the setting."""
+    for name, message in tables.items():
+        warn(f"{name}: {message}")
 
 
 def print_files(names: str, folder: Path) -> None:
-    """Print where files are, and whether their page has charts."""
-    print(*([] if renderer() else [NO_CHARTS]), f"{names} in {folder}", sep="\n")
+    """Print the folder of files, and a line if their page has no charts."""
+    if not renderer():
+        print(NO_CHARTS)
+    print(f"{names} in {folder}")
 
 
 def print_json(values: Mapping[str, Any]) -> None:
-    """Print values as JSON, with null for what is no finite number."""
+    """Print values as JSON, with null for infinite numbers and NaN."""
     print(json.dumps(_finite(values)), flush=True)
 
 
 def _finite(value: Any) -> Any:
+    """Value with None in place of infinite numbers and NaN, at any depth."""
     if isinstance(value, dict):
         return {name: _finite(entry) for name, entry in value.items()}
     if isinstance(value, list):
-        return list(map(_finite, value))
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+        return [_finite(entry) for entry in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
 
 
 def announce(
@@ -106,10 +112,10 @@ def announce(
     reference: bool = False,
     limit: float = math.inf,
 ) -> None:
-    """Print what a long or large run will take, before it begins.
+    """Print the expected time and memory of a long or large run, before it begins.
 
-    `run` is what it is called, `reference` whether there is one beside it, and `limit`
-    the seconds after which it ends.
+    `run` is its name in the message, `limit` its time limit, s; a `reference` may be
+    computed, too.
     """
     cost = run_cost(
         problem, method_of(settings), settings.max_iterations, with_reference=reference
@@ -119,7 +125,8 @@ def announce(
     line = f"{run} will take about {cost}"
     if cost.reference > 0.2 * cost.seconds:
         share = round(100.0 * cost.reference / cost.seconds)
-        line += f", {share} % of the time for the reference, which --no-reference leaves out"
+        line += f", {share} % of the time for the reference, "
+        line += "which --no-reference leaves out"
     if limit < cost.seconds:
         line += f"; --limit ends it after {limit:g} s"
     warn(line)
@@ -127,7 +134,7 @@ def announce(
 
 @contextlib.contextmanager
 def refusing(out: Path, allowed: str) -> Iterator[None]:
-    """Refuse a place at which nothing can be written."""
+    """Refuse a file or folder if the body of the statement cannot write to it."""
     try:
         yield
     except BrokenPipeError:
@@ -138,9 +145,9 @@ def refusing(out: Path, allowed: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def writing(folder: Path, *files: str) -> Iterator[None]:
-    """Make a folder for files; refuse one that cannot be made or written to, before all work.
+    """Make a folder for files; refuse at once one that cannot be made or written to.
 
-    It goes again where nothing was written into it.
+    A new folder that is empty at the end is removed.
     """
     is_new = not folder.exists()
     try:

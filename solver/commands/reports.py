@@ -1,4 +1,4 @@
-"""The commands that write reports: `figures`, `study`, `stability`, `proof` and `sweep`."""
+"""Commands that write reports: `figures`, `study`, `stability`, `proof`, `sweep`."""
 
 from __future__ import annotations
 
@@ -47,15 +47,26 @@ from solver.study.trade_case import case_from_file
 TABLE = "sweep.csv"
 PAGE = "sweep.html"
 LIMIT = 600.0
-"""Seconds that a run may take, unless somebody says otherwise."""
+"""Time limit of a run without `--limit`, s."""
 OFTEN = 3.0
-"""Seconds between two lines of progress."""
+"""Time between two lines of progress, s."""
 
 
 def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
     purpose = "draw the paper's Figs. 3 to 8 again"
     add_command(commands, "figures", purpose, _figures, to_folder=True)
+    _add_study(commands)
+    _add_stability(commands)
+    purpose = "what is known beside what is found, row by row"
+    parser = add_command(commands, "proof", purpose, _proof, to_folder=True)
+    cases = "cases of one's own (.toml)"
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=cases)
+    _add_sweep(commands)
+
+
+def _add_study(commands: Any) -> None:
+    """Add `study`."""
     purpose = "error against run time, all methods side by side"
     parser = add_command(
         commands, "study", purpose, _study, of_scene=True, to_folder=True
@@ -66,6 +77,10 @@ def add_reports(commands: Any) -> None:
     parser.add_argument(
         "--large", action="store_true", help="sizes that take minutes, too"
     )
+
+
+def _add_stability(commands: Any) -> None:
+    """Add `stability`."""
     purpose = "stiff and extreme cases, or random runs, each with a verdict"
     parser = add_command(commands, "stability", purpose, _stability, to_folder=True)
     parser.add_argument(
@@ -77,10 +92,10 @@ def add_reports(commands: Any) -> None:
         "--random", type=int, metavar="N", help="so many random runs, instead"
     )
     parser.add_argument("--seed", type=int, default=1, help="of the random runs")
-    purpose = "what is known beside what is found, row by row"
-    parser = add_command(commands, "proof", purpose, _proof, to_folder=True)
-    own = "cases of one's own (.toml)"
-    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help=own)
+
+
+def _add_sweep(commands: Any) -> None:
+    """Add `sweep`."""
     purpose = "quantities of a run over up to two settings"
     parser = add_command(
         commands, "sweep", purpose, _sweep, of_scene=True, to_folder=True
@@ -101,6 +116,7 @@ def add_reports(commands: Any) -> None:
 
 
 def _figures(chosen: argparse.Namespace) -> int:
+    """Draw the figures of the paper."""
     with writing(chosen.out, FILE):
         figures = paper_figures(paper_runs())
         write_figures(figures, chosen.out)
@@ -113,37 +129,36 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 
 def _study(chosen: argparse.Namespace) -> int:
+    """Measure error over run time of all methods, and run time over size."""
     if chosen.repeats < 1:
         raise SettingError(
             "--repeats", chosen.repeats, "a whole number from 1", "give 1 or more"
         )
     settings, _ = given(chosen)
     with writing(chosen.out):
-        # What is measured is written at once: the rest takes longer, and somebody may
-        # end it.
+        # Curves are written at once: sizes take longer, and may be interrupted.
         curves = error_against_time(settings, chosen.repeats)
         study.write_curves(curves, chosen.out)
         sizes = times_at_sizes(settings, large=chosen.large)
         study.write_study(settings, chosen.repeats, curves, sizes, chosen.out)
     print("\n".join(study.conditions(settings, chosen.repeats)), end="\n\n")
     print(aligned(study.table(curves)))
-    print(
-        "",
-        aligned(study.sizes_table(settings, sizes)),
-        *study.notes(settings, sizes),
-        sep="\n",
-    )
+    print()
+    print(aligned(study.sizes_table(settings, sizes)))
+    for note in study.notes(settings, sizes):
+        print(note)
     print_files(f"{len(study.FILES)} files", chosen.out)
     return 0
 
 
 def _stability(chosen: argparse.Namespace) -> int:
+    """Run stiff and extreme cases, or random ones, and judge each."""
     scenes = [scene_settings(scene).scene for scene in chosen.scenes]
-    for name, least in (("random", 1), ("seed", 0)):
+    for name, minimum in (("random", 1), ("seed", 0)):
         value = getattr(chosen, name)
-        if value is not None and value < least:
+        if value is not None and value < minimum:
             raise SettingError(
-                f"--{name}", value, f"a whole number from {least}", "raise it"
+                f"--{name}", value, f"a whole number from {minimum}", "raise it"
             )
     cases = extreme_cases(scenes, quick=chosen.quick)
     if chosen.random is not None:
@@ -155,7 +170,7 @@ def _stability(chosen: argparse.Namespace) -> int:
             for run in judged_runs(cases):
                 print(line_of(run, stability.SHOWN), flush=True)
                 runs.append(run)
-        finally:  # what is done by then is written
+        finally:  # runs before an interruption are written, too
             stability.write_stability(runs, chosen.out)
             print("\n".join(stability.last_lines(runs)))
             print(f"{len(stability.FILES)} files in {chosen.out}")
@@ -163,11 +178,14 @@ def _stability(chosen: argparse.Namespace) -> int:
 
 
 def _proof(chosen: argparse.Namespace) -> int:
-    own = [proof.known_case(case_from_file(path)) for path in chosen.files]
+    """Compare results with known ones: of the given files, or of all cases."""
+    cases = [proof.known_case(case_from_file(path)) for path in chosen.files]
+    if not cases:
+        cases = proof.cases()
     rows = []
     with writing(chosen.out, *proof.FILES):
         print(head_of(proof.SHOWN))
-        for case in own or proof.cases():
+        for case in cases:
             for row in proof.rows_of(case):
                 print(line_of(row, proof.SHOWN), flush=True)
                 rows.append(row)
@@ -177,19 +195,16 @@ def _proof(chosen: argparse.Namespace) -> int:
 
 
 def _sweep(chosen: argparse.Namespace) -> int:
+    """Run a scene over up to two settings, and report quantities of the runs."""
     settings, tables = settings_from_command(chosen.scene, chosen.changes)
-    # Without a range it is a run, which has one row.
+    # Without a range the sweep is a single run, in one row.
     vary = chosen.vary or [f"friction={settings.friction!r}"]
     plan = plan_of(settings, vary, [name.strip() for name in chosen.of.split(",")])
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
     print_tables(tables)
-    warn(
-        *(
-            f"{name} does nothing with the other settings as they are"
-            for name in plan.idle()
-        )
-    )
+    for name in plan.idle():
+        warn(f"{name} does nothing with the other settings as they are")
     with writing(chosen.out):
         rows = rows_in(chosen.out / TABLE, plan)
         is_ended = False
@@ -207,35 +222,53 @@ def _sweep(chosen: argparse.Namespace) -> int:
     print_files(f"{TABLE} and {PAGE}", chosen.out)
     if is_ended:
         return INTERRUPTED
-    return 0 if len(rows) == plan.size and all(row.holds for row in by_number) else 1
+    is_whole = len(rows) == plan.size
+    return 0 if is_whole and all(row.holds for row in by_number) else 1
 
 
 def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> None:
-    """Run what of a plan has no row yet, append its rows to the table, and print how far it is."""
-    known = {n: row for n, row in rows.items() if row.ending not in (STUCK, LOST)}
+    """Run the rest of a plan, append its rows to the table, and print the progress.
+
+    Runs that were stuck or lost before are tried again.
+    """
+    known = {row.number for row in rows.values() if row.ending not in (STUCK, LOST)}
     table = chosen.out / TABLE
     with opened(chosen.on, patience(chosen.limit)) as executor:
-        # As a whole, in case that its last line was cut off
+        # The table is written anew, as its last line may have been cut off.
         write(table, csv_of(plan, list(rows.values())))
+        runs = sweep(
+            plan,
+            executor,
+            done=set(known),
+            limit=chosen.limit,
+            warm=not chosen.cold,
+        )
+        progress = _Progress(plan.size, len(known))
         with table.open("a", encoding="utf-8", newline="") as lines:
-            before = len(known)
-            began = time.monotonic()
-            printed = began
-            runs = sweep(
-                plan,
-                executor,
-                done=set(known),
-                limit=chosen.limit,
-                warm=not chosen.cold,
-            )
             for row in runs:
-                rows[row.number] = known[row.number] = row
+                rows[row.number] = row
+                known.add(row.number)
                 lines.write(lines_of(plan, [row]))
                 lines.flush()
-                now = time.monotonic()
-                done = len(known)
-                if now - printed > OFTEN:
-                    left = (now - began) / (done - before) * (plan.size - done)
-                    line = f"{done} of {plan.size} runs, {left:.0f} s left"
-                    print(line, file=sys.stderr, flush=True)
-                    printed = now
+                progress.show(len(known))
+
+
+class _Progress:
+    """Lines on the progress of a sweep, every few seconds."""
+
+    def __init__(self, size: int, done: int) -> None:
+        self._size = size
+        self._before = done
+        self._began = time.monotonic()
+        self._printed = self._began
+
+    def show(self, done: int) -> None:
+        """Print the number of runs done, and the time left, unless just printed."""
+        now = time.monotonic()
+        if now - self._printed <= OFTEN:
+            return
+        self._printed = now
+        seconds_per_run = (now - self._began) / (done - self._before)
+        left = seconds_per_run * (self._size - done)
+        line = f"{done} of {self._size} runs, {left:.0f} s left"
+        print(line, file=sys.stderr, flush=True)

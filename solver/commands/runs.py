@@ -1,4 +1,4 @@
-"""The commands that set runs beside something: `mesh`, `compare`, `fit`, `lesson`."""
+"""Commands that compare runs: `mesh`, `compare`, `fit`, `lesson`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 import math
 import sys
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,14 @@ from solver.commands.console import (
     warn,
     writing,
 )
-from solver.latin import Ending, solve
+from solver.discrete import Problem
+from solver.latin import Ending, Solution, solve
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings.definitions import SettingError, about
+from solver.settings.scene import Settings
 from solver.study.compared_runs import ComparedRun
-from solver.study.comparison import CAN, FEWEST, Comparison
+from solver.study.comparison import CAN, FEWEST, Comparison, OtherResults
 from solver.study.fit import MOST, fit
 from solver.study.fit_report import FILES, as_json, lines, write_fit, write_loop
 from solver.study.lessons import check, lesson_from_file
@@ -42,14 +45,15 @@ from solver.study.mesh import (
     which_to_refine,
 )
 from solver.study.quantities import reading
+from solver.study.quantities.quantity import Quantity
 from solver.study.table_use import brought_in
 
 OFTEN = 0.3
-"""Seconds between two lines, and files, of how far a fit is."""
+"""Seconds between two reports on the progress of a fit, each a line and a file."""
 
 
 def add_checks(commands: Any) -> None:
-    """Add the commands."""
+    """Add the commands that compare runs."""
     purpose = "whether elements and instants are enough for a quantity"
     mesh = add_command(commands, "mesh", purpose, _mesh, of_scene=True)
     mesh.add_argument(
@@ -62,8 +66,8 @@ def add_checks(commands: Any) -> None:
     )
     purpose = "settings that bring a run nearest to a measured loop"
     fitting = add_command(commands, "fit", purpose, _fit, of_scene=True, to_folder=True)
-    most = f"up to {MOST} settings"
-    fitting.add_argument("--vary", required=True, metavar="NAME,...", help=most)
+    count = f"up to {MOST} settings"
+    fitting.add_argument("--vary", required=True, metavar="NAME,...", help=count)
     for parser in (compare, fitting):
         parser.add_argument(
             "--with",
@@ -83,6 +87,7 @@ def add_checks(commands: Any) -> None:
 
 
 def _mesh(chosen: argparse.Namespace) -> int:
+    """Print a quantity on three meshes and three numbers of instants, and errors."""
     settings, _ = given(chosen)
     asked = reading(chosen.of)
     if not decides(settings, asked):
@@ -91,20 +96,8 @@ def _mesh(chosen: argparse.Namespace) -> int:
             "--of", chosen.of, can, "`python -m solver sweep` lists them"
         )
     values: dict[str, float] = {}
-    refinements = []
-    for names in (settings.MESH, ["instants"]):
-        runs, own = three_of(settings, names)
-        for run in runs:
-            size = size_of(run)
-            if size not in values:
-                announce(run, discretise(run), size)
-                values[size] = value_on(run, asked)
-                print(
-                    f"{size:>32}  {values[size]:.6g} {asked.unit}".rstrip(), flush=True
-                )
-        coarse, middle, fine = (values[size_of(run)] for run in runs)
-        refinements.append(Refinement((coarse, middle, fine), own))
-    elements, instants = refinements
+    elements = _refined(settings, settings.MESH, asked, values)
+    instants = _refined(settings, ["instants"], asked, values)
     print(f"Elements: {answer(elements, asked.unit)}")
     print(f"Instants: {answer(instants, asked.unit, TIME_STEP)}")
     if which := which_to_refine(elements, instants):
@@ -112,62 +105,100 @@ def _mesh(chosen: argparse.Namespace) -> int:
     return 0 if which else 1
 
 
+def _refined(
+    settings: Settings, names: Sequence[str], asked: Quantity, values: dict[str, float]
+) -> Refinement:
+    """Refinement of a quantity over some settings, from three runs.
+
+    `values` are those of runs by their size, which are run once.
+    """
+    runs, given_run = three_of(settings, names)
+    for run in runs:
+        size = size_of(run)
+        if size not in values:
+            announce(run, discretise(run), size)
+            values[size] = value_on(run, asked)
+            line = f"{size:>32}  {values[size]:.6g} {asked.unit}"
+            print(line.rstrip(), flush=True)
+    coarse, middle, fine = (values[size_of(run)] for run in runs)
+    return Refinement((coarse, middle, fine), given_run)
+
+
 def _compare(chosen: argparse.Namespace) -> int:
+    """Compare a run with a measured loop, or with the results of another program."""
     settings, tables = given(chosen)
     table = read_brought(chosen, f"{CAN}; or displacement and force")
     structure = settings.structure()
     brought = brought_in(table, settings, structure.axes)
     problem = discretise(settings)
-    name = chosen.file.name
-    interface = chosen.interface
-    message = brought.message
-    beside: LoopComparison | Comparison
+    comparison: LoopComparison | Comparison
     if isinstance(brought, MeasuredLoop):
-        beside = LoopComparison(brought, structure.loop(problem), problem)
+        comparison = LoopComparison(brought, structure.loop(problem), problem)
     else:
-        if interface and interface not in problem.rubbing:
-            can = ", ".join(problem.rubbing)
-            raise SettingError("--interface", interface, can, "choose one of these")
-        beside = Comparison(brought, problem, interface)
-        if beside.counted < FEWEST:
-            can = f"at least {FEWEST} rows that both cover"
-            raise SettingError(
-                "--with", str(chosen.file), can, "give points along this interface"
-            )
-    print_tables({name: message})
+        comparison = _comparison(chosen, brought, problem)
+    print_tables({chosen.file.name: brought.message})
     announce(settings, problem)
     solution = solve(problem, method_of(settings))
-    figures = beside.figures(solution.iterate)
-    status = solution.status
-    if status.lost_from is not None:
-        time_lost = problem.instants[status.lost_from]
-        warn(f"no distance is told: no solution is found from {time_lost:.4g} s on")
-        figures |= dict.fromkeys(
-            figures.keys() & {"distance", "distance_given"}, math.nan
-        )
-    elif isinstance(beside, LoopComparison):
-        warn(*beside.drive_messages(figures["distance_given"]))
-        warn(*beside.measured.unit_doubts(*beside.loop.along(solution.iterate)))
+    figures = comparison.figures(solution.iterate)
+    _warn_of_doubts(comparison, solution, figures)
     if chosen.json:
-        print_json(
-            {
-                **figures,
-                "tables": {**tables, name: message},
-                "status": str(status.ending),
-            }
-        )
+        figures["tables"] = {**tables, chosen.file.name: brought.message}
+        figures["status"] = str(solution.status.ending)
+        print_json(figures)
     else:
-        distance = figures["distance"]
-        if math.isnan(distance):
-            far = "no distance"
-        else:
-            far = f"{100.0 * distance:.4g} %"
-        rows = f"{figures['rows_compared']} of {figures['rows']} rows"
-        print(f"{figures['quantity']}: {far} from {name}, at {rows}")
-    return 0 if status.ending is Ending.CONVERGED else 1
+        _print_distance(figures, chosen.file.name)
+    return 0 if solution.status.ending is Ending.CONVERGED else 1
+
+
+def _comparison(
+    chosen: argparse.Namespace, results: OtherResults, problem: Problem
+) -> Comparison:
+    """Compare with another program along an interface; refuse too few common points."""
+    interface = chosen.interface
+    if interface and interface not in problem.rubbing:
+        can = ", ".join(problem.rubbing)
+        raise SettingError("--interface", interface, can, "choose one of these")
+    comparison = Comparison(results, problem, interface)
+    if comparison.counted < FEWEST:
+        can = f"at least {FEWEST} rows that both cover"
+        raise SettingError(
+            "--with", str(chosen.file), can, "give points along this interface"
+        )
+    return comparison
+
+
+def _warn_of_doubts(
+    comparison: LoopComparison | Comparison,
+    solution: Solution,
+    figures: dict[str, Any],
+) -> None:
+    """Warn of a distance that is none, as a solution is lost, or of doubtful units.
+
+    Distances of a lost solution become NaN.
+    """
+    lost_from = solution.status.lost_from
+    if lost_from is not None:
+        time_lost = solution.iterate.problem.instants[lost_from]
+        warn(f"no distance is told: no solution is found from {time_lost:.4g} s on")
+        for name in figures.keys() & {"distance", "distance_given"}:
+            figures[name] = math.nan
+    elif isinstance(comparison, LoopComparison):
+        warn(*comparison.drive_messages(figures["distance_given"]))
+        loop = comparison.loop.along(solution.iterate)
+        warn(*comparison.measured.unit_doubts(*loop))
+
+
+def _print_distance(figures: Mapping[str, Any], source: str) -> None:
+    """Print the distance of a run from a table."""
+    distance = "no distance"
+    if not math.isnan(figures["distance"]):
+        distance = f"{100.0 * figures['distance']:.4g} %"
+    rows = f"{figures['rows_compared']} of {figures['rows']} rows"
+    print(f"{figures['quantity']}: {distance} from {source}, at {rows}")
 
 
 def _fit(chosen: argparse.Namespace) -> int:
+    """Fit settings to a measured loop."""
     settings, tables = given(chosen)
     measured = loop_in(read_brought(chosen, LOOP), settings.structure().axes)
     announce(settings, discretise(settings))
@@ -176,7 +207,7 @@ def _fit(chosen: argparse.Namespace) -> int:
     printed = 0.0
 
     def watch(runs: int, nearest: ComparedRun) -> None:
-        """Print how far it is, and keep the loop of the nearest run so far in the folder."""
+        """Print the progress, and write the loop of the nearest run into the folder."""
         nonlocal printed
         if not printed:
             run = nearest.run
@@ -184,12 +215,13 @@ def _fit(chosen: argparse.Namespace) -> int:
         if time.monotonic() - printed < OFTEN:
             return
         printed = time.monotonic()
-        values = ", ".join(
-            f"{name} {value:.4g} {about(settings.definitions()[name]).unit}".strip()
-            for name, value in zip(names, nearest.values, strict=True)
-        )
-        far = f"{100.0 * nearest.distance:.3g} % away"
-        print(f"{runs} runs: {values}, {far}", file=sys.stderr, flush=True)
+        values = []
+        for name, value in zip(names, nearest.values, strict=True):
+            unit = about(settings.definitions()[name]).unit
+            values.append(f"{name} {value:.4g} {unit}".strip())
+        distance = f"{100.0 * nearest.distance:.3g} % away"
+        line = f"{runs} runs: {', '.join(values)}, {distance}"
+        print(line, file=sys.stderr, flush=True)
         write_loop(nearest.run, chosen.out)
 
     with writing(chosen.out, *FILES):
@@ -207,6 +239,7 @@ def _fit(chosen: argparse.Namespace) -> int:
 
 
 def _lesson(chosen: argparse.Namespace) -> int:
+    """Test the claims of lessons."""
     lessons = [lesson_from_file(path) for path in chosen.files]
     missed = 0
     for lesson in lessons:

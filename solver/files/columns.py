@@ -1,4 +1,4 @@
-"""Heads of tables: what a name means, and the unit behind it, as people write them.
+"""Heads of tables: quantities that a name may mean, and the unit behind the name.
 
 Units are SI with prefixes, inches, feet, pounds, kips and kiloponds of force, and psi;
 with their products, quotients and powers. A symbol is first taken as it is written
@@ -23,8 +23,8 @@ WORDS = {
     "position": "position x pos ort stelle",
     "force": "force load f fx fy fz p kraft last tension zugkraft loadcell",
     "displacement": (
-        "displacement disp displ u ux uy uz weg verschiebung deflection durchbiegung stroke hub "
-        "travel extension ext elongation crosshead traverse"
+        "displacement disp displ u ux uy uz weg verschiebung deflection durchbiegung "
+        "stroke hub travel extension ext elongation crosshead traverse"
     ),
     "pressure": "pressure load p druck last traction stress spannung",
     "friction force": "friction reibung reibkraft reibungskraft",
@@ -60,7 +60,7 @@ KINDS = {
     "K": {"temperature"},
     "": {"strain"},
 }
-"""Quantities by the unit of what they are read for."""
+"""Quantities of a setting by its unit."""
 _ENDINGS = (
     "zeit",
     "time",
@@ -86,10 +86,23 @@ Dimensions = tuple[int, ...]
 INCH = Fraction("0.0254")
 KILOPOND = Fraction("9.80665")
 POUND = Fraction("0.45359237") * KILOPOND
-"""Of force; as mass it is not taken, as there is none in what is read here. All by
-definition."""
-_POWERS = {"n": -9, "µ": -6, "μ": -6, "u": -6, "m": -3, "c": -2, "": 0, "da": 1, "h": 2}
-_POWERS |= {"k": 3, "M": 6, "G": 9}
+"""Sizes of an inch, m, of a kilopond and of a pound of force, N, by definition. A pound
+of mass is not known, as no table that is read here has masses."""
+_POWERS = {
+    "n": -9,
+    "µ": -6,
+    "μ": -6,
+    "u": -6,
+    "m": -3,
+    "c": -2,
+    "": 0,
+    "da": 1,
+    "h": 2,
+    "k": 3,
+    "M": 6,
+    "G": 9,
+}
+"""Powers of ten by prefixes."""
 _WITH_PREFIX: dict[str, tuple[int, Dimensions]] = {
     "N": (1, (1, 0, 0, 0, 0)),
     "m": (1, (0, 1, 0, 0, 0)),
@@ -98,11 +111,19 @@ _WITH_PREFIX: dict[str, tuple[int, Dimensions]] = {
     "bar": (100_000, (1, -2, 0, 0, 0)),
     "Nm": (1, (1, 1, 0, 0, 0)),
 }
-_SYMBOLS: dict[str, tuple[Fraction, Dimensions]] = {
-    prefix + unit: (size * Fraction(10) ** power, dimensions)
-    for unit, (size, dimensions) in _WITH_PREFIX.items()
-    for prefix, power in _POWERS.items()
-} | {
+"""Size in SI and dimensions of units that may have a prefix."""
+
+
+def _prefixed() -> dict[str, tuple[Fraction, Dimensions]]:
+    """Size in SI and dimensions of the units of `_WITH_PREFIX` with every prefix."""
+    symbols = {}
+    for unit, (size, dimensions) in _WITH_PREFIX.items():
+        for prefix, power in _POWERS.items():
+            symbols[prefix + unit] = (size * Fraction(10) ** power, dimensions)
+    return symbols
+
+
+_SYMBOLS: dict[str, tuple[Fraction, Dimensions]] = _prefixed() | {
     "Nmm": (Fraction(1, 1000), (1, 1, 0, 0, 0)),
     "in": (INCH, (0, 1, 0, 0, 0)),
     "ft": (12 * INCH, (0, 1, 0, 0, 0)),
@@ -122,6 +143,7 @@ _SYMBOLS: dict[str, tuple[Fraction, Dimensions]] = {
     "1": (Fraction(1), (0, 0, 0, 0, 0)),
     "-": (Fraction(1), (0, 0, 0, 0, 0)),
 }
+"""Size in SI and dimensions of all units by their symbols."""
 SPELLINGS = {
     "s": "s",
     "sec": "s",
@@ -231,12 +253,19 @@ SPELLINGS = {
     "percent": "%",
     "prozent": "%",
 }
-"""Symbols of units by how they are written otherwise, in small letters."""
-_NOT_TAKEN = {"kg", "hz", "v", "volt", "volts", "mv"}
-_SPELT = {
-    symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")
-} | SPELLINGS.keys()
-_SPELT |= _NOT_TAKEN
+"""Symbols of units by their other spellings, in small letters."""
+_NOT_TAKEN = {
+    "kg",
+    "hz",
+    "v",
+    "volt",
+    "volts",
+    "mv",
+}
+"""Units that are recognised, and refused, as no quantity that is read has them."""
+_SPELT = {symbol.lower() for symbol in _SYMBOLS if symbol.strip("1-")}
+_SPELT |= SPELLINGS.keys() | _NOT_TAKEN
+"""All spellings of units, in small letters."""
 DOUBTFUL = 0.8
 """Powers of a thousand from which on numbers without a unit are doubted: 250 times."""
 _PREFIXES = {
@@ -247,7 +276,7 @@ _PREFIXES = {
     2: "µ",
     3: "n",
 }
-"""By the powers of a thousand by which numbers in that unit are too large."""
+"""Likely prefixes by the power of a thousand by which numbers are too large."""
 _EXAMPLES = {
     "s": "s, ms, min, h",
     "m": "m, mm, µm",
@@ -260,11 +289,12 @@ _EXAMPLES = {
     "N·m/m": "N·m/m, kN·m/m, N",
     "": "plain numbers or %",
 }
+"""Units that a message proposes, by the unit of a setting."""
 
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column by its number, the line of its unit or name, and both as they are written."""
+    """A column of a table: its number from 0, its name, unit, and the line of these."""
 
     place: int
     line: int = 0
@@ -273,31 +303,33 @@ class TableColumn:
 
     @property
     def key(self) -> str:
-        """Its name as settings are named."""
+        """Name of the column in the spelling of settings."""
         return re.sub(r"[\s_-]+", "_", self.name.lower())
 
     @property
     def is_known(self) -> bool:
-        """Whether it names a quantity, or has a unit."""
+        """Return whether the column names a quantity, or has a unit."""
         return bool(self.quantities[0] or self.unit)
 
     @cached_property
     def quantities(self) -> tuple[frozenset[str], bool]:
-        """Quantities that its name may mean, and whether all of it is a word for them."""
+        """Quantities that the name may mean, and whether all of it means them."""
         name = self.key.replace("_", " ").rstrip(" .:")
+        joined = name.replace(" ", "")
         last = name.rstrip("0123456789 ").rpartition(" ")[2]
-        ending = next((word for word in _ENDINGS if last.endswith(word)), "")
-        for word in (name, name.replace(" ", ""), last, ending):
-            if meant := _meant_by().get(word):
-                return meant, word.replace(" ", "") == name.replace(" ", "")
+        words = [name, joined, last]
+        words += [ending for ending in _ENDINGS if last.endswith(ending)][:1]
+        for word in words:
+            meant = _meant_by().get(word)
+            if meant:
+                return meant, word.replace(" ", "") == joined
         return frozenset(), False
 
     def size(self, unit: str, refuse: Refuse) -> float:
-        """Size of its unit in another; refuse one that measures something else."""
-        if self.unit:
-            size = size_in(self.unit, unit)
-        else:
-            size = 1.0
+        """Size of the column's unit in another; refuse a unit of another dimension."""
+        if not self.unit:
+            return 1.0
+        size = size_in(self.unit, unit)
         if size is None:
             raise refuse(
                 f"line {self.line} says {self.unit}: give it in {examples_of(unit)}"
@@ -305,11 +337,10 @@ class TableColumn:
         return size
 
     def with_units(self, line: int, cells: list[str], refuse: Refuse) -> TableColumn:
-        """The column with what a line of units says of it."""
+        """Make the column with its unit from a line of units; refuse a second unit."""
+        unit = ""
         if self.place < len(cells):
             unit = cells[self.place].strip("()[]")
-        else:
-            unit = ""
         if not unit:
             return self
         if self.unit and parse_unit(unit) != parse_unit(self.unit):
@@ -319,13 +350,15 @@ class TableColumn:
         return replace(self, line=line, unit=unit)
 
     def message(self, default: str, unit: str) -> str:
-        """Describe what was understood of it."""
+        """Describe the column as it was understood, with a default name and unit."""
         name = self.name or default
+        if self.unit.strip("-1"):
+            return f"{name} in {self.unit}"
         if self.unit or not unit:
-            if self.unit.strip("-1"):
-                return f"{name} in {self.unit}"
             return name
-        return f"{name} in {unit}{' (no unit given)' if self.name else ''}"
+        if self.name:
+            return f"{name} in {unit} (no unit given)"
+        return f"{name} in {unit}"
 
 
 @cache
@@ -339,85 +372,90 @@ def _meant_by() -> dict[str, frozenset[str]]:
 
 
 def column_of(place: int, line: int, head: str) -> TableColumn:
-    """Split a head into name and unit."""
+    """Make the column of a head, which is split into name and unit."""
+    in_brackets = _BRACKETS.fullmatch(head)
+    if in_brackets is not None:
+        return TableColumn(place, line, *in_brackets.groups())
     behind = _BEHIND.fullmatch(head)
-    match = _BRACKETS.fullmatch(head)
-    if match is None and behind and _is_unit_behind(behind[2]):
-        return TableColumn(place, line, re.sub(r"\s+in$", "", behind[1]), behind[2])
-    match = match or _IN_OR_SLASH.fullmatch(head)
-    return TableColumn(place, line, *(match.groups() if match else (head,)))
+    if behind and _is_unit_behind(behind[2]):
+        name = re.sub(r"\s+in$", "", behind[1])
+        return TableColumn(place, line, name, behind[2])
+    divided = _IN_OR_SLASH.fullmatch(head)
+    if divided is not None:
+        return TableColumn(place, line, *divided.groups())
+    return TableColumn(place, line, head)
 
 
 def _is_unit_behind(word: str) -> bool:
-    """Whether the last word of a head is its unit; a letter may number a channel instead."""
+    """Return whether the last word of a head is a unit, not the letter of a channel."""
     return is_spelt_as_unit(word) and (len(word) > 1 or word in _SYMBOLS)
 
 
 def quantities_of(title: str, units: str) -> Collection[str]:
-    """Quantities that a title names, or else those of one of some units, such as `Pa or m`."""
+    """Quantities that a title names, or else those of some units, such as `Pa or m`."""
     named = TableColumn(0, name=title).quantities[0]
-    return named or set().union(*(KINDS.get(unit, ()) for unit in units.split(" or ")))
+    if named:
+        return named
+    quantities: set[str] = set()
+    for unit in units.split(" or "):
+        quantities |= KINDS.get(unit, set())
+    return quantities
 
 
 def are_units(cells: list[str]) -> bool:
-    """Whether a line is one of units; symbols of quantities, as t, s and F, are none.
+    """Return whether a line is a line of units.
 
-    Half of its cells are units at least: in prose there may be an "in", too.
+    Symbols of quantities, as t, s and F, are no units. At least half of the cells are
+    units, as prose may have an "in".
     """
     words = [cell.strip("()[]") for cell in cells if cell.strip("()[]-1")]
     units = [word for word in words if is_spelt_as_unit(word)]
-    is_named = any(
-        TableColumn(0, name=word).quantities[1] for word in words if word not in units
-    )
+    others = [word for word in words if word not in units]
+    is_named = any(TableColumn(0, name=word).quantities[1] for word in others)
     return bool(units) and 2 * len(units) >= len(words) and not is_named
 
 
 def parse_unit(text: str) -> tuple[float, Dimensions] | None:
-    """Size in SI and dimensions of a unit such as `kN/m`; None of what is none."""
+    """Size in SI and dimensions of a unit such as `kN/m`; None of another text."""
     size = Fraction(1)
-    exponents = [0, 0, 0, 0, 0]
+    total = [0, 0, 0, 0, 0]
     for sign, symbol, power in _factors(text):
-        if symbol in _SYMBOLS:
-            known = symbol
-        else:
+        known = symbol
+        if symbol not in _SYMBOLS:
             known = SPELLINGS.get(symbol.lower(), "")
         if not known:
             return None
         exponent = sign * int(power or 1)
         factor, dimensions = _SYMBOLS[known]
         size *= factor**exponent
-        exponents = [
-            total + exponent * part
-            for total, part in zip(exponents, dimensions, strict=True)
-        ]
-    return float(size), tuple(exponents)
+        for place, dimension in enumerate(dimensions):
+            total[place] += exponent * dimension
+    return float(size), tuple(total)
 
 
 def _factors(text: str) -> Iterable[tuple[int, str, str]]:
-    """Sign of the exponent, symbol and exponent of every factor."""
+    """Yield sign of the exponent, symbol and exponent of every factor of a unit."""
     plain = text.strip().replace("²", "2").replace("³", "3").replace("^", "")
     # A hyphen between letters is a product, as in kN-m.
     plain = re.sub(r"(?<=[^\W\d])-(?=[^\W\d])", "·", plain)
     for operator, factor in re.findall(r"(^|\s*[/·*.]\s*|\s+)([^/·*.\s]+)", plain):
+        sign = -1 if "/" in operator else 1
         match = re.fullmatch(r"(\D+?)(-?\d?)", factor)
         if match:
-            symbol, power = match.groups()
+            yield sign, match[1], match[2]
         else:
-            symbol = factor
-            power = ""
-        yield -1 if "/" in operator else 1, symbol, power
+            yield sign, factor, ""
 
 
 def is_spelt_as_unit(text: str) -> bool:
-    """Whether a word is a unit, as it is written or spelt (KN, inches), or one not taken (kg)."""
+    """Return whether a word is a unit in any spelling (KN, inches), or kg."""
     symbols = [symbol for _, symbol, _ in _factors(text)]
-    return any(symbol not in "1-" for symbol in symbols) and all(
-        symbol in "1-" or symbol.lower() in _SPELT for symbol in symbols
-    )
+    letters = [symbol for symbol in symbols if symbol not in "1-"]
+    return bool(letters) and all(symbol.lower() in _SPELT for symbol in letters)
 
 
 def size_in(text: str, units: str) -> float | None:
-    """Size of a unit in that of a setting, such as `Pa or m`; None if it measures another."""
+    """Size of a unit in one of others, as `Pa or m`; None if of other dimension."""
     given = parse_unit(text)
     for unit in units.split(" or "):
         wanted = parse_unit(unit)
@@ -427,29 +465,33 @@ def size_in(text: str, units: str) -> float | None:
 
 
 def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
-    """Words where numbers without a unit are some thousand times off; empty where they are not.
+    """Words on numbers without a unit that are some thousand times off; else empty.
 
-    `size` is the largest number, taken in that unit, and `usual` one of what it is
-    compared with, in the same unit, both positive; `of` says of what. Plain numbers are
-    not doubted.
+    Parameters
+    ----------
+    name
+        Name of the column.
+    unit
+        Unit that the numbers are taken in; plain numbers, of no unit, are not doubted.
+    size, usual
+        Largest number, and a usual size to compare it with, both positive.
+    of
+        Words on the usual size.
     """
     if not unit or not (math.isfinite(size * usual) and size * usual > 0.0):
         return ""
     thousands = math.log10(size / usual) / 3.0
     if abs(thousands) < DOUBTFUL:
         return ""
+    remedy = "name its unit in the head"
     prefix = _PREFIXES.get(round(thousands), "")
     if prefix and unit in _WITH_PREFIX:
         likely = f"{prefix}{unit}"
-    else:
-        likely = ""
-    remedy = "name its unit in the head"
-    if likely:
         remedy = f"if it is in {likely}, name that in the head, as in {name} [{likely}]"
     times = f"{float(f'{size / usual:.1g}'):g} times that of {of}"
     return f"{name} has no unit, and taken in {unit} it is {times}: {remedy}"
 
 
 def examples_of(units: str) -> str:
-    """Units that may stand in place of that of a setting."""
+    """Words on units that a column may have, by the unit of a setting."""
     return " or ".join(_EXAMPLES.get(unit, unit) for unit in units.split(" or "))

@@ -1,4 +1,4 @@
-"""Tables that people give for settings that are curves, and what was understood of them."""
+"""Tables for settings that are curves, with messages on how they were understood."""
 
 from __future__ import annotations
 
@@ -16,22 +16,28 @@ from solver.scenes import CATALOGUE
 from solver.settings.definitions import CurveParameter, SettingError, allowed
 from solver.settings.scene import Settings
 
-_SETTINGS = {
-    name
-    for kind in CATALOGUE.values()
-    for name, definition in kind.definitions().items()
-    if isinstance(definition, CurveParameter) and "_" in name
-}
-"""Names of curves that are no common words: a column of another one is not taken."""
+
+def _names_of_curves() -> set[str]:
+    """Names of the curves of all scenes that are no common words."""
+    names = set()
+    for kind in CATALOGUE.values():
+        for name, definition in kind.definitions().items():
+            if isinstance(definition, CurveParameter) and "_" in name:
+                names.add(name)
+    return names
+
+
+_SETTINGS = _names_of_curves()
+"""Names of curves that are no common words: no other curve takes such a column."""
 
 
 def curve_of(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> tuple[list[list[float]], str]:
-    """Points of a curve in a table, in units as of `Settings.curve_units`, and what was understood.
+    """Points of a curve in a table, in units of `Settings.curve_units`, and a message.
 
-    Columns that cannot be chosen, other units, what is no number, and an abscissa that
-    does not increase are refused.
+    Columns that cannot be chosen, units of another dimension, cells without a number,
+    and an abscissa that does not increase are refused.
     """
     columns = columns_for(table, definition, name, units)
     reading = table.read(columns, definition.columns, units)
@@ -39,19 +45,22 @@ def curve_of(
     if definition.is_path and len(falls):
         line = reading.lines[falls[0] + 1]
         remedy = f"line {line}: {definition.abscissa} must increase from row to row"
-        loop = "; of a loop, as force over displacement, give the time of every row"
-        raise table.refuse(remedy + (loop if definition.abscissa == "time" else ""))
+        if definition.abscissa == "time":
+            remedy += (
+                "; of a loop, as force over displacement, give the time of every row"
+            )
+        raise table.refuse(remedy)
     return reading.numbers.T.tolist(), reading.message
 
 
 def columns_for(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> Sequence[TableColumn]:
-    """Columns of a curve in a table, by its head, or as they stand where that says nothing."""
+    """Columns of a curve in a table: by the head, or in order if that names none."""
     columns = table.columns
-    if any(c.is_known for c in columns) or _SETTINGS.intersection(
-        c.key for c in columns
-    ):
+    names_quantities = any(column.is_known for column in columns)
+    names_settings = any(column.key in _SETTINGS for column in columns)
+    if names_quantities or names_settings:
         return _chosen(table, definition, name, units)
     if len(columns) != len(units):
         *others, last = definition.columns
@@ -65,29 +74,33 @@ def columns_for(
 def path_doubts(
     table: Table, settings: Settings, name: str, points: Sequence[Sequence[float]]
 ) -> list[str]:
-    """Words where columns without a unit are some thousand times off the scene.
+    """Words on columns without a unit, some thousand times off the scene.
 
-    That is its length, and the path by default, where it is of the same quantity. Times
-    are not doubted, as runs last as long as their paths.
+    Positions are compared with the length of the scene, values with the path by
+    default, where it is of the same quantity. Times are not doubted, as runs last as
+    long as their paths.
     """
     definition: Any = settings.definitions()[name]
     units = settings.curve_units(name)
     if not definition.is_path:
         return []
-    sizes = np.abs(points).max(axis=0)
     usual = [0.0, 0.0]
     if definition.abscissa == "position":
         usual[0] = settings.length
     default = type(settings).checked({})
     if default.curve_units(name) == units:
         usual[1] = float(np.abs(default.points(name)).max(axis=0)[1])
-    columns = columns_for(table, definition, name, units)
-    doubts = [
-        unit_doubt(column.name, unit, float(size), one, "the scene")
-        for column, unit, size, one in zip(columns, units, sizes, usual, strict=True)
-        if column.name and not column.unit
-    ]
-    return [doubt for doubt in doubts if doubt]
+    sizes = np.abs(points).max(axis=0)
+    doubts = []
+    for place, column in enumerate(columns_for(table, definition, name, units)):
+        if not column.name or column.unit:
+            continue
+        doubt = unit_doubt(
+            column.name, units[place], float(sizes[place]), usual[place], "the scene"
+        )
+        if doubt:
+            doubts.append(doubt)
+    return doubts
 
 
 def _chosen(
@@ -101,19 +114,20 @@ def _chosen(
     ]
     chosen: list[TableColumn] = []
     remedy = "add that column"
-    named = ""
+    key = ""
     last = len(units) - 1
     if definition.is_path and definition.abscissa == "time":
         remedy += "; a loop, as force over displacement, is no path over time"
     for place, (title, unit) in enumerate(zip(definition.columns, units, strict=True)):
         kinds: Collection[str] = {title}
         if definition.is_path and place == last:
-            kinds = quantities_of(title, unit)
-            remedy = f"name one of them {name}"
-            named = name
+            # Of two columns the second is the value if its name says nothing.
             if len(table.columns) == 2 and free and not free[0].quantities[0]:
                 return [*chosen, *free]
-        chosen.append(table.choose(free, kinds, unit, named, remedy))
+            kinds = quantities_of(title, unit)
+            remedy = f"name one of them {name}"
+            key = name
+        chosen.append(table.choose(free, kinds, unit, key, remedy))
         free.remove(chosen[-1])
     return chosen
 
@@ -121,9 +135,9 @@ def _chosen(
 def read_tables(
     kind: type[Settings], values: dict[str, object], folder: Path
 ) -> dict[str, Table]:
-    """Tables in the CSV files that curves name, whose points replace the names in the values.
+    """Read the CSV files that curves name; points replace the names in the values.
 
-    Reading files is for fronts whose user owns the machine, so nothing else does it.
+    Only fronts whose user owns the machine call this: elsewhere no file may be read.
     """
     tables = {}
     for name, definition in kind.definitions().items():
@@ -137,9 +151,9 @@ def read_tables(
 
 
 def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
-    """Describe what was understood of tables, by the name of their setting.
+    """Messages on how tables were understood, by the name of their setting.
 
-    A table of another quantity than the other settings want is refused.
+    A table of another quantity than the other settings ask for is refused.
     """
     definitions: Mapping[str, Any] = settings.definitions()
     found = {}
@@ -152,6 +166,7 @@ def messages(tables: Mapping[str, Table], settings: Settings) -> dict[str, str]:
 
 
 def _read_file(path: Path, definition: CurveParameter, name: str) -> Table:
+    """Table in a CSV file that is given for a curve."""
     can = allowed(definition)
     refuse = partial(SettingError, name, str(path), can)
     no_file = "it is no preset, and no readable CSV file"

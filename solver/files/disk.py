@@ -14,26 +14,25 @@ from typing import IO, Any
 from solver.settings.definitions import SettingError
 
 Refuse = Callable[[str], SettingError]
-"""What makes a refusal out of what is to be done."""
+"""Function from a remedy to a refusal."""
 LARGEST = 4_000_000
-"""Bytes of a file of settings, a table or a lesson, at most: some 200 000 points of a
-load path."""
+"""Largest size of a file of settings, a table or a lesson, in bytes: some 200 000
+points of a load path."""
 TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
 def read_bytes(path: Path, refuse: Refuse) -> bytes:
-    """Bytes of a file; of one that is too large no more than it takes to know.
+    """Bytes of a file, of which no more than `LARGEST` are read.
 
-    What cannot be read, is too large, or is no file is refused with the reason. A pipe,
-    which may have no other end, is not waited for.
+    A path that cannot be read, is too large, or is no file is refused with the reason.
+    A pipe, which may have no other end, is not waited for.
     """
+    data = b""
     try:
         with open(path, "rb", opener=_open_at_once) as file:
             is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
             if is_file:
                 data = file.read(LARGEST + 1)
-            else:
-                data = b""
     except (OSError, ValueError) as problem:  # no path at all is a ValueError
         raise refuse(why(problem)) from None
     if not is_file:
@@ -44,69 +43,65 @@ def read_bytes(path: Path, refuse: Refuse) -> bytes:
 
 
 def _open_at_once(path: str, flags: int) -> int:
-    """Open a file; a pipe without waiting for its other end, where a system knows how."""
+    """Open a file, without waiting for the other end of a pipe where a system can."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 @contextmanager
 def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
-    """Open a file to write, which takes its place once it is complete.
+    """Open a file to write, which appears under its name once it is complete.
 
-    Until then it stands beside that place under another name, and goes if anything
-    fails.
+    Until then it has another name in the same folder; it is removed if anything fails.
 
     Raises
     ------
     OSError
-        If there is no such folder, it cannot be written to, or is full; if what stands
-        there is no file, or one that must not be changed.
+        If the folder does not exist, cannot be written to, or is full, or if the path
+        is no file, or a file that must not be changed.
     """
-    place, part = _place_and_part(path)
-    if "b" in mode:
-        encoding = None
-        newline = None
-    else:
+    target, part = _target_and_part(path)
+    encoding = None
+    newline = None
+    if "b" not in mode:
         encoding = "utf-8"
         newline = ""
+    new = mode.replace("w", "x")
     try:
-        with part.open(
-            mode.replace("w", "x"), encoding=encoding, newline=newline
-        ) as file:
+        with part.open(new, encoding=encoding, newline=newline) as file:
             yield file
-        part.replace(place)
+        part.replace(target)
     finally:
         part.unlink(missing_ok=True)
 
 
 def why(problem: OSError | ValueError) -> str:
-    """A few words on why a file cannot be read or written."""
-    if isinstance(problem, OSError):
-        reason = problem.strerror
-    else:
-        reason = None
-    return reason or type(problem).__name__
+    """Reason, in a few words, for which a file cannot be read or written."""
+    if isinstance(problem, OSError) and problem.strerror:
+        return problem.strerror
+    return type(problem).__name__
 
 
 def write(path: Path, content: str | bytes) -> None:
-    """Write a file, as above."""
-    with whole_file(path, "w" if isinstance(content, str) else "wb") as file:
+    """Write a file, complete or not at all, as `whole_file`."""
+    mode = "w" if isinstance(content, str) else "wb"
+    with whole_file(path, mode) as file:
         file.write(content)
 
 
 def check_place(path: Path) -> None:
-    """Raise, before long work, what `whole_file` would."""
-    _, part = _place_and_part(path)
+    """Raise the error of `whole_file` at once, before long work."""
+    _, part = _target_and_part(path)
     part.touch(exist_ok=False)
     part.unlink()
 
 
-def _place_and_part(path: Path) -> tuple[Path, Path]:
-    """Place of a file, links followed, and what stands beside it until it is complete."""
-    place = Path(os.path.realpath(path))
-    if place.is_dir():
+def _target_and_part(path: Path) -> tuple[Path, Path]:
+    """Path of a file, with links followed, and its path until it is complete."""
+    target = Path(os.path.realpath(path))
+    if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if place.exists() and not place.is_file():
+    if target.exists() and not target.is_file():
         raise OSError(errno.EINVAL, "It is a device, not a file")
-    if place.exists() and not os.access(place, os.W_OK):
+    if target.exists() and not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-    return place, place.with_name(f".{secrets.token_hex(6)}.part")
+    return target, target.with_name(f".{secrets.token_hex(6)}.part")

@@ -45,7 +45,7 @@ GAPS = {
 """Cells without a number, in small letters, beside the asterisks of an overflow in
 Fortran."""
 _APART = " \u00a0\u2009\u202f'’"
-"""What may stand between groups of digits and is never a decimal sign."""
+"""Characters that may stand between groups of digits and are never a decimal sign."""
 _DROPPED = str.maketrans("", "", _APART)
 _MINUS = str.maketrans("−–", "--")
 SIGNS = ".,"
@@ -53,7 +53,7 @@ SIGNS = ".,"
 
 
 def _pattern(decimal: str, thousands: str) -> re.Pattern[str]:
-    """Numerals under a decimal sign, whose groups of three have the other sign between them."""
+    """Pattern of numerals under a decimal sign, with another sign between thousands."""
     point = re.escape(decimal)
     digits = rf"(?:\d+{point}?\d*|{point}\d+)"
     # Fortran leaves the letter out before three digits; without a point that is a part
@@ -73,7 +73,7 @@ _PLAIN = re.compile(
 )
 """Numerals as almost all are: one decimal sign, no groups."""
 _GROUP = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
-"""A sign that may stand between thousands."""
+"""Numerals whose only sign may be a decimal one, or stand between thousands."""
 _PATTERNS = {
     ".": _pattern(".", ","),
     ",": _pattern(",", "."),
@@ -81,12 +81,12 @@ _PATTERNS = {
 
 
 def is_gap(cell: str) -> bool:
-    """Whether a cell says that there is no number."""
+    """Return whether a cell is a gap: empty, or a word for a missing number."""
     return cell.lower() in GAPS or (cell.startswith("*") and not cell.strip("*"))
 
 
 def decimal_signs(cell: str) -> str:
-    """Decimal signs under which a cell is a number: both, as of `1,234` and `12`, one, or none."""
+    """Decimal signs under which a cell is a number: both (`1,234`), one, or none."""
     if _PLAIN.fullmatch(cell):
         if not ("." in cell or "," in cell) or _GROUP.fullmatch(cell):
             return SIGNS
@@ -96,20 +96,20 @@ def decimal_signs(cell: str) -> str:
 
 
 def is_numeral(cell: str) -> bool:
-    """Whether a cell is a number, whatever its decimal sign is."""
+    """Return whether a cell is a number under either decimal sign."""
     return _PLAIN.fullmatch(cell) is not None or bool(decimal_signs(cell))
 
 
 def number(cell: str, decimal: str) -> float:
-    """Number of a cell under a decimal sign; NaN of what is none."""
+    """Number of a cell under a decimal sign; NaN of a gap or a word."""
     thousands = "." if decimal == "," else ","
     if thousands not in cell and _PLAIN.fullmatch(cell):
         return float(cell.replace(",", "."))
     plain = cell.translate(_MINUS)
     if not _PATTERNS[decimal].fullmatch(plain):
         return math.nan
-    plain = (
-        plain.translate(_DROPPED).replace(thousands, "").replace(decimal, ".").lower()
-    )
+    plain = plain.translate(_DROPPED).replace(thousands, "")
+    plain = plain.replace(decimal, ".").lower()
+    # Exponents of Fortran
     plain = re.sub("[dq]", "e", plain)
     return float(re.sub(r"(?<=[\d.])([+-]\d{3})$", r"e\1", plain))

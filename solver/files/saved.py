@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import MISSING, fields
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 
@@ -23,16 +23,35 @@ from solver.scenes.remarks import remarks_on
 from solver.settings.definitions import SettingError, parse
 from solver.settings.scene import Settings
 
-WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
-IN_FILES = {"str": str, "int": int, "float": (int, float), "tuple[str, ...]": list}
-"""Types of values in a file, by those of the fields that they are for."""
-INDICATORS = "indicator", "behaviour", "estimated_error"
-ERRORS = "error_displacement", "error_force"
-"""What is known of every iteration, beside its time; errors where there is a
-reference."""
+WORDS = {
+    str: "text",
+    int: "a whole number",
+    list: "a list",
+    dict: "a table",
+}
+"""Words on the type of a value in a file; of all other types they are "a number"."""
+TEXTS = tuple[str, ...]
+IN_FILES: dict[Any, Any] = {
+    str: str,
+    int: int,
+    float: (int, float),
+    TEXTS: list,
+}
+"""Type of a value in a file, by the type of the field that the value is for."""
+INDICATORS = (
+    "indicator",
+    "behaviour",
+    "estimated_error",
+)
+"""Indicators of every iteration."""
+ERRORS = (
+    "error_displacement",
+    "error_force",
+)
+"""Errors of every iteration where there is a reference."""
 FORMAT = 2
-"""Number of the format of settings files. Files of before the second have none: in them
-the slip of a fault is that of one of its sides."""
+"""Number of the format of settings files. Files of the first format have no number: in
+them the slip of a fault is that of one of its sides."""
 
 
 def settings_from_toml(text: str, source: str = "settings file") -> Settings:
@@ -41,11 +60,11 @@ def settings_from_toml(text: str, source: str = "settings file") -> Settings:
 
 
 def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:
-    """Settings of a saved file in TOML, and what to know of those that once meant something else.
+    """Settings of a saved file in TOML, and messages on settings of an older meaning.
 
-    The latter by the name of the setting. The file has a scene's name under `scene`,
-    and settings by name; its curves name no other files; messages begin with its
-    source.
+    The messages stand under the names of the settings. The file has a scene's name
+    under `scene`, and settings by name; its curves name no other files. Refusals begin
+    with the source.
     """
     values = _parsed(text, source, text)
     values.pop("case", None)
@@ -55,20 +74,22 @@ def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:
 
 
 def format_in(values: dict[str, Any]) -> int:
-    """Take the number of the format out of the content of a settings file; 1 where it has none."""
+    """Take the number of the format out of a settings file's values; 1 if missing."""
     number = values.pop("format", 1)
-    remedy = (
-        "the file is of a later version: update Slipfront, or save the settings again"
+    require(
+        isinstance(number, int) and 1 <= number <= FORMAT,
+        "format",
+        number,
+        f"a whole number from 1 to {FORMAT}",
+        "the file is of a later version: update Slipfront, or save the settings again",
     )
-    is_known = isinstance(number, int) and 1 <= number <= FORMAT
-    require(is_known, "format", number, f"a whole number from 1 to {FORMAT}", remedy)
     return int(number)
 
 
 def meant_before(
     settings: Settings, given: Collection[str], number: int
 ) -> Mapping[str, str]:
-    """What to know of given settings that meant something else in a format, by their names."""
+    """Messages on given settings of another meaning in a format, by their names."""
     if number >= FORMAT:
         return {}
     changed = settings.changed_meanings()
@@ -87,11 +108,12 @@ def dump(settings: Settings) -> str:
 def settings_from_command(
     scene: str, assignments: Sequence[str]
 ) -> tuple[Settings, Mapping[str, str]]:
-    """Settings of a scene or a saved file, with `NAME=VALUE` texts over it, and what to know.
+    """Settings of a scene or a saved file with `NAME=VALUE` changes, and messages.
 
-    CSV files that it names are sought beside the saved file, and those of assignments
-    in the working folder; what was understood of them is by the name of their setting,
-    and so is what those of the file meant that once meant something else.
+    CSV files that a saved file names are sought beside that file, and those that an
+    assignment names in the working folder. Messages stand under the names of settings:
+    how a CSV file was understood, and which settings of a saved file had another
+    meaning in its format.
     """
     values: dict[str, Any] = {"scene": scene}
     number = FORMAT
@@ -101,6 +123,23 @@ def settings_from_command(
         number = format_in(values)
     kind = scene_settings(values.pop("scene", None))
     tables = read_tables(kind, values, Path(scene).parent)
+    changes = _changes_in(assignments, kind)
+    for name in changes:
+        tables.pop(name, None)
+    tables |= read_tables(kind, changes, Path())
+    settings = kind.checked(values).replace(**changes)
+    found = dict(messages(tables, settings))
+    from_file = values.keys() - changes
+    for name, message in meant_before(settings, from_file, number).items():
+        if name in found:
+            found[name] = f"{found[name]}; {message}"
+        else:
+            found[name] = message
+    return settings, found
+
+
+def _changes_in(assignments: Sequence[str], kind: type[Settings]) -> dict[str, object]:
+    """Values of `NAME=VALUE` texts by name; that of an unknown name is a text."""
     changes: dict[str, object] = {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
@@ -112,33 +151,24 @@ def settings_from_command(
             changes[name] = parse(text)
         else:
             changes[name] = text
-        tables.pop(name, None)
-    tables |= read_tables(kind, changes, Path())
-    settings = kind.checked(values).replace(**changes)
-    told = dict(messages(tables, settings))
-    for name, message in meant_before(
-        settings, values.keys() - changes, number
-    ).items():
-        if name in told:
-            told[name] = f"{told[name]}; {message}"
-        else:
-            told[name] = message
-    return settings, told
+    return changes
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Content of a file in TOML; one that is none is refused as what it is to be, its `kind`."""
+    """Content of a file in TOML; refusals name the file by its `kind`."""
     refuse = partial(SettingError, kind, str(path), "a file that can be read")
     return _parsed(read_bytes(path, refuse), kind, str(path))
 
 
 def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
+    """Content of a text in TOML; refusals have its name, and show `shown`."""
     if len(data) > LARGEST:
         raise SettingError(name, shown[:60], "TOML", TOO_LARGE)
     try:
-        return tomllib.loads(
-            data if isinstance(data, str) else data.decode("utf-8-sig")
-        )
+        text = data
+        if isinstance(text, bytes):
+            text = text.decode("utf-8-sig")
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
         reason = " ".join(str(problem).split())
         raise SettingError(name, shown, "TOML", f"mend it: {reason}") from None
@@ -147,7 +177,7 @@ def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
 def check_keys(
     values: Mapping[str, Any], keys: Mapping[str, Any], optional: Collection[str] = ()
 ) -> None:
-    """Refuse keys that there are not, keys that lack, and values of a wrong type."""
+    """Refuse unknown keys, missing keys, and values of a wrong type."""
     known = ", ".join(keys)
     for name, value in values.items():
         if name not in keys:
@@ -162,30 +192,41 @@ def check_keys(
 
 
 def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, Any]:
-    """Values of the fields of a dataclass that a table has as its keys, with lists as tuples.
+    """Values of the fields of a dataclass from a table's keys, with lists as tuples.
 
-    What has a default may be left out; its name is not in the table. `others` are the
-    types of keys that are no fields, or are kept otherwise. Keys are refused as by
-    `check_keys`, and lists of anything but texts.
+    The table has no key `name`, and may leave out fields with a default. `others` are
+    the types of keys that are no fields, or whose values have another type in the file.
+    Keys are refused as by `check_keys`, and lists of anything but texts.
     """
-    own = {field.name: field for field in fields(kind) if field.name != "name"}
-    keys = {
-        name: IN_FILES[field.type]
-        for name, field in own.items()
-        if field.type in IN_FILES
-    }
-    optional = [name for name, field in own.items() if field.default is not MISSING]
+    types = get_type_hints(kind)
+    keys = {}
+    optional = []
+    for field in fields(kind):
+        if field.name == "name":
+            continue
+        if types[field.name] in IN_FILES:
+            keys[field.name] = IN_FILES[types[field.name]]
+        if field.default is not MISSING:
+            optional.append(field.name)
     check_keys(values, keys | others, optional)
     found = dict(values)
     for name in keys.keys() & found.keys():
-        if own[name].type == "tuple[str, ...]" and name not in others:
-            texts = found[name] = tuple(found[name])
-            are_texts = bool(texts) and all(
-                isinstance(text, str) and text for text in texts
-            )
-            can = "a list of texts, at least one"
-            require(are_texts, name, list(texts), can, "write them in quotes")
+        if types[name] == TEXTS and name not in others:
+            found[name] = _texts_in(found[name], name)
     return found
+
+
+def _texts_in(values: Sequence[object], name: str) -> tuple[str, ...]:
+    """Texts of a list under a key; refuse an empty list, and other values."""
+    texts = [value for value in values if isinstance(value, str) and value]
+    require(
+        len(values) > 0 and len(texts) == len(values),
+        name,
+        list(values),
+        "a list of texts, at least one",
+        "write them in quotes",
+    )
+    return tuple(texts)
 
 
 def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -> None:
@@ -195,16 +236,16 @@ def require(is_met: bool, name: str, value: object, allowed: str, remedy: str) -
 
 
 def check_controls(names: Sequence[str], settings: Settings) -> None:
-    """Refuse controls that are no settings, or do nothing beside the others."""
-    working = [name for name in settings.definitions() if settings.applies(name)]
+    """Refuse controls that are no settings, or do not apply."""
+    applying = [name for name in settings.definitions() if settings.applies(name)]
     for name in names:
         remedy = "name a setting that does something here"
-        require(name in working, "controls", name, ", ".join(working), remedy)
+        require(name in applying, "controls", name, ", ".join(applying), remedy)
 
 
 @contextlib.contextmanager
 def placed(place: str) -> Iterator[None]:
-    """Put the file, or the place in it, before what is refused in it."""
+    """Put a file, or a place in it, before the name of what is refused in it."""
     try:
         yield
     except SettingError as refusal:
@@ -223,73 +264,85 @@ def scene_settings(scene: object) -> type[Settings]:
 
 def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     """Key figures of a finished run."""
+    last = None
+    seconds = solution.iterate.seconds
     if solution.records:
         last = solution.records[-1]
-    else:
-        last = None
-    return {
+        seconds = last.seconds
+    figures = {
         "scene": settings.scene,
         "status": str(solution.status.ending),
         "advice": solution.status.advice,
         "remarks": remarks_on(settings, solution.iterate),
         "iterations": solution.iterate.iterations,
-        **{name: getattr(last, name, None) for name in INDICATORS},
-        "certified": solution.is_certified,
-        "residual": solution.iterate.residual,
-        **{name: getattr(last, name, None) for name in ERRORS},
-        "seconds": last.seconds if last else solution.iterate.seconds,
     }
+    for name in INDICATORS:
+        figures[name] = getattr(last, name, None)
+    figures["certified"] = solution.is_certified
+    figures["residual"] = solution.iterate.residual
+    for name in ERRORS:
+        figures[name] = getattr(last, name, None)
+    figures["seconds"] = seconds
+    return figures
 
 
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
-    """Arrays of a result file (SI; space first, time last), as solver/README.md, 12, has them.
+    """Arrays of a result file (SI; space first, time last; solver/README.md, 12).
 
     In the plane `displacement` has shape (n_nodes, 2, n_instants), and
-    `displacement_determinate`, (n_instants,), is false where nothing says where a body
-    lies.
+    `displacement_determinate`, (n_instants,), is false at instants at which nothing
+    determines the position of a body.
     """
     iterate = solution.iterate
-    problem = solution.iterate.problem
-    history = {
-        name: np.array([getattr(entry, name) for entry in solution.records])
-        for name in (*INDICATORS, *ERRORS, "seconds")
-    }
-    if iterate.bases:
-        history["pgd_modes"] = np.array([entry.modes for entry in solution.records])
-    found: dict[str, Any]
-    if problem.inside is None:
-        found = {
+    residual = math.nan
+    if iterate.residual is not None:
+        residual = iterate.residual
+    arrays: dict[str, Any] = {"t": iterate.problem.instants}
+    arrays |= _body_arrays(iterate)
+    arrays |= interface_arrays(iterate)
+    arrays |= _history_arrays(solution)
+    arrays["certified"] = solution.is_certified
+    arrays["residual"] = residual
+    arrays["settings"] = json.dumps({"scene": settings.scene, **settings.values()})
+    return arrays
+
+
+def _body_arrays(iterate: Iterate) -> dict[str, Any]:
+    """Arrays of bodies: of nodes along rods, or of nodes and elements in the plane."""
+    problem = iterate.problem
+    inside = problem.inside
+    if inside is None:
+        return {
             "x": problem.positions,
             "displacement": problem.at_rest(iterate.displacement),
             "friction_force": iterate.friction_force,
             "determinate": determinate_forces(problem),
             "status": iterate.status,
         }
-    else:
-        found = {
-            "x": problem.inside.nodes,
-            "elements": problem.inside.elements,
-            "displacement": problem.inside.displacement(
-                iterate.displacement, slice(None)
-            ),
-            "displacement_determinate": held_instants(problem, iterate.contact_force),
-        }
     return {
-        "t": problem.instants,
-        **found,
-        **interface_arrays(iterate),
-        **history,
-        "certified": solution.is_certified,
-        "residual": math.nan if iterate.residual is None else iterate.residual,
-        "settings": json.dumps({"scene": settings.scene, **settings.values()}),
+        "x": inside.nodes,
+        "elements": inside.elements,
+        "displacement": inside.displacement(iterate.displacement, slice(None)),
+        "displacement_determinate": held_instants(problem, iterate.contact_force),
     }
 
 
-def interface_arrays(iterate: Iterate) -> dict[str, Any]:
-    """Arrays `interface/NAME/...` of all interfaces but a lone support of known bound.
+def _history_arrays(solution: Solution) -> dict[str, Any]:
+    """Arrays of figures of every iteration, each of shape (n_iterations,)."""
+    names = [*INDICATORS, *ERRORS, "seconds"]
+    arrays = {}
+    for name in names:
+        arrays[name] = np.array([getattr(entry, name) for entry in solution.records])
+    if solution.iterate.bases:
+        arrays["pgd_modes"] = np.array([entry.modes for entry in solution.records])
+    return arrays
 
-    `determinate` is where the force is no arbitrary share of what a support or a ring
-    carries.
+
+def interface_arrays(iterate: Iterate) -> dict[str, Any]:
+    """Arrays `interface/NAME/...` of all interfaces but a single one of known bound.
+
+    `determinate`, (n_points,), is false at points whose force is an arbitrary share of
+    the total that a support or a ring of bodies carries.
     """
     arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
@@ -307,11 +360,9 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
             "slip": fields.slip,
             "status": fields.status,
         }
-        arrays |= {
-            f"interface/{name}/{key}": field
-            for key, field in entries.items()
-            if field is not None
-        }
+        for key, field in entries.items():
+            if field is not None:
+                arrays[f"interface/{name}/{key}"] = field
     return arrays
 
 

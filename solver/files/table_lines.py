@@ -1,4 +1,4 @@
-"""Lines of a file that has a table: what divides its columns, which are its rows, and its head."""
+"""Lines of a file with a table: separator of its columns, rows, and head."""
 
 from __future__ import annotations
 
@@ -16,12 +16,18 @@ from solver.files.disk import Refuse
 from solver.files.numerals import is_gap, is_numeral
 
 BLANKS = "  "
-"""What divides columns that stand at least two blanks apart."""
-SEPARATORS = ("\t", ";", ",", " ", BLANKS)
-"""What may divide columns, in the order in which they are preferred."""
+"""Separator of columns that stand at least two blanks apart."""
+SEPARATORS = (
+    "\t",
+    ";",
+    ",",
+    " ",
+    BLANKS,
+)
+"""Separators of columns, the preferred ones first."""
 SAMPLE = 200
 LAST = 20
-"""Lines of which it is judged what divides columns: all over a file, and at its end."""
+"""Lines by which the separator is chosen: spread over a file, and at its end."""
 FARTHEST = 100
 """Lines of text above rows among which a head is sought."""
 _MARK = re.compile(r"#|%|//|!|;")
@@ -30,9 +36,9 @@ _RULE = re.compile(r"[\s;,|+]*([-=_*~.])\1{2,}[-=_*~.\s;,|+]*")
 
 
 class Line(NamedTuple):
-    """A line by its number, from 1, its text, and its cells, without empty ones at its end.
+    """A line of a file: its number, from 1, its text, and its cells.
 
-    Some cells are numbers, others words, which are neither numbers nor gaps.
+    A cell is a number, a gap, or else a word.
     """
 
     number: int
@@ -44,64 +50,63 @@ class Line(NamedTuple):
 
     @property
     def n_numbers(self) -> int:
-        """Number of numbers."""
+        """Number of cells that are numbers."""
         return self.are_numbers.count(True)
 
     @property
     def has_words(self) -> bool:
-        """Whether a cell is neither a number nor a gap."""
+        """Return whether a cell is neither a number nor a gap."""
         return True in self.are_words
 
     @property
     def width(self) -> int:
-        """Cells up to the last one that is a number or a gap."""
-        if not self.has_words:
-            return len(self.cells)
-        return max(
-            (place for place, word in enumerate(self.are_words, 1) if not word),
-            default=0,
-        )
+        """Number of cells up to the last one that is a number or a gap."""
+        width = len(self.cells)
+        while width and self.are_words[width - 1]:
+            width -= 1
+        return width
 
     @property
     def is_text(self) -> bool:
-        """Whether it may be a head, units, as in `s;1;kN`, or a title: words without numbers."""
+        """Return whether the line may be a head, units, as in `s;1;kN`, or a title."""
         if not self.has_words:
             return False
         pairs = list(zip(self.cells, self.are_numbers, strict=True))
         words = [cell for cell, is_number in pairs if not is_number]
         numbers = {cell for cell, is_number in pairs if is_number}
-        # Labels of rows are no units: N1.
-        has_digits = any(char.isdigit() for word in words for char in word)
-        return not numbers or (numbers == {"1"} and not has_digits and are_units(words))
+        if not numbers:
+            return True
+        # A row may have a label with digits, as N1, that reads like a unit.
+        has_digits = any(char.isdigit() for char in "".join(words))
+        return numbers == {"1"} and not has_digits and are_units(words)
 
 
 def line_of(
     number: int, text: str, cells: Sequence[str], *, is_comment: bool = False
 ) -> Line:
-    """A line with its cells, which are told apart."""
+    """Make a line of cells, and judge which of them are numbers and which are words."""
     are_numbers = tuple(map(is_numeral, cells))
+    are_words = (False,) * len(cells)
     if False in are_numbers:
         pairs = zip(cells, are_numbers, strict=True)
         are_words = tuple(
             not is_number and not is_gap(cell) for cell, is_number in pairs
         )
-    else:
-        are_words = (False,) * len(cells)
     return Line(number, text, tuple(cells), are_numbers, are_words, is_comment)
 
 
 @dataclass(eq=False)
 class Block:
-    """Rows that no other head parts, with what stands above and between them.
+    """Rows of one table, without another head among them, and the lines around them.
 
     Attributes
     ----------
     above
-        Lines from the rows of the table before on.
+        Lines above the rows, up to the table before.
     passed
-        Lines between rows that are neither rows nor words of the head.
+        Lines between rows that are neither rows nor the head again.
     repeats
-        How often the head stands there again.
+        Number of times that the head is repeated between rows.
     """
 
     above: list[Line]
@@ -111,17 +116,17 @@ class Block:
 
     @property
     def size(self) -> int:
-        """Rows that have two numbers or more."""
+        """Number of rows that have two numbers or more."""
         return sum(row.n_numbers > 1 for row in self.rows)
 
     @cached_property
     def width(self) -> int:
-        """Columns that most rows have, without words at their end."""
+        """Number of columns of most rows, without words at their end."""
         return Counter(row.width for row in self.rows).most_common(1)[0][0]
 
     @cached_property
     def is_known(self) -> bool:
-        """Whether a line above may be a head that names a quantity."""
+        """Return whether a line above may be a head that names a quantity."""
         near = self.above[-FARTHEST:]
         return any(len(line.cells) > 1 and _is_known(line.cells) for line in near)
 
@@ -132,13 +137,12 @@ class Block:
 
 
 def text_of(data: bytes | str, refuse: Refuse) -> str:
-    """Text of a file; what is none is refused."""
+    """Text of a file; refuse other content."""
     if isinstance(data, str):
         text = data
     else:
-        is_wide = (
-            data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) or data[1:2] == b"\0"
-        )
+        marks = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+        is_wide = data[:2] in marks or data[1:2] == b"\0"
         try:
             text = data.decode("utf-16" if is_wide else "utf-8")
         except UnicodeDecodeError:
@@ -151,7 +155,7 @@ def text_of(data: bytes | str, refuse: Refuse) -> str:
 
 
 def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
-    """What divides the columns of a file, and its lines that are neither empty nor rules."""
+    """Separator of the columns of a file, and its lines but empty ones and rules."""
     texts = re.split(r"\r\n|\n|\r", text_of(data, refuse))
     filled = [
         (number, text) for number, text in enumerate(texts, start=1) if text.strip()
@@ -167,31 +171,31 @@ def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
 
 
 def _separator_of(texts: Sequence[str]) -> str:
-    """What divides columns: most cells of most lines are numbers, and widths are alike."""
+    """Separator by which most cells of most lines are numbers, and widths are alike."""
     sample = [*texts[:: max(1, len(texts) // SAMPLE)], *texts[-LAST:]]
 
     def score(separator: str) -> tuple[float, float]:
         lines = [_line(0, text, separator) for text in sample]
-        filled = [(line, len(line.cells) - line.cells.count("")) for line in lines]
-        shares = [
-            (count - sum(line.are_words)) / count
-            for line, count in filled
-            if _has_two(line)
-        ]
-        widths = Counter(line.width for line in lines if _has_two(line))
+        rows = [line for line in lines if _has_two(line)]
+        shares = []
+        for row in rows:
+            count = len(row.cells) - row.cells.count("")
+            shares.append((count - sum(row.are_words)) / count)
+        widths = Counter(row.width for row in rows)
         return round(sum(shares), 9), max(widths.values(), default=0)
 
     return max(SEPARATORS, key=score)
 
 
 def _has_two(line: Line) -> bool:
-    """Whether two cells of a line are numbers, or one and a gap that is written."""
-    gaps = sum(bool(cell) and is_gap(cell) for cell in line.cells)
-    return not line.is_comment and line.n_numbers > 0 and line.n_numbers + gaps > 1
+    """Return whether a line has two numbers, or a number and a gap that is written."""
+    gaps = [cell for cell in line.cells if cell and is_gap(cell)]
+    has_number = line.n_numbers > 0
+    return not line.is_comment and has_number and line.n_numbers + len(gaps) > 1
 
 
 def _line(number: int, text: str, separator: str) -> Line:
-    """Split a line; a comment keeps its words, which may be a head, and loses its mark."""
+    """Make a line; of a comment the mark is dropped, as its words may be a head."""
     plain = text.strip(" \f")
     line = line_of(number, plain, _split(plain, separator))
     if line.cells and _is_comment(plain, line.cells[0], separator):
@@ -206,17 +210,20 @@ def _line(number: int, text: str, separator: str) -> Line:
 
 
 def _is_comment(text: str, first: str, separator: str) -> bool:
-    """Whether a text begins with the mark of a comment; `#N/A` is a gap, and % alone a unit."""
+    """Return whether a text begins with the mark of a comment.
+
+    `#N/A` is a gap, and a cell that is % alone a unit.
+    """
     mark = _MARK.match(text)
     if mark is None or mark[0] == separator or is_gap(first):
         return False
-    return (
-        first != mark[0] or _is_blank(separator) or (separator == "\t" and first != "%")
-    )
+    if first != mark[0] or _is_blank(separator):
+        return True
+    return separator == "\t" and first != "%"
 
 
 def _without_comment(text: str, separator: str) -> list[str]:
-    """Cells before a comment that stands behind two numbers; none where there is no such."""
+    """Cells before a comment behind two numbers or more; empty without one."""
     for mark in _MARK.finditer(text):
         before = text[mark.start() - 1 : mark.start()]
         stands_apart = before.isspace() or before == separator
@@ -224,14 +231,13 @@ def _without_comment(text: str, separator: str) -> list[str]:
         is_unit = mark[0] == "%" and not _WORD.match(text, mark.end())
         if mark[0] != separator and stands_apart and not is_unit:
             cells = _split(text[: mark.start()], separator)
-            if sum(map(is_numeral, cells)) > 1:
-                return cells
-            return []
+            numerals = [cell for cell in cells if is_numeral(cell)]
+            return cells if len(numerals) > 1 else []
     return []
 
 
 def _split(text: str, separator: str) -> list[str]:
-    """Cells of a text, without empty ones at its end."""
+    """Cells of a text up to the last filled one."""
     if separator == BLANKS:
         cells = re.split(r" {2,}|\t", text.strip())
     elif separator == " ":
@@ -250,7 +256,7 @@ def _split(text: str, separator: str) -> list[str]:
 def block_of(
     lines: Sequence[Line], separator: str, refuse: Refuse
 ) -> tuple[Block, list[str]]:
-    """The table that has most rows, and words on others; of equals both are refused."""
+    """Table that has most rows, and words on others; refuse two of the same size."""
     blocks = list(_blocks(lines, separator))
     if not blocks:
         raise refuse("it has no points: give lines of numbers")
@@ -268,26 +274,18 @@ def block_of(
 
 
 def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
-    """Yield tables: rows up to lines of words that are a head, and not the same one again."""
+    """Yield tables; a table ends at the head of another one.
+
+    A head that is repeated does not end its table.
+    """
     block: Block | None = None
     between: list[Line] = []
     for line in lines:
         if line.is_comment or line.is_text:
             between.append(line)
             continue
-        heads = [
-            other
-            for other in between[-FARTHEST:]
-            if _is_head_of(other, line, separator)
-        ]
-        if block is not None and block.is_known:
-            # Words that name no quantity may tell what happens, as in
-            # `phase;unloading`.
-            heads = [
-                other for other in heads if _is_known(other.cells) or other.is_comment
-            ]
-        begins = block is None or bool(heads)
-        if begins:
+        heads = _heads_among(between, line, block, separator)
+        if block is None or heads:
             is_row = _is_first(line, between)
         else:
             is_row = _is_next(line, block, separator)
@@ -299,8 +297,11 @@ def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
                 yield block
             block = Block(above=between, rows=_broken_rows(between, line))
         else:
-            block.repeats += bool(heads)
-            block.passed += [o for o in between if o.cells not in block.texts_above]
+            if heads:
+                block.repeats += 1
+            block.passed += [
+                other for other in between if other.cells not in block.texts_above
+            ]
         block.rows.append(line)
         between = []
     if block is not None:
@@ -308,10 +309,23 @@ def _blocks(lines: Sequence[Line], separator: str) -> Iterator[Block]:
         yield block
 
 
-def _is_head_of(line: Line, row: Line, separator: str) -> bool:
-    """Whether a line of words may be the head of rows: a name for each column.
+def _heads_among(
+    between: Sequence[Line], row: Line, block: Block | None, separator: str
+) -> list[Line]:
+    """Lines since the last row of a table that may be the head of a row below them."""
+    heads = [
+        other for other in between[-FARTHEST:] if _is_head_of(other, row, separator)
+    ]
+    if block is None or not block.is_known:
+        return heads
+    # Words that name no quantity may tell of the test, as in `phase;unloading`.
+    return [head for head in heads if _is_known(head.cells) or head.is_comment]
 
-    Between blanks, and in comments, there is prose, too: there two names are known.
+
+def _is_head_of(line: Line, row: Line, separator: str) -> bool:
+    """Return whether a line of words may be the head of rows: a name for each column.
+
+    Comments, and lines divided by blanks, may be prose: of a head two names are known.
     """
     if not line.is_text or len(row.cells) < 2:
         return False
@@ -323,12 +337,12 @@ def _is_head_of(line: Line, row: Line, separator: str) -> bool:
 
 
 def _is_known(words: Sequence[str]) -> bool:
-    """Whether a name of a line is that of a quantity, or has a unit."""
+    """Return whether a name of a line is that of a quantity, or has a unit."""
     return any(column_of(0, 0, word).is_known for word in words)
 
 
 def _is_first(line: Line, between: Sequence[Line]) -> bool:
-    """Whether a line may be the first row: `N1,0,7` below a head, but not `Range,0,100`."""
+    """Return whether a line may be the first row: `N1,0,7` below a head, or numbers."""
     if not line.has_words:
         return len(line.cells) > 1
     is_below_head = bool(between) and between[-1].is_text and len(between[-1].cells) > 1
@@ -336,7 +350,11 @@ def _is_first(line: Line, between: Sequence[Line]) -> bool:
 
 
 def _is_next(line: Line, block: Block | None, separator: str) -> bool:
-    """Whether a line may be a further row; one that begins with a word is often of the text."""
+    """Return whether a line may be a further row.
+
+    A line that begins with a word is a row if the first row does, or if cells are
+    divided by a sign, and there are as many as in the first row.
+    """
     if block is None or not line.n_numbers:
         return not line.has_words
     first = block.rows[0]
@@ -346,53 +364,53 @@ def _is_next(line: Line, block: Block | None, separator: str) -> bool:
 
 
 def _broken_rows(between: Sequence[Line], row: Line) -> list[Line]:
-    """A line right above the first row, as wide as that, with a word where a number should be."""
-    above = [line for line in between[-1:] if line.number == row.number - 1]
-    return [
-        line
-        for line in above
-        if line.n_numbers
-        and not (line.is_text or line.is_comment)
-        and len(line.cells) == len(row.cells)
-    ]
+    """First row of a table as a list, if a word stands there in place of a number.
+
+    It is the line right above the first row of numbers, and as wide as that; else the
+    list is empty.
+    """
+    if not between or between[-1].number != row.number - 1:
+        return []
+    line = between[-1]
+    if line.is_text or line.is_comment or not line.n_numbers:
+        return []
+    return [line] if len(line.cells) == len(row.cells) else []
 
 
 def _leave_summary(block: Block) -> None:
-    """Pass over numbers right above the rows that are of another width, where there is no head."""
-    if any(line.is_text for line in block.above[-1:]):
+    """Pass over first rows of another width than most rows, if no head is above."""
+    if block.above and block.above[-1].is_text:
         return
-    first = next(
-        place for place, row in enumerate(block.rows) if row.width == block.width
-    )
+    first = 0
+    while block.rows[first].width != block.width:
+        first += 1
     block.passed += block.rows[:first]
     del block.rows[:first]
 
 
 def _is_blank(separator: str) -> bool:
+    """Return whether columns are divided by blanks."""
     return separator in (" ", BLANKS)
 
 
 def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
-    """Columns as the lowest line says that has a name for each, and the line of units by it."""
-    width = block.width
+    """Columns of a table, by the lowest head that fits, and its line of units."""
     names: list[TableColumn] = []
     units: tuple[int, list[str]] = (0, [])
-    near = [line for line in block.above if line.is_text][-FARTHEST:]
-    texts = [(line, _names_in(line, width, separator)) for line in near]
-    texts = [
-        (line, words)
-        for line, words in texts
-        if len(words) > 1 and not _has_numbers(words)
-    ]
+    texts = _texts_of_head(block, separator)
+    # From the rows upwards
     for line, words in reversed(texts):
+        is_head_found = any(column.is_known for column in names)
         if are_units(words):
-            is_prose = (line.is_comment or _is_blank(separator)) and len(words) != width
-            if not (units[1] or is_prose) and (not names or len(words) == len(names)):
+            may_be_prose = line.is_comment or _is_blank(separator)
+            is_prose = may_be_prose and len(words) != block.width
+            fits_names = not names or len(words) == len(names)
+            if not units[1] and not is_prose and fits_names:
                 units = line.number, words
-            if any(column.is_known for column in names):
+            if is_head_found:
                 break
             continue
-        if any(column.is_known for column in names):
+        if is_head_found:
             break
         named = [
             column_of(place, line.number, text) for place, text in enumerate(words)
@@ -402,23 +420,39 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
             names = named
     if not names and not units[1]:
         _check_nearest(texts, block, separator, refuse)
-    columns = names or [
-        TableColumn(place) for place in range(max(width, len(units[1])))
-    ]
-    return [column.with_units(*units, refuse) for column in columns]
+    if not names:
+        n_columns = max(block.width, len(units[1]))
+        names = [TableColumn(place) for place in range(n_columns)]
+    return [column.with_units(*units, refuse) for column in names]
+
+
+def _texts_of_head(block: Block, separator: str) -> list[tuple[Line, list[str]]]:
+    """Lines above the rows that may be a head or units, each with its words."""
+    near = [line for line in block.above if line.is_text][-FARTHEST:]
+    texts = []
+    for line in near:
+        words = _names_in(line, block.width, separator)
+        if len(words) > 1 and not _has_numbers(words):
+            texts.append((line, words))
+    return texts
 
 
 def _has_numbers(words: Sequence[str]) -> bool:
-    """Whether a line of words has numbers, other than the unit 1."""
+    """Return whether a line of words has numbers, other than the unit 1."""
     return any(is_numeral(word) and word != "1" for word in words)
 
 
 def _fits(named: Sequence[TableColumn], block: Block, separator: str) -> bool:
-    """Whether there is a column for each name; the last ones may be empty, or have words alone."""
+    """Return whether there is a column for each name.
+
+    The last columns may be empty, or have words alone.
+    """
     if len(named) <= block.width:
         return len(named) == block.width
     has_words = any(any(row.are_words[block.width :]) for row in block.rows)
-    has_units_apart = any(is_spelt_as_unit(c.name) and not c.is_known for c in named)
+    has_units_apart = any(
+        is_spelt_as_unit(column.name) and not column.is_known for column in named
+    )
     return has_words or not (_is_blank(separator) or has_units_apart)
 
 
@@ -429,50 +463,56 @@ def _check_nearest(
     refuse: Refuse,
 ) -> None:
     """Refuse a head right above the rows that has too few names, or too many."""
-    for line, words in texts[-1:]:
-        known = [column_of(0, 0, text).is_known for text in words]
-        # A comment, or words between blanks, may be prose that names a quantity.
-        may_be_prose = line.is_comment or _is_blank(separator)
-        if sum(known) > may_be_prose:
-            count = f"{len(words)} names for {block.width} columns"
-            raise refuse(f"line {line.number} has {count}: give one for each")
+    if not texts:
+        return
+    line, words = texts[-1]
+    known = [word for word in words if _is_known([word])]
+    # A comment, or words between blanks, may be prose that names a quantity.
+    may_be_prose = line.is_comment or _is_blank(separator)
+    needed = 2 if may_be_prose else 1
+    if len(known) >= needed:
+        count = f"{len(words)} names for {block.width} columns"
+        raise refuse(f"line {line.number} has {count}: give one for each")
 
 
 def _names_in(line: Line, width: int, separator: str) -> list[str]:
-    """Names in a line: as cells are divided, or as comments and lines between blanks may have it.
+    """Names in a line: its cells, or a division that has a name for each column.
 
-    There a name may have blanks within, or one in front of its bracket, and commas may
-    stand between; a comment may follow.
+    In comments, and in lines divided by blanks, a name may have blanks within, or one
+    in front of its bracket, and commas may stand between names. A comment may follow.
     """
-    own = list(line.cells)
-    ways = [own]
+    cells = list(line.cells)
+    divisions = [cells]
     if line.is_comment or _is_blank(separator):
         plain = line.text.strip()
-        ways = [
+        divisions = [
             re.split(r"\s+(?![\[(])", plain),
             re.split(r"\s{2,}|\t", plain),
             re.split(r"\s*[,;\t]\s*", plain),
-            own,
+            cells,
         ]
     short = re.split(r"\s(?:#|//|!)", line.text)[0]
     if short != line.text:
-        ways.append(_split(short, separator))
-    fitting = [names for names in ways if len(names) == width]
+        divisions.append(_split(short, separator))
+    fitting = [names for names in divisions if len(names) == width]
     known = [names for names in fitting if _is_known(names)]
-    return next(iter([*known, *fitting, *ways]))
+    return [*known, *fitting, *divisions][0]
 
 
 def fitted(block: Block, width: int, separator: str, refuse: Refuse) -> list[list[str]]:
-    """Cells of rows, as many as there are columns; words behind the last one are remarks."""
+    """Cells of rows, as many as there are columns."""
     cells = []
     for row in block.rows:
-        # Between blanks nothing says which cell lacks.
-        is_gap_row = _is_blank(separator) and row.width < block.width
-        cells.append([""] * width if is_gap_row else _cells_of(row, width, refuse))
+        # Where blanks divide columns nothing says which cell of a short row lacks.
+        if _is_blank(separator) and row.width < block.width:
+            cells.append([""] * width)
+        else:
+            cells.append(_cells_of(row, width, refuse))
     return cells
 
 
 def _cells_of(row: Line, width: int, refuse: Refuse) -> list[str]:
+    """Cells of a row, as many as there are columns, without words behind the last."""
     cells = list(row.cells)
     lacking = width - len(cells)
     if lacking >= 0:

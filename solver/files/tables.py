@@ -1,37 +1,38 @@
-"""Tables as spreadsheets, measuring machines and programs write them: bytes become named columns.
+"""Tables of spreadsheets, measuring machines and programs: from bytes to named columns.
 
-A file is read once, into a `Table`; whatever reads a path, a loop or results takes
-that.
+A file is read once, into a `Table`, from which paths, loops and results are taken.
 
 **Text** is UTF-8, UTF-16, or else cp1252. A workbook (.xlsx) is read with openpyxl: its
 first sheet, with the values that formulas had when it was saved.
 
 **How it is read**, where it may be read in two ways:
 
-=========================== ===================================================================
-What stands there           What it is
-=========================== ===================================================================
-tab, `;`, `,`, blanks       The first of these under which most cells of most lines are numbers
-                            stands between columns. Two blanks or more do, and one does
+=========================== ============================================================
+Text                        Meaning
+=========================== ============================================================
+tab, `;`, `,`, blanks       The first of these under which most cells of most lines are
+                            numbers divides columns. Two blanks or more do, and one does
                             not, only where all lines then have equally many columns.
-`0,5` or `1.234,5`          A decimal comma, if no other cell has a decimal point (`0.5`); both in
-                            one table are refused, with the line of the rarer.
-`1,234` beside `0.5`        1234: a comma before three digits stands between thousands where
-                            others have decimal points; a point does beside decimal
-                            commas.
+`0,5` or `1.234,5`          A decimal comma, if no other cell has a decimal point
+                            (`0.5`); both in one table are refused, with the line of the
+                            rarer.
+`1,234` beside `0.5`        1234: a comma before three digits stands between thousands
+                            where others have decimal points; a point does beside
+                            decimal commas.
 `1,234` beside `1,5`        1.234, as decimals have commas.
 `1,234` alone               Between semicolons a decimal comma, as that is why there are
                             semicolons; otherwise refused, with its line. Between
-                            columns without quotes a comma is what divides them.
+                            columns without quotes a comma divides columns.
 `1.234` alone               1.234.
-`1 234`, `1'234`            1234: a blank (also a narrow or no-break one) or an apostrophe within
-                            groups of three, where blanks do not divide columns.
+`1 234`, `1'234`            1234: a blank (also a narrow or no-break one) or an
+                            apostrophe within groups of three, where blanks do not
+                            divide columns.
 `1.5D-03`, `1.5-103`, `−5`  Exponents of Fortran, and a printed minus.
-`NaN`, `n/a`, `-`, empty    A gap. Rows that lack a number in a column that is read are left out
-                            and counted. Between blanks a row with too few cells is all
-                            gaps, as nothing says which lacks.
+`NaN`, `n/a`, `-`, empty    A gap. Rows that lack a number in a column that is read are
+                            left out and counted. Between blanks a row with too few
+                            cells is all gaps, as nothing says which cell lacks.
 `inf`, `1e999`, words       No number: refused with the line, in a column that is read.
-=========================== ===================================================================
+=========================== ============================================================
 
 **Comments** begin with `#`, `%`, `//`, `!`, or `;` where that divides no columns;
 behind numbers they are cut off. Empty lines and rules (`-----`) are passed over.
@@ -54,13 +55,13 @@ something else, is refused.
 **A column is chosen** by its name: that of the setting, else a word of `columns.WORDS`
 for its quantity, else a name that ends with one (`axial force`, `Prüfzeit`), else, of
 names that say nothing, by its unit; a position stands in for a displacement. Others are
-passed over. Only where no head says anything, the first two are taken as they stand.
-What was understood is said: every table that is read has a message.
+passed over. Only where no head names anything, the first two are taken as they stand.
+Every table that is read has a message on how it was understood.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -82,23 +83,23 @@ from solver.files.workbooks import is_archive, lines_of_workbook
 from solver.settings.definitions import SettingError
 
 STANDS_IN = {"displacement": "position"}
-"""Quantities by those that may stand in for them, where no column names them."""
+"""Quantities that may stand in for others that no column names."""
 MOST_SAID = 5
-"""Lines that are named at most."""
+"""Largest number of lines that a message names."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """Numbers that were read of a table, in the units that were asked for.
+    """Numbers of some columns of a table, in given units.
 
     Attributes
     ----------
     numbers
-        Of every column, shape (n_columns, n_rows), finite.
+        Numbers of every column, shape (n_columns, n_rows), finite.
     lines
-        Of the file, from 1, shape (n_rows,).
+        Line of the file of each row, from 1, shape (n_rows,).
     message
-        Columns, units, rows, and what was passed over.
+        Words on columns, units and rows, and on columns and rows passed over.
     """
 
     numbers: Array
@@ -108,7 +109,7 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table as it was read.
+    """A table of named columns, as it was read.
 
     Attributes
     ----------
@@ -117,16 +118,16 @@ class Table:
     cells
         Texts of every row.
     numbers
-        In the units of the columns, shape (n_columns, n_rows); NaN where a cell has
-        none.
+        Numbers in the units of the columns, shape (n_columns, n_rows); NaN for a cell
+        without a number.
     lines
-        Of the file, from 1, shape (n_rows,).
+        Line of the file of each row, from 1, shape (n_rows,).
     remarks
-        How it was read, where it might have been otherwise.
+        Words on how the table was read, where there was a choice.
     source
-        Name of the file, or of what else it came from.
+        Name of the file or of another source.
     refuse
-        Makes a refusal out of what is to be done.
+        Function from a remedy to a refusal.
     """
 
     columns: tuple[TableColumn, ...]
@@ -138,16 +139,16 @@ class Table:
     refuse: Refuse
 
     def given_as(self, name: str, allowed: str) -> Table:
-        """The table as what it is given for, which its refusals name."""
+        """Make the table with refusals that have the name of a setting or an option."""
         return replace(self, refuse=partial(SettingError, name, self.source, allowed))
 
     def with_columns(self, columns: Sequence[TableColumn]) -> Table:
-        """The table under other names; one more than it has is that of the rows' numbers from 0."""
+        """Make the table with other columns; one more has the rows' numbers from 0."""
         named = replace(self, columns=tuple(columns))
         if len(columns) == len(self.columns):
             return named
         count = np.arange(len(self.lines), dtype=float)
-        cells = tuple((*row, str(place)) for place, row in enumerate(self.cells))
+        cells = tuple((*row, str(number)) for number, row in enumerate(self.cells))
         return replace(named, cells=cells, numbers=np.vstack([self.numbers, count]))
 
     def find(
@@ -157,39 +158,57 @@ class Table:
         unit: str = "",
         key: str = "",
     ) -> TableColumn | None:
-        """Column of a quantity among some, as described above; refuse several as likely."""
-        rules: list[Callable[[TableColumn], object]] = [
-            lambda column: key and column.key == key,
-            lambda column: (
-                column.quantities[1] and column.quantities[0].intersection(kinds)
-            ),
-            lambda column: column.quantities[0].intersection(kinds),
-            lambda column: (
-                unit
-                and column.unit
-                and not column.quantities[0]
-                and size_in(column.unit, unit)
-            ),
-        ]
-        for rule in rules:
+        """Column of a quantity, by the rules above; refuse equally likely ones.
+
+        Parameters
+        ----------
+        columns
+            Columns to choose from.
+        kinds
+            Quantities that the column may have.
+        unit
+            Unit of the quantity, for columns whose names say nothing.
+        key
+            Name of the setting that the column is for.
+
+        Returns
+        -------
+        The column; None if there is no likely one.
+        """
+
+        def has_key(column: TableColumn) -> bool:
+            return bool(key) and column.key == key
+
+        def is_word_for_it(column: TableColumn) -> bool:
+            quantities, is_whole = column.quantities
+            return is_whole and bool(quantities.intersection(kinds))
+
+        def ends_with_it(column: TableColumn) -> bool:
+            return bool(column.quantities[0].intersection(kinds))
+
+        def has_its_unit(column: TableColumn) -> bool:
+            if not unit or not column.unit or column.quantities[0]:
+                return False
+            return bool(size_in(column.unit, unit))
+
+        for rule in (has_key, is_word_for_it, ends_with_it, has_its_unit):
             likely = [column for column in columns if rule(column)]
-            # A column of words, as of the time of day, is not meant where another may
-            # be.
-            likely = [
-                column for column in likely if self._has_numbers(column)
-            ] or likely
+            # A column of words, such as the time of day, gives way to one of numbers.
+            with_numbers = [column for column in likely if self._has_numbers(column)]
+            if with_numbers:
+                likely = with_numbers
             if len(likely) > 1:
-                names = " and ".join(
-                    repr(column.name or column.unit) for column in likely
-                )
+                names = [repr(column.name or column.unit) for column in likely]
                 raise self.refuse(
-                    f"{names} may both be meant: rename all columns but one"
+                    f"{' and '.join(names)} may both be meant: rename all columns but "
+                    "one"
                 )
             if likely:
                 return likely[0]
         return None
 
     def _has_numbers(self, column: TableColumn) -> bool:
+        """Return whether any cell of a column is a finite number."""
         return bool(np.isfinite(self.numbers[column.place]).any())
 
     def choose(
@@ -200,12 +219,11 @@ class Table:
         key: str = "",
         remedy: str = "add that column",
     ) -> TableColumn:
-        """Column of a quantity among some, as described above; refuse a head that names none."""
+        """Column of a quantity, as `find`; refuse a table without a likely one."""
         column = self.find(columns, kinds, unit, key)
         if column is None:
-            column = self.find(
-                columns, {STANDS_IN[kind] for kind in kinds if kind in STANDS_IN}
-            )
+            others = {STANDS_IN[kind] for kind in kinds if kind in STANDS_IN}
+            column = self.find(columns, others)
         if column is None:
             wanted = f"{' or '.join(sorted(kinds))} in {examples_of(unit)}"
             has = ", ".join(repr(column.name) for column in self.columns)
@@ -220,78 +238,100 @@ class Table:
     ) -> Reading:
         """Numbers of some columns in some units, of the rows that have all of them.
 
-        Names are those of columns that lack one. A unit of another quantity is refused,
-        and a cell that is neither a finite number nor a gap, with its line.
+        A unit of another quantity is refused, and a cell that is neither a finite
+        number nor a gap, with its line.
+
+        Parameters
+        ----------
+        columns
+            Columns of this table.
+        names
+            Names for columns without one.
+        units
+            Units of the result.
         """
-        sizes = [
-            column.size(unit, self.refuse)
-            for column, unit in zip(columns, units, strict=True)
-        ]
-        places = [column.place for column in columns]
+        sizes = []
+        for column, unit in zip(columns, units, strict=True):
+            sizes.append(column.size(unit, self.refuse))
         has_all = self._rows_with(columns)
-        numbers = self.numbers[places][:, has_all]
-        heads = zip(columns, names, units, strict=True)
-        parts = ", ".join(column.message(name, unit) for column, name, unit in heads)
-        unit = columns[-1].unit or units[-1]
-        low = numbers[-1].min()
-        high = numbers[-1].max()
-        ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
-        notes = [f"{parts}, {numbers.shape[1]} points, {ends}"]
+        numbers = self.numbers[[column.place for column in columns]][:, has_all]
+        notes = [self._note_on_points(columns, names, units, numbers)]
         others = [repr(column.name) for column in self.columns if column not in columns]
         if others:
             notes.append(f"passed over: {', '.join(others)}")
-        if not has_all.all():
-            count = int((~has_all).sum())
-            if count == 1:
-                rows = "1 row"
-            else:
-                rows = f"{count} rows"
-            notes.append(
-                f"left out {rows} without a number ({_named(self.lines[~has_all])})"
-            )
+        left_out = self.lines[~has_all]
+        if len(left_out):
+            rows = "1 row" if len(left_out) == 1 else f"{len(left_out)} rows"
+            notes.append(f"left out {rows} without a number ({_named(left_out)})")
         message = "; ".join([*notes, *self.remarks])
         return Reading(numbers * np.array(sizes)[:, None], self.lines[has_all], message)
 
+    def _note_on_points(
+        self,
+        columns: Sequence[TableColumn],
+        names: Sequence[str],
+        units: Sequence[str],
+        numbers: Array,
+    ) -> str:
+        """Words on columns, the number of points, and the range of the last column.
+
+        Numbers have the units of the columns, shape (n_columns, n_rows).
+        """
+        heads = []
+        for column, name, unit in zip(columns, names, units, strict=True):
+            heads.append(column.message(name, unit))
+        ends = f"from {numbers[-1].min():g} to {numbers[-1].max():g}"
+        last_unit = columns[-1].unit or units[-1]
+        if last_unit not in ("", "-", "1"):
+            ends = f"{ends} {last_unit}"
+        return f"{', '.join(heads)}, {numbers.shape[1]} points, {ends}"
+
     def _rows_with(self, columns: Sequence[TableColumn]) -> Flags:
-        """Rows with a number in all of some columns, (n_rows,); refuse what is no number."""
+        """Rows with a number in all of some columns, (n_rows,); refuse words."""
         numbers = self.numbers[[column.place for column in columns]]
-        has_all = np.asarray(np.isfinite(numbers).all(axis=0))
+        is_finite = np.isfinite(numbers)
+        has_all = np.asarray(is_finite.all(axis=0))
         for row in np.flatnonzero(~has_all):
-            for column, value in zip(columns, numbers[:, row], strict=True):
-                text = self.cells[row][column.place]
-                if np.isfinite(value) or is_gap(text):
-                    continue
-                line = self.lines[row]
-                if not column.name:
-                    shown = ",".join(self.cells[row])
-                    count = len(columns)
-                    raise self.refuse(
-                        f"line {line} is {shown!r}, not {count} finite numbers"
-                    )
-                if np.isnan(value):
-                    remedy = "give a number"
-                else:
-                    remedy = "leave such rows out"
-                raise self.refuse(
-                    f"line {line} has {text!r} as {column.name}: {remedy}"
-                )
+            for place, column in enumerate(columns):
+                is_number = is_finite[place, row]
+                if not is_number and not is_gap(self.cells[row][column.place]):
+                    raise self._refused_cell(columns, column, int(row))
         if not has_all.any():
             raise self.refuse("none of its rows has a number in each of these columns")
         return has_all
 
+    def _refused_cell(
+        self, columns: Sequence[TableColumn], column: TableColumn, row: int
+    ) -> SettingError:
+        """Refusal of a cell that is neither a finite number nor a gap."""
+        line = self.lines[row]
+        if not column.name:
+            shown = ",".join(self.cells[row])
+            return self.refuse(
+                f"line {line} is {shown!r}, not {len(columns)} finite numbers"
+            )
+        remedy = "leave such rows out"
+        if np.isnan(self.numbers[column.place, row]):
+            remedy = "give a number"
+        text = self.cells[row][column.place]
+        return self.refuse(f"line {line} has {text!r} as {column.name}: {remedy}")
+
 
 def _named(lines: Sequence[int] | Indices) -> str:
-    """The first few of some lines, as `lines 3, 8, 9`."""
-    said = ", ".join(str(line) for line in lines[:MOST_SAID])
+    """Words on some lines, the first few by number, as `lines 3, 8, 9`."""
+    if len(lines) == 1:
+        return f"line {lines[0]}"
+    numbers = ", ".join(str(line) for line in lines[:MOST_SAID])
     more = ", ..." if len(lines) > MOST_SAID else ""
-    return f"{'line' if len(lines) == 1 else 'lines'} {said}{more}"
+    return f"lines {numbers}{more}"
 
 
 def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table:
-    """Table of a file, or of text, as described above, which refusals call by a name.
+    """Table of a file or a text, as described above.
 
-    What is too large, no text or without numbers is refused, and lines that do not fit
-    the head.
+    A file that is too large, no text or without numbers is refused, and so are lines
+    that do not fit the head. Refusals have the name of a setting or an option, and
+    words on what is allowed.
     """
     refuse = partial(SettingError, name, source, allowed)
     if len(data) > LARGEST:
@@ -306,30 +346,35 @@ def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table
     block, others = block_of(lines, separator, refuse)
     columns = headed(block, separator, refuse)
     cells = fitted(block, len(columns), separator, refuse)
-    places = np.array([row.number for row in block.rows])
-    places.flags.writeable = False
+    line_numbers = np.array([row.number for row in block.rows])
+    line_numbers.flags.writeable = False
     decimal, thousands = _notation(block.rows, separator, refuse)
-    numbers = np.array([[number(cell, decimal) for cell in row] for row in cells]).T
     return Table(
         columns=tuple(columns),
         cells=tuple(map(tuple, cells)),
-        numbers=read_only(numbers),
-        lines=places,
+        numbers=read_only(_numbers_of(cells, decimal)),
+        lines=line_numbers,
         remarks=(*remarks, *thousands, *_interruptions(block), *others),
         source=source,
         refuse=refuse,
     )
 
 
+def _numbers_of(cells: list[list[str]], decimal: str) -> Array:
+    """Numbers of rows of cells under a decimal sign, (n_columns, n_rows)."""
+    rows = []
+    for row in cells:
+        rows.append([number(cell, decimal) for cell in row])
+    return np.array(rows).T
+
+
 def _interruptions(block: Block) -> list[str]:
-    """Words on what stands between rows."""
+    """Words on lines between rows."""
     remarks = []
-    if block.repeats:
-        if block.repeats == 1:
-            times = "once"
-        else:
-            times = f"{block.repeats} times"
-        remarks.append(f"its head comes again {times}")
+    if block.repeats == 1:
+        remarks.append("its head comes again once")
+    elif block.repeats > 1:
+        remarks.append(f"its head comes again {block.repeats} times")
     if block.passed:
         remarks.append(f"passed over {_named([line.number for line in block.passed])}")
     return remarks
@@ -338,44 +383,55 @@ def _interruptions(block: Block) -> list[str]:
 def _notation(
     rows: Sequence[Line], separator: str, refuse: Refuse
 ) -> tuple[str, list[str]]:
-    """The decimal sign of a table, and words on signs between thousands, as described above."""
-    if not any(
-        "," in cell or cell.count(".") > 1 for row in rows for cell in row.cells
-    ):
+    """Decimal sign of a table, and words on signs between thousands, as above."""
+    if not any(map(_has_doubtful_sign, rows)):
         return ".", []
-    # Cells that are numbers under one decimal sign alone, and under both, by line.
-    sure: dict[str, list[tuple[int, str]]] = {sign: [] for sign in SIGNS}
-    unsure: dict[str, list[tuple[int, str]]] = {sign: [] for sign in SIGNS}
-    for row in rows:
-        for cell in row.cells:
-            if "," in cell or "." in cell:
-                signs = decimal_signs(cell)
-            else:
-                signs = ""
-            if len(signs) == 1:
-                sure[signs].append((row.number, cell))
-            elif signs:
-                unsure["," if "," in cell else "."].append((row.number, cell))
+    sure, unsure = _cells_by_sign(rows)
     _check_alike(sure, refuse)
     if not sure["."] and not sure[","] and unsure[","]:
         if unsure["."] or separator != ";":
             line, cell = unsure[","][0]
             decimals = cell.replace(",", ".")
             raise refuse(
-                f"line {line} has {cell!r}, which may be {decimals} or {cell.replace(',', '')}: "
-                "write decimals with a point, and thousands without a sign"
+                f"line {line} has {cell!r}, which may be {decimals} or "
+                f"{cell.replace(',', '')}: write decimals with a point, and thousands "
+                "without a sign"
             )
         return ",", []
     decimal = "," if sure[","] else "."
     other = "." if decimal == "," else ","
-    has_thousands = bool(unsure[other]) or any(
-        other in cell for _, cell in sure[decimal]
-    )
-    names = {",": "commas", ".": "points"}
-    return decimal, [f"thousands with {names[other]}"] * has_thousands
+    if unsure[other] or any(other in cell for _, cell in sure[decimal]):
+        names = {",": "commas", ".": "points"}
+        return decimal, [f"thousands with {names[other]}"]
+    return decimal, []
 
 
-def _check_alike(sure: dict[str, list[tuple[int, str]]], refuse: Refuse) -> None:
+def _has_doubtful_sign(row: Line) -> bool:
+    """Return whether a cell has a comma, or points that cannot all be decimal."""
+    return any("," in cell or cell.count(".") > 1 for cell in row.cells)
+
+
+CellsBySign = dict[str, list[tuple[int, str]]]
+"""Cells with the number of their line, by a decimal sign."""
+
+
+def _cells_by_sign(rows: Sequence[Line]) -> tuple[CellsBySign, CellsBySign]:
+    """Numbers under one decimal sign alone, and under both, by their sign."""
+    sure: CellsBySign = {sign: [] for sign in SIGNS}
+    unsure: CellsBySign = {sign: [] for sign in SIGNS}
+    for row in rows:
+        for cell in row.cells:
+            if "," not in cell and "." not in cell:
+                continue
+            signs = decimal_signs(cell)
+            if len(signs) == 1:
+                sure[signs].append((row.number, cell))
+            elif signs:
+                unsure["," if "," in cell else "."].append((row.number, cell))
+    return sure, unsure
+
+
+def _check_alike(sure: CellsBySign, refuse: Refuse) -> None:
     """Refuse decimal points and commas in one table, with the line of the rarer."""
     if not sure["."] or not sure[","]:
         return

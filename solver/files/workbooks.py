@@ -1,4 +1,4 @@
-"""Workbooks (.xlsx) that have a table: the first sheet, read with openpyxl, which is optional."""
+"""Tables in workbooks (.xlsx): the first sheet, read with openpyxl (optional)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from solver.files.disk import Refuse
 from solver.files.table_lines import Line, line_of
 
 UNPACKED = 20_000_000
-"""Bytes of a workbook's parts at most: some five times what is read of a text."""
+"""Largest size of a workbook's parts in bytes: some five times that of a text."""
 MISSING = (
     "it is a workbook, which needs openpyxl: save the table as CSV, or install it with "
     "`pip install 'slipfront[excel]'`"
@@ -19,12 +19,12 @@ OTHER = "it is no workbook (.xlsx) and no text: save the table as CSV"
 
 
 def is_archive(data: bytes) -> bool:
-    """Whether a file is an archive, as workbooks are, or a workbook of before 2007."""
+    """Return whether a file is an archive, as workbooks are, or an old workbook."""
     return data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0"))
 
 
 def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
-    """Rows of the first sheet that are not empty, by their numbers, and words on the sheet."""
+    """Lines of the first sheet, without empty ones, and words on the sheet."""
     _check_archive(data, refuse)
     try:
         import openpyxl
@@ -37,26 +37,26 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
                 io.BytesIO(data), read_only=True, data_only=True
             )
             sheet = book.worksheets[0]
-            rows = [
-                list(map(_text_of, row)) for row in sheet.iter_rows(values_only=True)
-            ]
+            rows = []
+            for values in sheet.iter_rows(values_only=True):
+                rows.append([_text_of(value) for value in values])
             names = book.sheetnames
             book.close()
     except Exception as problem:  # whatever a file that is broken makes of its readers
         raise refuse(f"{OTHER} ({type(problem).__name__})") from None
-    lines = [
-        line_of(number, " ".join(row), _without_end(row))
-        for number, row in enumerate(rows, start=1)
-    ]
+    lines = []
+    for number, row in enumerate(rows, start=1):
+        line = line_of(number, " ".join(row), _without_end(row))
+        if line.cells:
+            lines.append(line)
+    words = f"sheet {sheet.title!r}"
     if len(names) > 1:
-        several = f" of {len(names)}"
-    else:
-        several = ""
-    return [line for line in lines if line.cells], f"sheet {sheet.title!r}{several}"
+        words = f"{words} of {len(names)}"
+    return lines, words
 
 
 def _check_archive(data: bytes, refuse: Refuse) -> None:
-    """Refuse other archives, and one that is far larger than it seems."""
+    """Refuse archives that are no workbook, or are far larger when unpacked."""
     try:
         parts = zipfile.ZipFile(io.BytesIO(data)).infolist()
     except zipfile.BadZipFile:
@@ -68,13 +68,15 @@ def _check_archive(data: bytes, refuse: Refuse) -> None:
 
 
 def _text_of(value: object) -> str:
-    """A cell as text: numbers in all digits, with a decimal point."""
+    """Text of a cell; of a number all digits, with a decimal point."""
     if value is None:
         return ""
     return str(value).strip()
 
 
 def _without_end(cells: list[str]) -> list[str]:
-    """Cells without empty ones at the end."""
-    last = max((place for place, cell in enumerate(cells, start=1) if cell), default=0)
-    return cells[:last]
+    """Cells up to the last filled one."""
+    count = len(cells)
+    while count and not cells[count - 1]:
+        count -= 1
+    return cells[:count]

@@ -31,5 +31,5 @@ CATALOGUE: dict[str, type[Settings]] = {
 
 
 def discretise(settings: Settings) -> Problem:
-    """Make the discrete problem that checked settings describe, driven by what they give."""
+    """Make the discrete problem of checked settings, with their loads and motions."""
     return replace(settings.structure().discretise(), drives=settings.drives())

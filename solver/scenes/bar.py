@@ -1,4 +1,4 @@
-"""The paper's benchmark: a clamped bar that rubs on a rigid support (paper, section 3, Table 1)."""
+"""The paper's benchmark: a bar on a rigid rough support (paper, section 3, Table 1)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from solver.settings.profiles import Profile, harmonic_means, means
 from solver.settings.scene import Icon, Settings
 
 SECTIONS = {name: shared.PROFILES[name] for name in ("uniform", "rising", "falling")}
-"""Those that leave no element without a section."""
+"""Presets of the section: without a gap, as every element needs a section."""
 SETTLEMENTS = {
     "linear": Profile(
         "rises evenly from 0 at the left end to 1 at the right end",
@@ -37,40 +37,44 @@ SETTLEMENTS = {
     ),
     **shared.PROFILES,
 }
-"""The first is nothing at the left end."""
+"""Presets of the settlement: the first one is zero at the left end."""
 LARGEST_CONTRAST = 1e8
-"""Largest over smallest factor on the section, and the largest factor itself."""
+"""Largest ratio of two factors on the section, and the largest factor itself."""
 DONE = {
     "body_load": ("all along it is {}", "pulled", "pushed"),
     "temperature_load": ("it is {}", "heated", "cooled"),
     "settlement_load": ("what it lies on is {}", "moved", "moved back"),
 }
-"""Words for what is done along the bar, by the setting of its path."""
+"""Words on loads along the bar by the setting of their path: a clause, and words for a
+positive and a negative load."""
 SLACK = 1e-9
-"""Share by which rounding may exceed the largest contrast."""
+"""Share by which rounding may exceed a limit."""
 BAR = SettingGroup("Bar")
 ENDS = SettingGroup("Ends")
 KINDS = ("held", "spring", "pulled", "free")
+"""Kinds of an end."""
 HOLDING = ("held", "spring")
+"""Kinds of an end that keep the bar in equilibrium under any load."""
 PATHS = {
     "left": {"force": "left_load", "displacement": "support_load"},
     "right": {"force": "load", "displacement": "right_load"},
 }
-"""Settings of the paths of both ends."""
+"""Settings of the paths of both ends by what is given there."""
 
 
 def _is_end(side: str, *kinds: str) -> Callable[[Any], bool]:
-    """Make the question whether an end is one of these."""
+    """Make the function of all settings that tells whether an end is of some kinds."""
     return lambda settings: getattr(settings, f"{side}_end") in kinds
 
 
 def _end(side: str, default: str) -> param.Selector[str]:
-    """Define what holds or pulls an end."""
+    """Define the kind of an end."""
     return ENDS.choice(
         default,
         KINDS,
-        f"What is at the {side} end. held: it stands still, or is moved. spring: a spring holds it "
-        "to what stands still, or is moved. pulled: by a force. free: nothing.",
+        f"What is at the {side} end. held: it stands still, or is moved. spring: a "
+        "spring holds it to what stands still, or is moved. pulled: by a force. free: "
+        "nothing.",
     )
 
 
@@ -90,7 +94,7 @@ def _spring(side: str) -> param.Number[float]:
 def _moved_end(
     side: str, path: str, preset: str
 ) -> tuple[param.Number[float], CurveParameter]:
-    """Define how far what holds an end is moved, and its path."""
+    """Define the displacement of the support of an end, and its path."""
     return shared.sized_path(
         path,
         f"displacement of the {side} end",
@@ -107,50 +111,49 @@ def _moved_end(
 
 
 def _end_of(settings: Any, side: str) -> End:
-    """The end as a part of the structure."""
+    """Make an end of the structure."""
     kind = getattr(settings, f"{side}_end")
     paths = PATHS[side]
     if kind == "free":
         return End()
     if kind == "pulled":
         return End(force=settings.path(paths["force"]))
+    stiffness = np.inf
     if kind == "spring":
         stiffness = getattr(settings, f"{side}_spring")
-    else:
-        stiffness = np.inf
     return End(displacement=settings.path(paths["displacement"]), spring=stiffness)
 
 
 def _ends_in_words(rods: Rods) -> tuple[str, str]:
-    """How the ends are held or left alone, and what is done to them."""
-    still: dict[str, list[str]] = {}
+    """Words on ends at rest, and words on ends that are pulled or moved."""
+    at_rest: dict[str, list[str]] = {}
     moved = []
     for side, end in rods.ends.items():
-        the = f"its {side} end"
+        name = f"its {side} end"
         if end.force is not None:
             outward = end.force if side == "right" else -end.force
-            moved.append(f"{the} is {shared.acting(outward, 'pulled', 'pushed')}")
+            moved.append(f"{name} is {shared.acting(outward, 'pulled', 'pushed')}")
         elif end.displacement is not None and end.displacement.any():
-            if end.is_on_spring:
-                at = f"the spring at {the}"
-            else:
-                at = the
-            moved.append(
-                f"{at} is {shared.acting(end.displacement, 'moved', 'moved back')}"
-            )
+            subject = f"the spring at {name}" if end.is_on_spring else name
+            action = shared.acting(end.displacement, "moved", "moved back")
+            moved.append(f"{subject} is {action}")
         else:
-            if end.is_on_spring:
-                word = "on a spring"
-            elif end.is_prescribed:
-                word = "held"
-            else:
-                word = "free"
-            still.setdefault(word, []).append(the)
-    rests = [
-        f"{word} at {'both ends' if len(ends) == 2 else ends[0]}"
-        for word, ends in still.items()
-    ]
-    return shared.listed(rests) if rests else "", ", and ".join(moved)
+            at_rest.setdefault(_rest_of(end), []).append(name)
+    clauses = []
+    for word, names in at_rest.items():
+        where = "both ends" if len(names) == 2 else names[0]
+        clauses.append(f"{word} at {where}")
+    rest = shared.listed(clauses) if clauses else ""
+    return rest, ", and ".join(moved)
+
+
+def _rest_of(end: End) -> str:
+    """Words on an end at rest."""
+    if end.is_on_spring:
+        return "on a spring"
+    if end.is_prescribed:
+        return "held"
+    return "free"
 
 
 class BarSettings(Settings):
@@ -175,7 +178,8 @@ class BarSettings(Settings):
         900.0,
         (-1e15, 1e15),
         (0.0, 2400.0),
-        "Largest force that the preset reaches; 1500 N is where the whole bar of Table 1 slides.",
+        "Largest force that the preset reaches; 1500 N is where the whole bar of Table "
+        "1 slides.",
         "sine",
         applies=_is_end("right", "pulled"),
         title="Peak load",
@@ -244,8 +248,8 @@ class BarSettings(Settings):
         0.0,
         (-1e12, 1e12),
         (0.0, 1e-3),
-        "Largest displacement of the support along the bar, as of soil that settles or a slab that "
-        "shrinks; 0 leaves it where it is. The ends are not on it.",
+        "Largest displacement of the support along the bar, as of soil that settles or "
+        "a slab that shrinks; 0 leaves it where it is. The ends are not on it.",
         "ramp",
         places=("bottom x",),
     )
@@ -274,8 +278,8 @@ class BarSettings(Settings):
         "S",
         "the bar",
         SECTIONS,
-        "a preset, taken at the middle of every element; or points (m, factor), where an element "
-        "is as stiff as all that lies in it.",
+        "a preset, taken at the middle of every element; or points (m, factor), where "
+        "an element is as stiff as all that lies in it.",
         bounds=(ANY, (1.0 / LARGEST_CONTRAST, LARGEST_CONTRAST)),
         group=BAR,
     )
@@ -287,22 +291,23 @@ class BarSettings(Settings):
         return float(self.young * self.section * mean / self.length**2)
 
     def check_together(self) -> None:
-        """Refuse what has no digits left, or no equilibrium, too."""
+        """Refuse unlike sections, too soft or stiff springs, and lost equilibrium."""
         table = self.section_profile
-        if isinstance(table, str):
-            factors = [1.0]
-        else:
+        factors = [1.0]
+        if not isinstance(table, str):
             factors = [factor for _, factor in table]
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise self.refusal(
                 "section_profile",
-                f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the smallest",
+                f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the "
+                "smallest",
                 "bring the factors nearer to each other",
             )
         super().check_together()
-        size = self.young * self.section / self.length
+        stiffness = self.young * self.section / self.length
         for side in PATHS:
-            self.check_digits(f"{side}_spring", size, "let the end be free, or held")
+            remedy = "let the end be free, or held"
+            self.check_digits(f"{side}_spring", stiffness, remedy)
         self._check_equilibrium()
 
     def structure(self) -> Rods:
@@ -313,13 +318,6 @@ class BarSettings(Settings):
         nodes = np.linspace(0.0, self.length, self.elements + 1)
         factors = shared.at_nodes(self, nodes, "friction_profile", "pressure_profile")
         mean, section = self._uneven_section()
-        strain = settlement = None
-        if self.acts("temperature_load"):
-            along = means([self.points("temperature_profile")], nodes)
-            strain = np.outer(self.expansion * along, self.path("temperature_load"))
-        if self.acts("settlement_load"):
-            along = interpolate(self.points("settlement_profile"), nodes)
-            settlement = np.outer(along, self.path("settlement_load"))
         return Rods(
             length=self.length,
             stiffness=self.young * self.section * mean,
@@ -332,85 +330,105 @@ class BarSettings(Settings):
             duration=self.duration,
             pressure=self.path("pressure_load"),
             body_force=self.path("body_load") if self.acts("body_load") else None,
-            strain=strain,
-            settlement=settlement,
+            strain=self._strain(nodes),
+            settlement=self._settlement(nodes),
             section=section,
             friction_law=self.law,
         )
 
+    def _strain(self, nodes: Array) -> Array | None:
+        """Strain of elements by heating, (n_elements, n_instants); None without it.
+
+        `nodes` are their positions, (n_nodes,), m.
+        """
+        if not self.acts("temperature_load"):
+            return None
+        along = means([self.points("temperature_profile")], nodes)
+        return np.outer(self.expansion * along, self.path("temperature_load"))
+
+    def _settlement(self, nodes: Array) -> Array | None:
+        """Displacement of the support at nodes, (n_nodes, n_instants), m; None at rest.
+
+        `nodes` are their positions, (n_nodes,), m.
+        """
+        if not self.acts("settlement_load"):
+            return None
+        along = interpolate(self.points("settlement_profile"), nodes)
+        return np.outer(along, self.path("settlement_load"))
+
     def sentence(self) -> str:
-        """The bar in a sentence."""
+        """Describe the bar in a sentence."""
         rods = self.structure()
         bound = self.law.without_slip(rods.bound)
+        table = "smooth"
         if bound.all():
             table = "rough"
         elif bound.any():
             table = "partly rough"
-        else:
-            table = "smooth"
-        rests, moved = _ends_in_words(rods)
+        body = "A steel bar" if shared.is_steel(self.young) else "An elastic bar"
+        head = f"{body} lies on a {table} table"
+        rest, moved = _ends_in_words(rods)
+        if rest:
+            head = f"{head}, {rest}"
+        clauses = [head]
         if moved:
-            clauses = [moved]
-        else:
-            clauses = []
-        for path, words in DONE.items():
+            clauses.append(moved)
+        for path, (clause, forward, backward) in DONE.items():
             if self.acts(path):
-                clauses.append(
-                    words[0].format(shared.acting(self.path(path), *words[1:]))
-                )
+                action = shared.acting(self.path(path), forward, backward)
+                clauses.append(clause.format(action))
         if self.pressure_load != "steady":
             clauses.append("what presses it changes")
-        if shared.is_steel(self.young):
-            body = "A steel bar"
-        else:
-            body = "An elastic bar"
-        head = f"{body} lies on a {table} table{f', {rests}' if rests else ''}"
-        return f"{'; '.join([head, *clauses])}."
+        return f"{'; '.join(clauses)}."
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Whether an end is pulled or moved."""
+        """Return whether an end is pulled or moved."""
         acting = {name for name in self.paths if self.acts(name)}
-        driven = {path for paths in PATHS.values() for path in paths.values()}
-        return bool(acting & driven)
+        driven = [*PATHS["left"].values(), *PATHS["right"].values()]
+        return bool(acting.intersection(driven))
 
     def _check_equilibrium(self) -> None:
-        """Refuse more force than friction carries, where it alone holds the bar."""
+        """Refuse forces that friction cannot balance where it alone holds the bar."""
         if {self.left_end, self.right_end} & set(HOLDING):
             return
         rods = self.structure()
         bound = self.law.without_slip(rods.bounds) * self.law.strongest
         shares = tributary(self.elements) * (self.length / self.elements)
-        most = np.broadcast_to(shares @ bound, (self.n_instants,))
+        largest = np.broadcast_to(shares @ bound, (self.n_instants,))
         forces = [end.force for end in rods.ends.values() if end.force is not None]
         if rods.body_force is not None:
             forces.append(self.length * rods.body_force)
         total = np.abs(sum(forces, np.zeros(self.n_instants)))
-        worst = int(np.argmax(total - most))
-        if total[worst] >= (1.0 - SLACK) * most[worst]:
+        worst = int(np.argmax(total - largest))
+        force = float(total[worst])
+        capacity = float(largest[worst])
+        if force >= (1.0 - SLACK) * capacity:
             raise self.refusal(
                 "left_end",
-                f"held, or spring, where forces reach {plain(float(total[worst]))} N and friction "
-                f"carries less than {plain(float(most[worst]))} N",
+                f"held, or spring, where forces reach {plain(force)} N "
+                f"and friction carries less than {plain(capacity)} N",
                 "hold an end, lower the forces, or raise friction or pressure",
             )
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Friction along the bar and the loop of its end, where closed forms are known."""
+        """Friction along the bar and the loop of its end, by closed forms."""
         return exact_bar(self.structure(), problem)
 
     def _uneven_section(self) -> tuple[float, Array | None]:
-        """Harmonic mean of the section's factors, and every element's over that mean."""
+        """Harmonic mean of the section's factors, and every element's factor over it.
+
+        The latter has shape (n_elements,); it is None if the section is uniform.
+        """
         if self.section_profile == "uniform":
             return 1.0, None
         ends = np.linspace(0.0, self.length, self.elements + 1)
         table = self.section_profile
         if isinstance(table, str):
-            factors = interpolate(
-                SECTIONS[table].points, 0.5 * (ends[:-1] + ends[1:]) / self.length
-            )
+            middles = 0.5 * (ends[:-1] + ends[1:]) / self.length
+            factors = interpolate(SECTIONS[table].points, middles)
         else:
             factors = harmonic_means(table, ends)
         mean = float(1.0 / np.mean(1.0 / factors))

@@ -29,21 +29,21 @@ from solver.reference.closed_forms.pulled_bar import (
 )
 
 SMALL = 0.12
-"""Largest half-width of a contact, over the length and the height of its body, that is
-still that of a half-plane: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
+"""Largest half-width of a contact, over the length and the height of its body, for
+which a half-plane holds: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
 UNCOUPLED = 0.49
-"""Poisson's ratio from which on pressure and friction leave each other alone on a rigid
-support."""
+"""Smallest Poisson's ratio for which pressure and friction on a rigid support are taken
+as uncoupled."""
 RIGID = 50.0
-"""Slide of a body over its largest deformation, from which on that is left out: 2 % of
-it."""
+"""Smallest ratio of the slide of a body to its largest deformation for which the
+deformation is left out: it is 2 % of the slide."""
 STEADY = 0.01
-"""Change of the pressing force, as a share, that is none."""
+"""Largest change of the pressing force, as a share, that counts as none."""
 
 
 def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
     """Friction along the bar, and the loop of its end."""
-    # What a known pressure makes and what needs none are one bound.
+    # Under a known pressure, friction by pressure and cohesion are one known bound.
     law = replace(bar.friction_law, cohesion=0.0, cap=np.inf)
     bar = replace(bar, bound=bar.friction_law.without_slip(bar.bound), friction_law=law)
     closed = closed_form(bar)
@@ -61,9 +61,9 @@ def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
 
 
 def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
-    """Loop under a load that grows, as long as friction changes at every slipping point.
+    """Loop under a growing load while friction still changes at every slipping point.
 
-    Where friction softens that ends where the load would be more than the bar can take.
+    Where friction softens, the load must stay below the largest one that the bar bears.
     """
     (_, slip_length, *_) = strength.slips
     (_, ratio, *_) = strength.factors
@@ -86,13 +86,13 @@ def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
 
 
 def _is_even(bar: Rods) -> bool:
-    """Whether nothing but a force at its end moves the bar, which is the same throughout."""
+    """Return whether the bar is uniform, and only a force at its end moves it."""
     is_uniform = bar.section is None and bar.bound.ndim == 1 and not np.ptp(bar.bound)
     return bar.is_only_pulled and is_uniform
 
 
 def _is_coulombs(body: Stack) -> bool:
-    """Whether friction on the support is mu N and no more, with one mu."""
+    """Return whether friction on the support is Coulomb's, mu N, with one mu."""
     assert body.support is not None
     return body.friction_law == FrictionLaw() and not np.ptp(body.support.friction)
 
@@ -100,70 +100,92 @@ def _is_coulombs(body: Stack) -> bool:
 def exact_parabola(
     body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
-    """Pressure and friction of Hertz, Cattaneo and Mindlin, for the forces that are found."""
-    law = problem.rubbing["support"]
+    """Pressure of Hertz, and friction of Cattaneo and Mindlin, for the forces found."""
+    positions = problem.rubbing["support"].positions
     contact = solution.contact("support")
     assert contact.normal_force is not None
     assert body.support is not None
     total = contact.normal_force.sum(axis=0)
-    most = float(total.max())
+    largest = float(total.max())
     friction = float(np.max(body.support.friction))
-    if most <= 0.0 or not _is_coulombs(body) or (friction and body.poisson < UNCOUPLED):
+    is_coupled = friction and body.poisson < UNCOUPLED
+    if largest <= 0.0 or not _is_coulombs(body) or is_coupled:
         return
+    modulus = body.young
     if body.state == "strain":
-        wide = body.poisson**2
-    else:
-        wide = 0.0
-    modulus = body.young / (1.0 - wide)
-    if HalfPlane(most, radius, modulus).half_width > SMALL * min(
-        body.length, body.height
-    ):
+        modulus = body.young / (1.0 - body.poisson**2)
+    half_width = HalfPlane(largest, radius, modulus).half_width
+    if half_width > SMALL * min(body.length, body.height):
         return
-    pressed = np.maximum(total, most * np.finfo(float).eps)
-    place = law.positions[:, None] - law.positions @ contact.normal_force / pressed
-    pressure = np.stack(
-        [
-            HalfPlane(float(force), radius, modulus).pressure(own)
-            for force, own in zip(pressed, place.T, strict=True)
-        ],
-        axis=1,
-    )
-    yield ExactCurve("pressure", law.positions, pressure)
+    pressure = _hertz(positions, contact.normal_force, radius, modulus)
+    yield ExactCurve("pressure", positions, pressure)
     shear = contact.tangential_force.sum(axis=0)
     begins = _begins(shear, total, friction)
     if begins is not None:
-        held = float(total[begins:].mean())
-        middle = float(law.positions @ contact.normal_force[:, -1] / total[-1])
-        exact = HalfPlane(held, radius, modulus)
-        traction = exact.traction_over(law.positions - middle, friction, shear)
-        yield ExactCurve("friction", law.positions, traction)
+        steady = float(total[begins:].mean())
+        middle = float(positions @ contact.normal_force[:, -1] / total[-1])
+        exact = HalfPlane(steady, radius, modulus)
+        traction = exact.traction_over(positions - middle, friction, shear)
+        yield ExactCurve("friction", positions, traction)
+
+
+def _hertz(
+    positions: Array, normal_force: Array, radius: float, modulus: float
+) -> Array:
+    """Pressure of Hertz about the middle of the forces, (n_points, n_instants), Pa.
+
+    Parameters
+    ----------
+    positions
+        Positions of the points, (n_points,), m.
+    normal_force
+        Forces of the points, (n_points, n_instants), N.
+    radius
+        Radius of the parabola, m.
+    modulus
+        Modulus of the half-plane, Pa.
+    """
+    total = normal_force.sum(axis=0)
+    pressed = np.maximum(total, float(total.max()) * np.finfo(float).eps)
+    distances = positions[:, None] - positions @ normal_force / pressed
+    pressures = []
+    for force, from_middle in zip(pressed, distances.T, strict=True):
+        exact = HalfPlane(float(force), radius, modulus)
+        pressures.append(exact.pressure(from_middle))
+    return np.stack(pressures, axis=1)
 
 
 def _begins(shear: Array, total: Array, friction: float) -> int | None:
-    """Last instant before any shear, if a steady force presses from then on."""
+    """Last instant before any shear, if the pressing force is steady from there on.
+
+    Shear and total pressing force have shape (n_instants,), N.
+    """
     acts = np.flatnonzero(np.abs(shear) > STEADY * friction * total.max())
     if not friction or not len(acts):
         return None
     first = max(int(acts[0]) - 1, 0)
-    return first if np.ptp(total[first:]) <= STEADY * total.max() else None
+    is_steady = np.ptp(total[first:]) <= STEADY * total.max()
+    return first if is_steady else None
 
 
 def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
-    """Shear force of a block that a spring pulls back, where it slides like a rigid one.
+    """Shear force of a block that a spring pulls back, as of a rigid block.
 
-    It does where it slides much farther than it is deformed, and no side holds it.
+    The closed form holds for a block that slides much farther than it is deformed, and
+    that no side holds.
     """
-    held = any(given.prescribed for side in body.sides.values() for given in side)
-    if held or body.spring is None or not _is_coulombs(body):
+    is_held = any(
+        side.x.prescribed or side.y.prescribed for side in body.sides.values()
+    )
+    if is_held or body.spring is None or not _is_coulombs(body):
         return
     slide = rigid_slide(body, body.spring)
     pushed, pressed, _ = wrench(body)
     stress = max(
         np.abs(pushed).max() / body.height, np.abs(pressed).max() / body.length
     )
-    if np.abs(slide).max() < RIGID * stress / body.young * max(
-        body.length, body.height
-    ):
+    size = max(body.length, body.height)
+    if np.abs(slide).max() < RIGID * stress / body.young * size:
         return
     pull = body.spring.stiffness * np.maximum(-slide - body.spring.slack, 0.0)
     yield ExactCurve("loop", slide, pushed + pull)
@@ -174,9 +196,8 @@ def exact_layers(
 ) -> Iterator[ExactCurve]:
     """Force that bends beams, apart without friction, or as one where nothing slips."""
     given = body.sides["right"].y
-    if body.state != "stress" or (
-        body.stiffness is not None and np.ptp(body.stiffness)
-    ):
+    is_mixed = body.stiffness is not None and np.ptp(body.stiffness)
+    if body.state != "stress" or is_mixed:
         return
     if not given.prescribed and not np.any(given.mean):
         return
@@ -188,38 +209,40 @@ def exact_layers(
             grown = masing(body.end_force, leaves.deflection)
             yield ExactCurve("loop", grown, body.end_force)
         return
-    law = body.friction_law
-    apart = law == replace(FrictionLaw(), strength=law.strength) and not np.any(
-        body.friction
-    )
-    if not apart:
-        if solution is None or np.isfinite([law.stiffness, law.normal_stiffness]).any():
-            return
-        if any(solution.contact(name).status.any() for name in problem.rubbing):
-            return
-    if apart:
-        beams = 1.0 * len(body.reach)
-        height = body.height
-    else:
-        beams = 1.0
-        height = body.size[1]
-    if np.any(body.reach < 1.0):
-        if apart:
-            graduated = _leaves(body)
-        else:
-            graduated = None
-        if graduated is None:
-            return
-        beams = graduated
-    stiffness = beams * cantilever(body.length, height, body.young, body.poisson)
+    stiffness = _elastic_stiffness(body, problem, solution)
+    if stiffness is None:
+        return
     if given.prescribed:
         yield ExactCurve("loop", given.mean, stiffness * given.mean)
     else:
         yield ExactCurve("loop", body.end_force / stiffness, body.end_force)
 
 
+def _elastic_stiffness(
+    body: Stack, problem: Problem, solution: LoopFields | None
+) -> float | None:
+    """Bending stiffness of layers apart or of one beam, N/m; None of others."""
+    law = body.friction_law
+    is_plain = law == replace(FrictionLaw(), strength=law.strength)
+    is_graduated = bool(np.any(body.reach < 1.0))
+    if is_plain and not np.any(body.friction):
+        beams: float | None = 1.0 * len(body.reach)
+        if is_graduated:
+            beams = _leaves(body)
+        if beams is None:
+            return None
+        return beams * cantilever(body.length, body.height, body.young, body.poisson)
+    if solution is None or np.isfinite([law.stiffness, law.normal_stiffness]).any():
+        return None
+    if any(solution.contact(name).status.any() for name in problem.rubbing):
+        return None
+    if is_graduated:
+        return None
+    return cantilever(body.length, body.size[1], body.young, body.poisson)
+
+
 def _two_leaves(body: Stack) -> TwoLeaves | None:
-    """Closed form of two equal leaves under a pressure that stays while they are bent."""
+    """Closed form of two equal leaves under a constant pressure, if it holds."""
     bent = body.sides["right"].y.mean
     given = body.sides["top"].y
     acts = np.flatnonzero(bent)
@@ -239,9 +262,10 @@ def _two_leaves(body: Stack) -> TwoLeaves | None:
 
 
 def _leaves(body: Stack) -> float | None:
-    """Stiffness of a leaf spring over that of its longest leaf; None where no closed form is known.
+    """Stiffness of a leaf spring over its longest leaf's; None without closed form.
 
-    Leaves grow shorter the way they are bent, and nothing else presses them together.
+    The closed form is for leaves that grow shorter in the direction of bending, and
+    that no pressure holds together.
     """
     bent = body.sides["right"].y.mean
     steps = np.diff(body.reach)

@@ -1,4 +1,4 @@
-"""A fault into which a fluid is let in: it takes friction away, and slip spreads from there.
+"""A fault with a fluid that flows in, reduces friction, and drives a front of slip.
 
 The strength of the fault is mu (sigma - p), with p the pressure of the fluid, which
 spreads along it by diffusion (solver/README.md, 17).
@@ -47,39 +47,44 @@ PROFILES = {
 }
 """Factors over shares of the length."""
 FINE = 4000
-"""Intervals along the fault between which the strength of the closed form is linear."""
+"""Intervals along the fault on each of which the closed form's strength is linear."""
 INFINITE = 0.3
-"""Largest front, over the sides of the body, that is still that of an infinite one: to
-2 % (tests/scenes/test_a_fluid_drives_slip.py)."""
+"""Largest length of slip, over the sides of the body, for which the closed form of an
+infinite body holds: to 2 % (tests/scenes/test_a_fluid_drives_slip.py)."""
 MOST_SPREAD = 300_000_000
-"""Nodes times instants times points of a path, at most, as each point spreads on its
-own."""
+"""Largest number of nodes times instants times points of a path: the pressure is a sum
+over the points."""
 OF_BOTH_SIDES = {
     "tangential_stiffness": 0.5,
     "contact_stiffness": 0.5,
     "strength": 2.0,
     "slip_length": 2.0,
 }
-"""Settings over the slip between both sides of the fault, with the factor on the values
-that were given when they were over that of one side."""
+"""Settings that are over the slip between both sides of the fault, with the factor on
+values of the first format, which were over the slip of one side."""
 ROUND = 1e-9
-"""Share of the strength that rounding adds to it or takes away."""
+"""Largest error of the strength by rounding, as a share."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """A fault as a structure.
+    """A fault as a structure, of which symmetry leaves one quarter.
 
-    One quarter is enough: the body above the fault, to the right of its middle. Below
-    lies its image turned by half a turn, so that no pressure changes on the fault and
-    its strength is known; to the left lies the other image, which moves along as much
-    and across the other way round. The fault slips by twice what this quarter moves
-    along it: slip, and a law over it, are the fault's (`Support.is_image`), while
-    displacements are those of the quarter.
+    The quarter is the body above the fault, to the right of its middle. The part below
+    is its image by half a turn, so that the pressure on the fault never changes and its
+    strength is known. The part to the left is the other image, which has the same
+    displacement along the fault and the opposite one across. The fault slips by twice
+    the displacement of the quarter along it: slip, and a law over it, are the fault's
+    (`Support.is_image`), while displacements are those of the quarter.
 
-    The bound of the body's support is less already by what the fluid takes: shear
-    stress far away and the fluid's pressure at the middle, (n_instants,), Pa, are for
-    whoever draws them.
+    Attributes
+    ----------
+    body
+        The quarter; the bound of its support is already reduced by the fluid.
+    stress
+        Shear stress far away, Pa, for drawing.
+    fluid
+        Pressure of the fluid at the middle, (n_instants,), Pa, for drawing.
     """
 
     body: Stack
@@ -105,7 +110,7 @@ class Fault:
         )
 
     def described(self) -> Description:
-        """What there is, for whoever draws it."""
+        """Description for drawing."""
         body = self.body
         return Description(
             bodies=1,
@@ -117,6 +122,7 @@ class Fault:
         )
 
     def _acts(self) -> Iterator[Act]:
+        """Yield the loads that are drawn."""
         along = (1.0, 0.0)
         stress = np.full_like(self.fluid, self.stress)
         yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, stress, "Pa")
@@ -124,7 +130,7 @@ class Fault:
 
 
 class FaultSettings(PlaneSettings):
-    """Settings of the fault; by default the fluid's pressure stays, and the front runs on."""
+    """Settings of the fault; by default the fluid's pressure is constant in time."""
 
     scene = "fault"
     title = "Fault driven by a fluid"
@@ -163,14 +169,15 @@ class FaultSettings(PlaneSettings):
         PlaneSettings.param["duration"],
         86400.0,
         (3600.0, 2.6e6),
-        doc="Length of the time interval. Friction does not feel the rate, but a fluid needs time: "
-        "it spreads over sqrt(4 α t).",
+        doc="Length of the time interval. Friction does not feel the rate, but a fluid "
+        "needs time: it spreads over sqrt(4 α t).",
     )
     normal_stress = CONTACT.quantity(
         1e7,
         (0.0, 1e15),
         (1e6, 1e8),
-        "Pressure σ between both sides of the fault, less that of the fluid there before.",
+        "Pressure σ between both sides of the fault, less that of the fluid there "
+        "before.",
         title="Normal stress σ",
         unit="Pa",
     )
@@ -188,26 +195,27 @@ class FaultSettings(PlaneSettings):
     tangential_stiffness = redefined(
         PlaneSettings.param["tangential_stiffness"],
         0.0,
-        doc="Stiffness of the fault as a joint, in series with friction: shear stress over the "
-        "slip between both of its sides. 0: rigid.",
+        doc="Stiffness of the fault as a joint, in series with friction: shear stress "
+        "over the slip between both of its sides. 0: rigid.",
     )
     contact_stiffness = redefined(
         PlaneSettings.param["contact_stiffness"],
         100.0,
-        doc="Stiffness of that spring, shear stress over the slip between both sides of the fault, "
-        "as a multiple of E / L.",
+        doc="Stiffness of that spring, shear stress over the slip between both sides "
+        "of the fault, as a multiple of E / L.",
     )
     strength = redefined(
         PlaneSettings.param["strength"],
         "constant",
-        doc="Factor on the largest friction force over the accumulated slip between both sides of "
-        "the fault: a preset, or points (m, factor), the first (0, 1), such as a peak, softening "
-        "and a residual; the last one stays.",
+        doc="Factor on the largest friction force over the accumulated slip between "
+        "both sides of the fault: a preset, or points (m, factor), the first (0, 1), "
+        "such as a peak, softening and a residual; the last one stays.",
     )
     slip_length = redefined(
         PlaneSettings.param["slip_length"],
         1e-4,
-        doc="Accumulated slip between both sides of the fault at which its friction is the last.",
+        doc="Accumulated slip between both sides of the fault at which its friction is "
+        "the last.",
     )
     length = shared.size(
         600.0,
@@ -223,8 +231,8 @@ class FaultSettings(PlaneSettings):
     poisson = redefined(PlaneSettings.param["poisson"], 0.25)
 
     def changed_meanings(self) -> Mapping[str, str]:
-        """Describe settings over the slip, which was that of one side alone."""
-        found = {}
+        """Describe settings over the slip, which was one side's in the first format."""
+        meanings = {}
         for name, factor in OF_BOTH_SIDES.items():
             value = getattr(self, name)
             if isinstance(value, str) or not self.has(name):
@@ -233,46 +241,55 @@ class FaultSettings(PlaneSettings):
             remedy = "give slips twice as large"
             if isinstance(value, float):
                 remedy = f"give {plain(factor * value)} {unit}".rstrip()
-            found[name] = (
-                "the file is of a version whose slip was that of one side of the fault; it is that "
-                f"between both sides now, for the run of then {remedy}"
+            meanings[name] = (
+                "the file is of a version whose slip was that of one side of the "
+                "fault; it is that between both sides now, for the run of then "
+                f"{remedy}"
             )
-        return found
+        return meanings
 
     def fluid(self, place: Array) -> Array:
-        """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
-        times = start = self.times()
-        if self.instants == 1:  # a fluid needs all of the time before
-            start = instants_of(self.duration, 2, self.knots("injection_load"), times)
-        fluid = spread(
-            place, start, self.path_at("injection_load", start), self.diffusivity
-        )
-        if start is times:
-            return fluid
-        return fluid[:, np.searchsorted(start, times)]
+        """Pressure of the fluid along the fault, shape (n_places, n_instants), Pa.
+
+        `place` are positions along the fault, (n_places,), m.
+        """
+        times = self.times()
+        if self.instants > 1:
+            pressure = self.path("injection_load")
+            return spread(place, times, pressure, self.diffusivity)
+        # The fluid at a single instant depends on all of the time before.
+        history = instants_of(self.duration, 2, self.knots("injection_load"), times)
+        pressure = self.path_at("injection_load", history)
+        fluid = spread(place, history, pressure, self.diffusivity)
+        return fluid[:, np.searchsorted(history, times)]
 
     def pressing(self, place: Array) -> Array:
-        """Normal stress along the fault before any fluid is let in, shape (n_places,), Pa."""
-        return np.asarray(
-            self.normal_stress * shared.at_nodes(self, place, "normal_profile")
-        )
+        """Normal stress along the fault without the fluid, shape (n_places,), Pa.
+
+        `place` are positions along the fault, (n_places,), m.
+        """
+        factors = shared.at_nodes(self, place, "normal_profile")
+        return np.asarray(self.normal_stress * factors)
 
     def largest_friction(self, place: Array) -> Array:
-        """Largest friction per area along the fault, shape (n_places, n_instants), Pa."""
+        """Largest friction per area along the fault, shape (n_places, n_instants), Pa.
+
+        `place` are positions along the fault, (n_places,), m.
+        """
         mu = self.friction * shared.at_nodes(self, place, "friction_profile")
-        return np.asarray(
-            mu[:, None] * (self.pressing(place)[:, None] - self.fluid(place))
-        )
+        pressing = self.pressing(place)[:, None] - self.fluid(place)
+        return np.asarray(mu[:, None] * pressing)
 
     def check_together(self) -> None:
         """Refuse a fluid that would open the fault, or take minutes to spread."""
         super().check_together()
-        bends = len(self.knots("injection_load"))
-        if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
+        n_points = len(self.knots("injection_load"))
+        largest = MOST_SPREAD // (self.nodes[0] * self.n_instants)
+        if n_points > largest:
             raise SettingError(
                 "injection_load",
-                f"a path of {bends} points",
-                f"at most {most} points with {self.n_instants} instants",
+                f"a path of {n_points} points",
+                f"at most {largest} points with {self.n_instants} instants",
                 "give fewer points, or fewer elements along",
             )
         pressing = self.pressing(self.places)
@@ -283,14 +300,15 @@ class FaultSettings(PlaneSettings):
             raise self.refusal(
                 self.size_or_table("injection_load"),
                 f"at most the normal stress, {plain(float(pressing[worst]))} Pa",
-                "it would open the fault: lower the pressure of the fluid, or press more",
+                "it would open the fault: lower the pressure of the fluid, or press "
+                "more",
             )
 
     def structure(self) -> Fault:
         """Make the quarter of the body; one metre thick.
 
-        Its top is moved as far as the stress takes, and holds it where all of the fault
-        slips.
+        The displacement of its top is prescribed, as under the shear stress without
+        slip; so there is equilibrium even where the whole fault slips.
         """
         modulus = 0.5 * self.young / (1.0 + self.poisson)
         strength = self.largest_friction(self.places)
@@ -312,7 +330,7 @@ class FaultSettings(PlaneSettings):
         return Fault(body, self.shear_stress, self.path("injection_load"))
 
     def sentence(self) -> str:
-        """The fault in a sentence."""
+        """Describe the fault in a sentence."""
         path = self.path("injection_load")
         if not path.any():
             return "A fault is sheared; a quarter of it is seen."
@@ -325,34 +343,52 @@ class FaultSettings(PlaneSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Front of slip and the friction, as long as slip spreads in an infinite body.
+        """Front of slip and friction, as of an infinite body, where slip only spreads.
 
-        It does where strength falls with time, everywhere, and grows away from the
-        well.
+        Slip only spreads where the strength falls with time everywhere, and grows with
+        the distance from the well.
         """
         stress = self.shear_stress
         if np.any(np.diff(self.path("injection_load")) < 0.0):
             return
         place = np.linspace(0.0, self.length, FINE + 1)
-        lack = self.largest_friction(place) - stress
-        small = ROUND * float(np.abs(lack).max())
-        spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(
-            np.diff(lack, axis=0) >= -small
-        )
+        margin = self.largest_friction(place) - stress
+        small = ROUND * float(np.abs(margin).max())
+        falls_with_time = np.all(np.diff(margin, axis=1) <= small)
+        grows_along = np.all(np.diff(margin, axis=0) >= -small)
+        spreads = falls_with_time and grows_along
         if self.law != FrictionLaw() or not spreads or stress <= 0.0:
             return
-        front = fronts(place, lack)
+        front = fronts(place, margin)
         if not front.any() or front.max() > INFINITE * min(self.length, self.height):
             return
         yield ExactCurve("front", front, self.times())
         nodes = problem.rubbing["support"].positions
-        friction = np.full((len(nodes), self.n_instants), stress)
+        friction = self._exact_friction(nodes, front, place, margin)
+        yield ExactCurve("friction", nodes, -friction)
+
+    def _exact_friction(
+        self, nodes: Array, front: Array, place: Array, margin: Array
+    ) -> Array:
+        """Friction of the closed form at nodes, (n_nodes, n_instants), Pa.
+
+        Parameters
+        ----------
+        nodes
+            Positions of the nodes, (n_nodes,), m.
+        front
+            Position of the front of slip, (n_instants,), m; 0: nothing slips.
+        place
+            Positions at which the margin is given, (n_places,), m.
+        margin
+            Strength less the shear stress far away, (n_places, n_instants), Pa.
+        """
+        friction = np.full((len(nodes), self.n_instants), self.shear_stress)
         strength = self.largest_friction(nodes)
         for instant in np.flatnonzero(front):
+            end = float(front[instant])
             ahead = nodes > front[instant]
-            added = stress_ahead(
-                nodes[ahead], place, lack[:, instant], float(front[instant])
-            )
+            added = stress_ahead(nodes[ahead], place, margin[:, instant], end)
             friction[ahead, instant] += added
             friction[~ahead, instant] = strength[~ahead, instant]
-        yield ExactCurve("friction", nodes, -friction)
+        return friction

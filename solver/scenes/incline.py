@@ -1,4 +1,4 @@
-"""A block on a slope that rises and falls, caught by a spring uphill (solver/README.md, 9).
+"""A block on a slope that rises and falls, with a spring uphill (solver/README.md, 9).
 
 The block is drawn as it lies on the slope: x runs uphill, and its weight turns instead.
 The spring pulls at the foot of the uphill side once it has slid down by the slack.
@@ -27,7 +27,7 @@ from solver.settings.scene import Icon
 
 
 class InclineSettings(PlaneSettings):
-    """Settings of the block on a slope; by default the spring catches it, and pulls it back."""
+    """Settings of the block on a slope; by default the spring pulls it back."""
 
     scene = "incline"
     title = "Block on an inclined plane"
@@ -47,8 +47,8 @@ class InclineSettings(PlaneSettings):
         40.0,
         (0.0, 89.0),
         (0.0, 60.0),
-        "Largest angle of the slope. Up to tan θ = μ the block sticks; unless tan(θ/2) > μ, "
-        "the spring cannot pull it back.",
+        "Largest angle of the slope. Up to tan θ = μ the block sticks; unless tan(θ/2) "
+        "> μ, the spring cannot pull it back.",
         "triangle",
         PULLS,
         title="Slope θ",
@@ -110,12 +110,13 @@ class InclineSettings(PlaneSettings):
         """Make the block on its slope; one metre thick."""
         angle = np.radians(self.path("slope_load"))
         density = self.weight / (self.length * self.height)
+        body_force = None
+        if density:
+            body_force = -density * np.stack([np.sin(angle), np.cos(angle)])
         return replace(
             self.stack(),
             support=Support(np.zeros(self.nodes[0]), self.friction_at_nodes()),
-            body_force=-density * np.stack([np.sin(angle), np.cos(angle)])
-            if density
-            else None,
+            body_force=body_force,
             spring=Spring(self.slack, self.spring),
             tilt=angle,
         )
@@ -123,7 +124,7 @@ class InclineSettings(PlaneSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Force of the spring over the angle: what friction leaves to it, up and down."""
+        """Force of the spring over the angle: weight along the slope less friction."""
         mu = self.friction_at_nodes()
         if not self.weight or self.law != FrictionLaw() or np.ptp(mu):
             return
@@ -135,10 +136,16 @@ class InclineSettings(PlaneSettings):
         yield ExactCurve("loop", np.degrees(angle), force)
 
     def sentence(self) -> str:
-        """The block on its slope in a sentence."""
-        path = self.path("slope_load")
+        """Describe the block on its slope in a sentence."""
         moves = shared.acting(
-            path, "rises", "falls", "rises and falls", "rises and falls"
+            self.path("slope_load"),
+            "rises",
+            "falls",
+            both="rises and falls",
+            back="rises and falls",
         )
-        slope = f"{'rough' if self.is_rough else 'smooth'} slope that {moves}"
-        return f"A block lies on a {slope}; a spring catches it when it slides down."
+        rough = "rough" if self.is_rough else "smooth"
+        return (
+            f"A block lies on a {rough} slope that {moves}; a spring catches it when "
+            "it slides down."
+        )

@@ -1,4 +1,4 @@
-"""A stack of layers pressed together, pulled and bent: a leaf spring, a cable laid flat."""
+"""A stack of layers pressed together, pulled and bent: a leaf spring, a flat cable."""
 
 from __future__ import annotations
 
@@ -24,12 +24,13 @@ from solver.settings.scene import Icon
 
 
 def _graduated(settings: LayersSettings) -> Rows:
+    """Lengths of the layers of a leaf spring, as shares of the longest."""
     count = settings.layers
     return tuple((layer + 1.0, 1.0 - layer / count) for layer in range(count))
 
 
 class LayersSettings(PlaneSettings):
-    """Settings of the stack; by default it is pressed, then its end is bent up and down."""
+    """Settings of the stack; by default it is pressed, then bent up and down."""
 
     scene = "layers"
     title = "Stack of layers, bent"
@@ -69,9 +70,9 @@ class LayersSettings(PlaneSettings):
     bending = LOAD.choice(
         "deflection",
         ["deflection", "moment", "force"],
-        "What bends the stack at its right end. deflection: a given transverse displacement. "
-        "moment: a given moment, force: a transverse force, which all layers that reach there "
-        "share.",
+        "What bends the stack at its right end. deflection: a given transverse "
+        "displacement. moment: a given moment, force: a transverse force, which all "
+        "layers that reach there share.",
     )
     deflection = LOAD.quantity(
         2e-3,
@@ -108,8 +109,8 @@ class LayersSettings(PlaneSettings):
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or N·m/m or N/m"},
-        "Deflection, moment or force over time: a preset of the largest value, or points (s, m or "
-        "N·m/m or N/m).",
+        "Deflection, moment or force over time: a preset of the largest value, or "
+        "points (s, m or N·m/m or N/m).",
         title="Path of the bending",
     )
     friction_factors = shared.friction_factors("between two layers, from the lowest on")
@@ -128,21 +129,24 @@ class LayersSettings(PlaneSettings):
         {
             "equal": TablePreset("1 of each", lambda own: shared.same_for(own.layers)),
             "graduated": TablePreset(
-                "each is shorter than the one below it by the same step, as in a leaf spring",
+                "each is shorter than the one below it by the same step, as in a leaf "
+                "spring",
                 _graduated,
             ),
         },
         {"layer": "", "share": ""},
-        "Length of each layer, from the lowest on, as a share of the length, to the nearest "
-        "element: a preset, or points (layer, share), one for each. What is given at the right end "
-        "holds for the longest; pressure acts on all that lies open.",
+        "Length of each layer, from the lowest on, as a share of the length, to the "
+        "nearest element: a preset, or points (layer, share), one for each. What is "
+        "given at the right end holds for the longest; pressure acts on all that lies "
+        "open.",
         title="Length of each layer",
     )
     contrast = BODY.quantity(
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
-        "Young's modulus of every second layer over that of the others, the lowest among them.",
+        "Young's modulus of every second layer over that of the others, the lowest "
+        "among them.",
         title="Stiffness contrast",
     )
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
@@ -156,13 +160,13 @@ class LayersSettings(PlaneSettings):
 
     @property
     def spans(self) -> tuple[int, ...]:
-        """Elements along every layer."""
-        return tuple(
-            np.maximum(np.rint(self._shares * self.elements), 1).astype(int).tolist()
-        )
+        """Number of elements along every layer."""
+        counts = np.maximum(np.rint(self._shares * self.elements), 1)
+        return tuple(counts.astype(int).tolist())
 
     @property
     def _shares(self) -> Array:
+        """Lengths of the layers as shares of the longest, (n_layers,)."""
         return np.array(self.points("layer_lengths"))[:, 1]
 
     @property
@@ -179,11 +183,11 @@ class LayersSettings(PlaneSettings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Whether it is not that of a moment, over a rotation."""
+        """Return whether the loop is a force's, not a moment's over a rotation."""
         return bool(self.bending != "moment")
 
     def check_together(self) -> None:
-        """Refuse lengths and factors on mu that are not one for each layer or interface, too."""
+        """Refuse lengths that are not one a layer, and factors not one an interface."""
         shares = shared.of_each(self, "layer_lengths", self.layers, "layer")
         if shares.min() <= 0.0 or shares.max() != 1.0:
             raise self.refusal(
@@ -195,68 +199,67 @@ class LayersSettings(PlaneSettings):
         shared.factors_of(self)
 
     def left_out(self) -> Iterator[str]:
-        """Yield what a run does not see of its tables, and how far layers end from where given."""
+        """Yield sentences on parts of tables that a run leaves out, as of lengths."""
         yield from super().left_out()
         off = float(np.abs(np.array(self.spans) / self.elements - self._shares).max())
         if off > UNSEEN:
             yield (
-                f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} % of the "
-                "length from where they should; more elements come nearer"
+                f"layer_lengths: layers end at whole elements, up to {100.0 * off:.2g} "
+                "% of the length from where they should; more elements come nearer"
             )
 
     def structure(self) -> Stack:
         """Make the stack; its left end is clamped; one metre thick."""
-        rest = np.zeros(self.n_instants)
-        stack = self.stack()
         up = self.elements_up
         bricks = [
             Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)
         ]
-        stack = replace(stack, bricks=bricks)
+        stack = replace(self.stack(), bricks=bricks)
+        rest = np.zeros(self.n_instants)
         held = Given(True, rest)
         free = Given(False, rest)
         pressing = self.path("pressure_load")
-        bend = self.path("bend_load")
-        pull = Given(False, self.path("pull_load"))
-        bent = Given(True, bend)
-        if self.bending == "force":
-            bent = Given(False, bend / (stack.longest * self.thickness))
-        elif self.bending == "moment":
-            # Over a layer a linear traction has a moment of its extreme times
-            # thickness^2 / 6.
-            extreme = -6.0 * bend / (stack.longest * self.thickness**2)
-            pull = replace(pull, slope=extreme)
-            bent = free
         return replace(
             stack,
             friction=shared.factors_of(self)[:, None] * stack.friction,
             stiffness=np.where(np.arange(self.layers) % 2, self.contrast, 1.0),
             sides={
                 "left": Side(held, held),
-                "right": Side(pull, bent),
+                "right": self._right_side(stack),
                 "top": Side(free, Given(False, -pressing)),
                 "bottom": Side(free, Given(False, pressing)),
             },
         )
 
+    def _right_side(self, stack: Stack) -> Side:
+        """Load of the right end: the pull along x, and the bending."""
+        bend = self.path("bend_load")
+        pull = Given(False, self.path("pull_load"))
+        if self.bending == "force":
+            return Side(pull, Given(False, bend / (stack.longest * self.thickness)))
+        if self.bending == "moment":
+            # A linear traction with the extreme s at the edges of a layer has the
+            # moment s h^2 / 6, with the thickness h.
+            extreme = -6.0 * bend / (stack.longest * self.thickness**2)
+            free = Given(False, np.zeros(self.n_instants))
+            return Side(replace(pull, slope=extreme), free)
+        return Side(pull, Given(True, bend))
+
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Force that bends the layers, where they act apart or as one."""
+        """Force that bends the layers, if they act apart or as one."""
         return exact_layers(self.structure(), problem, solution)
 
     def sentence(self) -> str:
-        """The stack in a sentence."""
+        """Describe the stack in a sentence."""
         kind = "steel" if shared.is_steel(self.young) else "elastic"
-        if self.layer_lengths == "equal":
-            lengths = ""
-        else:
-            lengths = " of different lengths"
-        layers = f"{self.layers} {kind} layers{lengths}"
+        layers = f"{self.layers} {kind} layers"
+        if self.layer_lengths != "equal":
+            layers = f"{layers} of different lengths"
+        pressed = "lie on each other"
         if self.pressure:
             pressed = "are pressed together and rub"
-        else:
-            pressed = "lie on each other"
         bent = self.path("bend_load")
         pull = self.path("pull_load")
         ends = shared.acting(bent, "bent up", "bent down", "bent up and down")

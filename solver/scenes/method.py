@@ -1,4 +1,4 @@
-"""From flat settings to the method: the one place that knows both."""
+"""The method that settings describe."""
 
 from __future__ import annotations
 
@@ -18,26 +18,46 @@ from solver.settings.scene import Settings
 
 
 def method_of(settings: Settings) -> Latin:
-    """Method that checked settings describe."""
-    at_once = settings.finish == "at-once"
-    direction = (Paper if settings.search_direction == "paper" else Auto)(
-        settings.k_scale
+    """Make the method that checked settings describe."""
+    acceleration = None
+    if settings.acceleration == "anderson":
+        acceleration = Anderson()
+    start = None
+    if settings.start == "nested":
+        start = Nested(settings.coarser)
+    finish = None
+    if settings.finish != "none":
+        finish = StatusStep(at_once=settings.finish == "at-once")
+    return Latin(
+        direction=_direction_of(settings),
+        linear=_linear_stage_of(settings),
+        multiscale=settings.multiscale,
+        relaxation=settings.relaxation,
+        acceleration=acceleration,
+        start=start,
+        finish=finish,
+        stop=Stop(settings.accuracy, settings.tolerance, settings.max_iterations),
+        threads=settings.threads,
     )
-    updates = settings.k_update == "status" and settings.applies("k_update")
-    modes = PGD(
+
+
+def _direction_of(settings: Settings) -> Paper | Auto | FromStatus:
+    """Search direction, with its update where settings ask for one."""
+    direction: Paper | Auto = Auto(settings.k_scale)
+    if settings.search_direction == "paper":
+        direction = Paper(settings.k_scale)
+    if settings.k_update == "status" and settings.applies("k_update"):
+        return FromStatus(direction)
+    return direction
+
+
+def _linear_stage_of(settings: Settings) -> Full | PGD:
+    """Linear stage: full fields, or a sum of modes."""
+    if settings.linear_stage == "full":
+        return Full()
+    return PGD(
         modes=settings.pgd_modes,
         tolerance=settings.pgd_tolerance,
         pairs=settings.pgd_pairs,
         sharing=settings.pgd_sharing,
-    )
-    return Latin(
-        direction=FromStatus(direction) if updates else direction,
-        linear=Full() if settings.linear_stage == "full" else modes,
-        multiscale=settings.multiscale,
-        relaxation=settings.relaxation,
-        acceleration=Anderson() if settings.acceleration == "anderson" else None,
-        start=Nested(settings.coarser) if settings.start == "nested" else None,
-        finish=None if settings.finish == "none" else StatusStep(at_once=at_once),
-        stop=Stop(settings.accuracy, settings.tolerance, settings.max_iterations),
-        threads=settings.threads,
     )

@@ -28,9 +28,9 @@ LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""
 
 FLATTEST = 1e4
-"""Longer over shorter side of an element, at most. Its stiffness varies with the square
-of that: at 3e9 no digit of a substructure's is left, at 1e5 none beside a k of a
-millionth (measured)."""
+"""Largest ratio of the sides of an element. The stiffness of an element varies with the
+square of the ratio: at a ratio of 3e9 no digit of a substructure's stiffness is left,
+at 1e5 none beside a search direction k of a millionth (measured)."""
 
 
 class PlaneSettings(Settings):
@@ -50,16 +50,16 @@ class PlaneSettings(Settings):
         Settings.param["tangential_stiffness"],
         0.0,
         (1e8, 1e14),
-        doc="Stiffness of a spring along the interface, in series with friction, per area: a "
-        "joint, a soft layer. 0: rigid.",
+        doc="Stiffness of a spring along the interface, in series with friction, per "
+        "area: a joint, a soft layer. 0: rigid.",
         unit="N/m^3",
     )
     normal_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e8, 1e14),
-        "Stiffness of a spring across the interface, in series with contact that may open, per "
-        "area. 0: rigid.",
+        "Stiffness of a spring across the interface, in series with contact that may "
+        "open, per area. 0: rigid.",
         unit="N/m^3",
         applies=lambda settings: settings.is_general and settings.opens,
     )
@@ -67,15 +67,16 @@ class PlaneSettings(Settings):
         Settings.param["cohesion"],
         0.0,
         (0.0, 1e7),
-        doc="Friction per area without any pressure, beside μ times that. It is gone for good "
-        "where contact opens, and was never there where a gap was.",
+        doc="Friction per area without any pressure, beside μ times that. It is gone "
+        "for good where contact opens, and was never there where a gap was.",
         unit="Pa",
     )
     friction_cap = redefined(
         Settings.param["friction_cap"],
         0.0,
         (0.0, 1e8),
-        doc="Largest friction per area that pressure and cohesion make, before slip. 0: none.",
+        doc="Largest friction per area that pressure and cohesion make, before slip. "
+        "0: none.",
         unit="Pa",
     )
     plane = BODY.choice(
@@ -119,9 +120,9 @@ class PlaneSettings(Settings):
         1,
         (0, 10),
         (0, 4),
-        "What the coarse problem balances on each side of a substructure. 0: resultants; 1: also "
-        "moments and linear extension. Sides more than three times as long as the substructure is "
-        "deep get more by themselves.",
+        "What the coarse problem balances on each side of a substructure. 0: "
+        "resultants; 1: also moments and linear extension. Sides more than three times "
+        "as long as the substructure is deep get more by themselves.",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
     )
     start = METHOD.choice(
@@ -138,30 +139,28 @@ class PlaneSettings(Settings):
 
     @property
     def law(self) -> FrictionLaw:
-        """Law of friction, beside mu, and what gives way across."""
-        if self.applies("normal_stiffness"):
-            across = self.normal_stiffness
-        else:
-            across = 0.0
-        return replace(super().law, normal_stiffness=across or np.inf)
+        """Law of friction without mu, with the stiffness across the interface."""
+        stiffness = np.inf
+        if self.applies("normal_stiffness") and self.normal_stiffness:
+            stiffness = self.normal_stiffness
+        return replace(super().law, normal_stiffness=stiffness)
 
     @property
     def is_rough(self) -> bool:
-        """Whether anything rubs."""
+        """Return whether there is any friction."""
         return bool(self.friction or self.law.cohesion)
 
     @property
     def places(self) -> Array:
-        """Places of the nodes along a body, (n_nodes,), m."""
+        """Positions of the nodes along a body, (n_nodes,), m."""
         return np.linspace(0.0, self.length, self.nodes[0])
 
     def friction_at_nodes(self) -> float | Array:
-        """The coefficient mu of the nodes along a body."""
+        """Coefficient mu of the nodes along a body, (n_nodes,), or one for all."""
         if self.friction_profile == "uniform" or not self.applies("friction_profile"):
             return self.friction
-        return np.asarray(
-            self.friction * shared.at_nodes(self, self.places, "friction_profile")
-        )
+        factors = shared.at_nodes(self, self.places, "friction_profile")
+        return np.asarray(self.friction * factors)
 
     @property
     def nodes(self) -> tuple[int, int]:
@@ -175,7 +174,7 @@ class PlaneSettings(Settings):
 
     @property
     def n_interfaces(self) -> int:
-        """Number of interfaces: a lone body has that with its support."""
+        """Number of interfaces: between bodies, or of one body with its support."""
         return max(self.n_bodies - 1, 1)
 
     @property
@@ -184,7 +183,7 @@ class PlaneSettings(Settings):
         return self.n_bodies * self.substructures * self.substructures_up
 
     def stack(self) -> Stack:
-        """Make the bodies, free on all sides and without loads."""
+        """Make the bodies, free on all sides and without any load."""
         return Stack(
             length=self.length,
             height=getattr(self, self.across),
@@ -201,14 +200,16 @@ class PlaneSettings(Settings):
         )
 
     def check_together(self) -> None:
-        """Refuse elements so flat that no digits are left, too, and matrices beyond memory."""
+        """Refuse elements too flat for the digits of a number, and large matrices."""
         height: float = getattr(self, self.across)
         ratio = self.length * self.elements_up / (height * self.elements)
         if not 1.0 / FLATTEST <= ratio <= FLATTEST:
             raise self.refusal(
                 self.across,
-                f"elements of which no side is more than {plain(FLATTEST)} times the other",
-                f"they are {ratio:.3g} times as long as high: change sizes or numbers of elements",
+                f"elements of which no side is more than {plain(FLATTEST)} times the "
+                "other",
+                f"they are {ratio:.3g} times as long as high: change sizes or numbers "
+                "of elements",
             )
 
         super().check_together()

@@ -1,13 +1,12 @@
-"""What a person has to know of a run beside how it ended: before it begins, and of its result."""
+"""Remarks on a run beside its status: before it begins, and on its result."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import Array, Flags
 from solver.discrete.drives import loads_at
 from solver.discrete.inside import Inside
 from solver.discrete.plane.rigid_stack import is_upright
@@ -21,32 +20,36 @@ from solver.laws import OPEN
 from solver.settings.scene import Settings
 
 MOST_GROWTH = 2
-"""Points by which a contact may grow from an instant to the next: one at each of its
-ends. With more, those that close together stick without traction beside points that
-were there before: with 1, 2 and 4 of them at each end, neighbours differ by 0.1, 0.3
-and 0.7 of the largest friction (measured on a parabola, 192 elements)."""
+"""Largest number of points by which a contact may grow from an instant to the next: one
+at each end. If more points close together, they stick without traction beside points
+that were in contact before: with 1, 2 and 4 points at each end, neighbours differ by
+0.1, 0.3 and 0.7 of the largest friction (measured on a parabola, 192 elements)."""
 SMALL = 0.05
-"""Largest strain, or slope of a body, for which small strains hold."""
+"""Largest strain, or slope of a body, for which the theory of small strains holds."""
 AT_ONCE = 2_000_000
-"""Nodes times instants whose displacements are held together."""
+"""Number of nodes times instants whose displacements are in memory at once."""
 
 
 def remarks_before(settings: Settings, assignments: Sequence[str]) -> list[str]:
-    """Sentences on what a run does not heed: idle settings, and load tables that go on."""
-    idle = settings.defaults("paper")
-    duration = settings.duration
+    """Sentences on settings that do not apply, and on load tables longer than the run.
+
+    `assignments` are `NAME=VALUE` texts.
+    """
+    remarks = []
+    defaults = settings.defaults("paper")
     names = dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
-    remarks = [
-        f"{name} does nothing with the other settings as they are"
-        for name in names
-        if not settings.applies(name) and getattr(settings, name) != idle[name]
-    ]
-    return remarks + [
-        f"{name} goes on to {end:g} s, but the run ends at {duration:g} s: "
-        f"set duration={end:g} to run all of it"
-        for name, end in ends_of_tables(settings).items()
-        if end > duration
-    ]
+    for name in names:
+        is_changed = getattr(settings, name) != defaults[name]
+        if is_changed and not settings.applies(name):
+            remarks.append(f"{name} does nothing with the other settings as they are")
+    duration = settings.duration
+    for name, end in ends_of_tables(settings).items():
+        if end > duration:
+            remarks.append(
+                f"{name} goes on to {end:g} s, but the run ends at {duration:g} s: "
+                f"set duration={end:g} to run all of it"
+            )
+    return remarks
 
 
 def ends_of_tables(settings: Settings) -> dict[str, float]:
@@ -60,55 +63,62 @@ def ends_of_tables(settings: Settings) -> dict[str, float]:
 
 
 def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
-    """Sentences on what an iterate shows, at the end or on the way, that no status tells."""
+    """Sentences on an iterate, final or not, that its status does not tell.
+
+    They are on points left out of tables, strains beyond small ones, a body that tips,
+    and a contact that grows too fast for the instants.
+    """
     remarks = list(settings.left_out())
     beyond = beyond_small_strain(
         settings.structure(), iterate.problem, iterate.displacement
     )
-    if beyond is None:
-        remarks += []
-    else:
-        remarks += [beyond]
+    if beyond is not None:
+        remarks.append(beyond)
     standing = _standing_on_an_end(settings, iterate)
     if standing.any():
-        problem = iterate.problem
-        first = int(np.argmax(standing))
-        loads = loads_at(problem.drives, first)
-        time = f"{problem.instants[first]:.4g} s"
-        if loads:
-            when = f"{loads}, at {time},"
-        else:
-            when = f"{time} on"
-        remarks.append(
-            f"From {when} the body tips: it stands on one end of its base. Take a longer "
-            "or lower body, less friction, or a side that keeps it from turning."
-        )
+        remarks.append(_tipping(iterate.problem, int(np.argmax(standing))))
     growth = contact_growth(iterate)
     if growth > MOST_GROWTH:
         remarks.append(
-            f"The contact grows by up to {growth} points from an instant to the next, so that "
-            "friction jumps from point to point: raise instants until it grows by "
-            f"{MOST_GROWTH} at most."
+            f"The contact grows by up to {growth} points from an instant to the next, "
+            "so that friction jumps from point to point: raise instants until it grows "
+            f"by {MOST_GROWTH} at most."
         )
     return remarks
 
 
+def _tipping(problem: Problem, first: int) -> str:
+    """Sentence on a body that tips from an instant on."""
+    loads = loads_at(problem.drives, first)
+    time = f"{problem.instants[first]:.4g} s"
+    when = f"{time} on"
+    if loads:
+        when = f"{loads}, at {time},"
+    return (
+        f"From {when} the body tips: it stands on one end of its base. Take a longer "
+        "or lower body, less friction, or a side that keeps it from turning."
+    )
+
+
 def contact_growth(iterate: Iterate) -> int:
-    """Largest number of points with friction that an existing contact gains between instants."""
+    """Largest number of points with friction that a contact gains between two instants.
+
+    The first closing of a contact does not count.
+    """
     growth = 0
     for name, law in iterate.problem.rubbing.items():
         if law.normal is None or not np.any(law.tangential.friction):
             continue
-        closed = iterate.contact(name).status != OPEN
-        gained = (closed[:, 1:] & ~closed[:, :-1]).sum(axis=0) * closed[:, :-1].any(
-            axis=0
-        )
-        growth = max(growth, int(gained.max(initial=0)))
+        is_closed = iterate.contact(name).status != OPEN
+        before = is_closed[:, :-1]
+        gained = (is_closed[:, 1:] & ~before).sum(axis=0)
+        counted = gained * before.any(axis=0)
+        growth = max(growth, int(counted.max(initial=0)))
     return growth
 
 
-def _standing_on_an_end(settings: Settings, iterate: Iterate) -> NDArray[np.bool_]:
-    """Instants at which a body that is free to turn touches its support at one end alone."""
+def _standing_on_an_end(settings: Settings, iterate: Iterate) -> Flags:
+    """Instants at which a body free to turn stands on one end, (n_instants,)."""
     structure = settings.structure()
     none = np.zeros(iterate.problem.n_instants, dtype=bool)
     if not isinstance(structure, Stack) or structure.support is None:
@@ -124,9 +134,9 @@ def largest_strain(
 ) -> float:
     """Largest strain or slope of a solution: the largest derivative of displacement.
 
-    A motion without rotation counts for nothing. Along rods it is that of an element;
-    in the plane the mean over an element, rotation included; of wires the axial strain
-    and that of bending. `displacement` is that of the problem's degrees of freedom,
+    A translation has none. Along rods it is the strain of an element; in the plane the
+    mean derivative over an element, rotation included; of wires the axial strain plus
+    the strain of bending. `displacement` is that of the problem's degrees of freedom,
     (n_dofs, n_instants), m.
     """
     if isinstance(structure, Rope):
@@ -139,17 +149,24 @@ def largest_strain(
 def beyond_small_strain(
     structure: Structure, problem: Problem, displacement: Array
 ) -> str | None:
-    """That an answer is outside of what is modelled, or return None where it is not."""
+    """Sentence on strains too large for the model; None if they are small.
+
+    `displacement` is that of the problem's degrees of freedom, (n_dofs, n_instants), m.
+    """
     strain = largest_strain(structure, problem, displacement)
     if strain <= SMALL:
         return None
     return (
-        f"this model does not hold: strains or slopes reach {strain:.3g}, and it is for small "
-        f"ones, up to {SMALL}; lower the loads, or take a stiffer body"
+        f"this model does not hold: strains or slopes reach {strain:.3g}, and it is "
+        f"for small ones, up to {SMALL}; lower the loads, or take a stiffer body"
     )
 
 
 def _of_rods(positions: Array, displacement: Array) -> float:
+    """Largest strain of rods, from positions, (n_nodes,), m, and displacement of nodes.
+
+    `displacement` has shape (n_nodes, n_instants), m.
+    """
     lengths = np.diff(positions)
     inside = lengths > 0.0  # not from one rod to the next, nor across a break
     steps = np.diff(displacement, axis=0)[inside]
@@ -157,6 +174,7 @@ def _of_rods(positions: Array, displacement: Array) -> float:
 
 
 def _of_wires(rope: Rope, displacement: Array) -> float:
+    """Largest strain of wires, from the displacement, (n_dofs, n_instants), m."""
     forces = wire_forces(rope, displacement, slice(None))
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):
@@ -167,12 +185,15 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
 
 
 def _in_plane(inside: Inside, displacement: Array) -> float:
+    """Largest derivative in the plane, from displacement, (n_dofs, n_instants), m."""
     corners = inside.nodes[inside.elements]
     width, height = (corners[:, 2] - corners[:, 0]).T[:, :, None, None]
+    # Displacements of all nodes at all instants may exceed the memory.
     step = max(1, AT_ONCE // len(inside.nodes))
     largest = 0.0
     for first in range(0, displacement.shape[1], step):
         moved = inside.displacement(displacement, slice(first, first + step))
+        # Corners of elements, counter-clockwise from the lower left one
         a, b, c, d = (moved[corner] for corner in inside.elements.T)
         along = 0.5 * (b - a + c - d) / width
         up = 0.5 * (d - a + c - b) / height

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.rope.cross_section import (
     CONSTRUCTIONS,
@@ -27,32 +28,37 @@ from solver.settings.load_paths import PRESSURES
 from solver.settings.scene import Icon, Settings
 
 MOST_WIRES = 1000
-"""Of a construction of one's own."""
+"""Largest number of wires of a construction that is a table."""
 
 
 STRANDS = {
-    "mooring": "a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire",
+    "mooring": (
+        "a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire"
+    ),
     "seven-wire": "prestressing strand of 15.7 mm",
-    "conductor": "an overhead conductor of 28 mm, 26 aluminium wires on 7 of steel (Drake)",
+    "conductor": (
+        "an overhead conductor of 28 mm, 26 aluminium wires on 7 of steel (Drake)"
+    ),
 }
-"""A line on each of the constructions."""
+"""Descriptions of the constructions."""
 
 
 def _rows(settings: Any) -> Rows:
+    """Rows of the table of a construction."""
     rows: Rows = settings.section.rows
     return rows
 
 
 class RopeSettings(Settings):
-    """Settings of the strand; by default 37 wires near a clamp, bent up, down and up again."""
+    """Settings of the strand; by default 37 wires near a clamp, bent to and fro."""
 
     scene = "rope"
     title = "Spiral strand, bent"
     source = "closed form: slip spreads from the neutral axis (Papailiou 1997)"
     icon = Icon(
         ground="M5 3V29",
-        body="M5 8C18 8 28 9 42 14L40 24C28 19 18 18 5 18ZM11 8L15 18M18 8L22 19M25 9L29 20"
-        "M32 11L35 22",
+        body="M5 8C18 8 28 9 42 14L40 24C28 19 18 18 5 18ZM11 8L15 18M18 8L22 19M25 "
+        "9L29 20M32 11L35 22",
         load="M44 28C46 24 46 20 45 16M41 19L45 15L48 19",
     )
     kind = "helices"
@@ -66,9 +72,9 @@ class RopeSettings(Settings):
         "mooring",
         {name: TablePreset(line, _rows) for name, line in STRANDS.items()},
         {"wires": "", "diameter": "m", "lay angle": "°", "modulus": "Pa"},
-        "Wires of the strand: a preset, or rows, inside out: wires, their diameter (m), lay angle "
-        "(°, negative the other way round) and Young's modulus (Pa); the first row is the core, 1 "
-        "wire of 0°.",
+        "Wires of the strand: a preset, or rows, inside out: wires, their diameter "
+        "(m), lay angle (°, negative the other way round) and Young's modulus (Pa); "
+        "the first row is the core, 1 wire of 0°.",
         bounds=((1, 500), (1e-6, 1.0), (-75.0, 75.0), (1.0, 1e18)),
     )
     layers = shared.STRAND.count(
@@ -85,9 +91,9 @@ class RopeSettings(Settings):
         0.1,
         (-1e3, 1e3),
         (0.0, 0.5),
-        "Largest curvature that the preset reaches, uniform or at the clamp: 1 over the radius to "
-        "which the strand is bent. Sections stay plane, so each wire is stretched and pressed as "
-        "it goes round.",
+        "Largest curvature that the preset reaches, uniform or at the clamp: 1 over "
+        "the radius to which the strand is bent. Sections stay plane, so each wire is "
+        "stretched and pressed as it goes round.",
         "cycle",
         title="Peak curvature",
         places=("right y",),
@@ -99,9 +105,10 @@ class RopeSettings(Settings):
         250e3,
         (0.0, 1e12),
         (0.0, 1e6),
-        "Tension of the strand, by which wires press on what is below them. About a quarter of "
-        "what they break at: 250 kN of 37 mooring wires, 70 kN seven-wire, 30 kN conductor. It is "
-        "bent without untwisting, and what friction adds to a wire's tension presses no harder.",
+        "Tension of the strand, by which wires press on what is below them. About a "
+        "quarter of what they break at: 250 kN of 37 mooring wires, 70 kN seven-wire, "
+        "30 kN conductor. It is bent without untwisting, and what friction adds to a "
+        "wire's tension presses no harder.",
         "steady",
         PRESSURES,
         bounds=POSITIVE,
@@ -111,16 +118,18 @@ class RopeSettings(Settings):
     bending = shared.STRAND.choice(
         "clamp",
         ["uniform", "clamp"],
-        "uniform: the same curvature all along; wires of a layer are then alike, and one of each "
-        "stands for all. clamp: the curvature falls away from a clamp, and every wire is there.",
+        "uniform: the same curvature all along; wires of a layer are then alike, and "
+        "one of each stands for all. clamp: the curvature falls away from a clamp, and "
+        "every wire is there.",
         title="Where it is bent",
     )
     fall_off = shared.STRAND.quantity(
         0.0,
         (0.0, 1e4),
         (0.0, 1.0),
-        "Distance λ from the clamp at which the curvature is exp(-1) of that at the clamp. 0: "
-        "sqrt(E I / T), of the bending stiffness while nothing slips and the largest tension.",
+        "Distance λ from the clamp at which the curvature is exp(-1) of that at the "
+        "clamp. 0: sqrt(E I / T), of the bending stiffness while nothing slips and the "
+        "largest tension.",
         title="Fall-off λ",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
@@ -129,7 +138,8 @@ class RopeSettings(Settings):
         0.6,
         (1e-3, 1e3),
         (0.1, 5.0),
-        "Length of strand from the clamp on; beyond it nothing slips. Some three times λ.",
+        "Length of strand from the clamp on; beyond it nothing slips. Some three times "
+        "λ.",
         title="Length L",
         unit="m",
         applies=lambda settings: settings.bending == "clamp",
@@ -144,8 +154,8 @@ class RopeSettings(Settings):
         60,
         (2, 20_000),
         (10, 400),
-        "Number of linear elements of a wire: of its length, or of half a turn where it is bent "
-        "alike all along.",
+        "Number of linear elements of a wire: of its length, or of half a turn where "
+        "it is bent alike all along.",
         title="Elements per wire",
     )
     substructures = redefined(
@@ -157,7 +167,7 @@ class RopeSettings(Settings):
 
     @cached_property
     def section(self) -> CrossSection:
-        """The strand's cross-section."""
+        """Cross-section of the strand."""
         if isinstance(self.construction, str):
             return CONSTRUCTIONS[self.construction](self.layers)
         try:
@@ -173,12 +183,12 @@ class RopeSettings(Settings):
 
     @property
     def is_clamped(self) -> bool:
-        """Whether the curvature falls away from a clamp."""
+        """Return whether the curvature falls away from a clamp."""
         return bool(self.bending == "clamp")
 
     @property
     def n_bodies(self) -> int:
-        """Number of wires whose slip is sought; the core does not slip."""
+        """Number of wires whose slip is unknown; the core does not slip."""
         section = self.section
         if self.is_clamped:
             return section.wires - 1
@@ -186,7 +196,7 @@ class RopeSettings(Settings):
 
     @property
     def n_interfaces(self) -> int:
-        """Number of interfaces between layers, and of the first with the core."""
+        """Number of interfaces: between layers, and between the first and the core."""
         return len(self.section.layers)
 
     @property
@@ -197,14 +207,11 @@ class RopeSettings(Settings):
         return float(max(layer.stiffness for layer in layers) / longest**2)
 
     def check_together(self) -> None:
-        """Refuse a curvature that no fall-off is known of."""
+        """Refuse a curvature without any fall-off, and factors not one an interface."""
         super().check_together()
         shared.factors_of(self)
-        if (
-            self.is_clamped
-            and self.fall_off == 0.0
-            and not self.path("tension_load").any()
-        ):
+        needs_tension = self.is_clamped and self.fall_off == 0.0
+        if needs_tension and not self.path("tension_load").any():
             raise self.refusal(
                 "fall_off",
                 "a distance above 0, where there is no tension to tell it",
@@ -215,51 +222,21 @@ class RopeSettings(Settings):
         """Distance over which the curvature falls to exp(-1), m."""
         if self.fall_off:
             return float(self.fall_off)
-        return float(
-            np.sqrt(self.section.stuck_bending / self.path("tension_load").max())
-        )
+        tension = self.path("tension_load").max()
+        return float(np.sqrt(self.section.stuck_bending / tension))
 
     def structure(self) -> Rope:
         """Make the strand.
 
-        Wires of a layer pass every fibre, one after the other: under a uniform
-        curvature half a turn of one of them, from the outermost fibre to the innermost,
-        which do not slip, is all there is.
+        Under a uniform curvature all wires of a layer are alike, and each passes every
+        fibre: half a turn of one wire is enough, from the outermost fibre to the
+        innermost, where it does not slip.
         """
-        curvature = self.path("load")
-        tension = self.path("tension_load")
-        bounds = self.section.friction_bounds(
-            tension, self.friction, shared.factors_of(self)
-        )
-        if self.tension_load == "steady":
-            bounds = bounds[:, 0]
-        share = np.ones(self.elements + 1)
-        if self.is_clamped:
-            share = np.exp(
-                -np.linspace(0.0, self.length, len(share)) / self.falls_off()
-            )
-        along = np.outer(share, curvature)
-        wires = [
-            RopeWire(
-                layer=layer,
-                number=number,
-                made=own,
-                radius=self.section.radii[layer],
-                start=2.0 * np.pi * number / own.wires,
-                length=self._length_of(layer),
-                bound=bounds[layer],
-                curvature=along,
-                tension=self.section.wire_tension(layer, tension),
-                stands_for=1 if self.is_clamped else own.wires,
-            )
-            for layer, own in enumerate(self.section.layers)
-            for number in range(own.wires if self.is_clamped else 1)
-        ]
         return Rope(
-            wires=wires,
+            wires=list(self._wires()),
             substructures=self.substructures,
-            tension=tension,
-            curvature=curvature,
+            tension=self.path("tension_load"),
+            curvature=self.path("load"),
             is_clamped=self.is_clamped,
             section=self.section,
             instants=self.times(),
@@ -267,31 +244,60 @@ class RopeSettings(Settings):
             friction_law=self.law,
         )
 
+    def _wires(self) -> Iterator[RopeWire]:
+        """Yield the wires whose slip is unknown, layer by layer."""
+        section = self.section
+        tension = self.path("tension_load")
+        factors = shared.factors_of(self)
+        bounds = section.friction_bounds(tension, self.friction, factors)
+        if self.tension_load == "steady":
+            bounds = bounds[:, 0]
+        curvature = self._curvature_at_nodes()
+        for layer, made in enumerate(section.layers):
+            count = made.wires if self.is_clamped else 1
+            for number in range(count):
+                yield RopeWire(
+                    layer=layer,
+                    number=number,
+                    made=made,
+                    radius=section.radii[layer],
+                    start=2.0 * np.pi * number / made.wires,
+                    length=self._length_of(layer),
+                    bound=bounds[layer],
+                    curvature=curvature,
+                    tension=section.wire_tension(layer, tension),
+                    stands_for=made.wires // count,
+                )
+
+    def _curvature_at_nodes(self) -> Array:
+        """Curvature of the strand at a wire's nodes, (n_nodes, n_instants), 1/m."""
+        share = np.ones(self.elements + 1)
+        if self.is_clamped:
+            distance = np.linspace(0.0, self.length, len(share))
+            share = np.exp(-distance / self.falls_off())
+        return np.outer(share, self.path("load"))
+
     def _length_of(self, layer: int) -> float:
-        """Length of its wires that is seen, m: down to the clamp, or half round the strand."""
+        """Length of the wires of a layer, m: to the clamp, or half round the strand."""
         lay = self.section.layers[layer].lay
         if self.is_clamped:
             return float(self.length / np.cos(lay))
         return float(np.pi * self.section.radii[layer] / abs(np.sin(lay)))
 
     def sentence(self) -> str:
-        """The strand in a sentence."""
+        """Describe the strand in a sentence."""
         bent = shared.acting(
             self.path("load"), "bent up", "bent down", "bent up and down"
         )
-        if self.is_clamped:
-            where = "near a clamp"
-        else:
-            where = "alike all along"
-        if self.tension_load == "steady":
-            tension = ""
-        else:
+        where = "near a clamp" if self.is_clamped else "alike all along"
+        tension = ""
+        if self.tension_load != "steady":
             tension = "; its tension changes"
         wires = self.section.wires
         return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
 
     def bent_strand(self) -> BentStrand | None:
-        """Closed form of a strand that is bent alike all along, under a tension that stays."""
+        """Closed form of a strand of uniform curvature under constant tension."""
         tension = self.path("tension_load")
         is_known = not self.is_clamped and self.law == FrictionLaw()
         factors = shared.factors_of(self)

@@ -1,4 +1,4 @@
-"""What several scenes have alike: definitions of settings, and words of their sentences."""
+"""Parts that scenes share: definitions of settings, and words of their sentences."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ BY_UNIT = {
     "1/m": "curvature",
     "Pa": "traction",
 }
-"""What a path without a word of its own has, by its unit; else it is a force."""
+"""Names of the value of a path by its unit; of all other units it is "force"."""
 AGAIN = 2
-"""Times that a load comes and goes from which it does so again and again."""
+"""Smallest number of times that a load comes and goes "again and again"."""
 
 
 def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
@@ -72,24 +72,22 @@ def profile(
     group: SettingGroup = CONTACT,
     **others: Any,
 ) -> CurveParameter:
-    """Define a factor on something along a body; its default is the first preset.
+    """Define a factor on a quantity along a body; its default is the first preset.
 
-    Help is needed of what is more than a preset or points; `others` are what a curve
-    takes.
+    `doc` is the help on presets and points where they mean more than that; `others` are
+    further arguments of `SettingGroup.curve`.
     """
     name = what.removeprefix("the ")
-    if name == what:
-        title = name
-    else:
+    title = name
+    if name != what:
         title = name.capitalize()
+    tables = {}
+    for preset, profile in presets.items():
+        rows = partial(_over_length, profile.points)
+        tables[preset] = TablePreset(profile.description, rows)
     return group.curve(
         next(iter(presets)),
-        {
-            preset: TablePreset(
-                profile.description, partial(_over_length, profile.points)
-            )
-            for preset, profile in presets.items()
-        },
+        tables,
         {"position": "m", "factor": ""},
         f"Factor on {what} along {body}: {doc or 'a preset, or points (m, factor).'}",
         title=f"{title} along {body}",
@@ -98,13 +96,15 @@ def profile(
 
 
 def _over_length(shares: Rows, settings: Settings) -> Rows:
+    """Points (position, factor), m, from points over shares of the length."""
     return tuple((share * settings.length, factor) for share, factor in shares)
 
 
 def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
-    """Product of the factors of one or two profiles at nodes, from their places, (n_nodes,), m.
+    """Product of the factors of one or two profiles at nodes, (n_nodes,).
 
-    Of tables it is the mean over the shares of the nodes.
+    Where one of them is a table it is the mean over the shares of the nodes. `places`
+    are the positions of the nodes, (n_nodes,), m.
     """
     tables = [settings.points(name) for name in profiles]
     if all(isinstance(getattr(settings, name), str) for name in profiles):
@@ -115,17 +115,14 @@ def at_nodes(settings: Settings, places: Array, *profiles: str) -> Array:
 
 
 def friction_factors(which: str) -> CurveParameter:
-    """Define how mu varies from interface to interface."""
+    """Define the factors on mu of the interfaces."""
+    same = TablePreset("1 of each", lambda settings: same_for(settings.n_interfaces))
     return CONTACT.curve(
         "same",
-        {
-            "same": TablePreset(
-                "1 of each", lambda settings: same_for(settings.n_interfaces)
-            )
-        },
+        {"same": same},
         {"interface": "", "factor": ""},
-        f"Factor on mu of each interface {which}: a preset, or points (interface, factor), one for "
-        "each, numbered from 1 on.",
+        f"Factor on mu of each interface {which}: a preset, or points (interface, "
+        "factor), one for each, numbered from 1 on.",
         bounds=POSITIVE,
         title="μ of each interface",
     )
@@ -147,25 +144,38 @@ def sized_path(
     group: SettingGroup = LOAD,
     **record: Any,
 ) -> tuple[param.Number[float], CurveParameter]:
-    """Define the largest value that presets of a path over time reach, and the path.
+    """Define the value that presets of a path over time reach, and the path.
 
-    Where that value is 0 by default, there is no path as long as it is. `path` is the
-    name of its setting. The path starts as a `preset`, with `bounds` of its columns;
-    `record` is of the value.
+    A path whose value is 0 by default applies only while the value is not 0.
+
+    Parameters
+    ----------
+    path
+        Name of the setting of the path.
+    what, unit
+        The quantity, and its unit.
+    default, ends, slider, doc
+        Default, bounds, slider range and help of the value.
+    preset, presets
+        Default of the path, and all its presets.
+    applies
+        Function of all settings: whether both of them apply.
+    bounds
+        Bounds of the columns of the path.
+    group
+        Heading of both settings.
+    record
+        Fields of `About` of the value, and its title.
     """
-    record = {
-        "title": f"{what[:1].upper()}{what[1:]}",
-        "unit": unit,
-        "path": path,
-    } | record
-    size = group.quantity(default, ends, slider, doc, applies=applies, **record)
-    named = (kind for kind in ("pressure", "tension") if kind in what)
+    name = f"{what[:1].upper()}{what[1:]}"
+    entries = {"title": name, "unit": unit, "path": path} | record
+    size = group.quantity(default, ends, slider, doc, applies=applies, **entries)
     over_time = group.curve(
         preset,
         presets,
-        {"time": "s", next(named, BY_UNIT.get(unit, "force")): unit},
-        f"{what[:1].upper()}{what[1:]} over time: a preset, whose value is {record['title']}, or "
-        f"points (s, {unit}).",
+        {"time": "s", _column_name(what, unit): unit},
+        f"{name} over time: a preset, whose value is {entries['title']}, or points "
+        f"(s, {unit}).",
         bounds=bounds,
         title=f"Path of the {what}",
         applies=lambda settings: (
@@ -175,8 +185,16 @@ def sized_path(
     return size, over_time
 
 
+def _column_name(what: str, unit: str) -> str:
+    """Name of the column of a quantity in a table of its path."""
+    for kind in ("pressure", "tension"):
+        if kind in what:
+            return kind
+    return BY_UNIT.get(unit, "force")
+
+
 def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParameter]:
-    """Define the pressure of rods, per length, up to that value on its slider, and its path."""
+    """Define the pressure of rods, per length, up to `slider`, and its path."""
     return sized_path(
         "pressure_load",
         "pressure",
@@ -195,7 +213,10 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
 
 
 def bound(settings: Any, factors: Array) -> Array:
-    """Mu p of rods at nodes, N/m, (n_nodes,), or (n_nodes, n_instants) where it changes."""
+    """Largest friction mu p of rods at nodes per length, N/m, from factors, (n_nodes,).
+
+    Shape (n_nodes,), or (n_nodes, n_instants) where the pressure changes.
+    """
     density = settings.friction * factors
     if settings.pressure_load == "steady":
         return np.asarray(density * settings.pressure)
@@ -203,17 +224,17 @@ def bound(settings: Any, factors: Array) -> Array:
 
 
 def factors_of(settings: Any) -> Array:
-    """Factor on mu of each interface, (n_interfaces,); a table of others is refused."""
+    """Factor on mu of each interface, (n_interfaces,); refuse other tables."""
     return of_each(settings, "friction_factors", settings.n_interfaces, "interface")
 
 
 def same_for(count: int) -> Rows:
-    """Table of as many ones."""
+    """Table of the value 1 for each number from 1 to a count."""
     return tuple((float(number), 1.0) for number in range(1, count + 1))
 
 
 def of_each(settings: Settings, name: str, count: int, what: str) -> Array:
-    """Values of a table that has one for each of so many, (count,); others are refused."""
+    """Values of a table with a row for each part, (count,); refuse others."""
     table = settings.points(name)
     numbers, values = np.array(table).T
     if not np.array_equal(numbers, np.arange(1, count + 1)):
@@ -271,9 +292,18 @@ def acting(
     both: str = "{} to and fro",
     back: str = "{} and let go",
 ) -> str:
-    """What is done over time by a load: forward where it is positive, backward, or both.
+    """Words on the course of a load over time.
 
-    It is said in other words that it is done both ways, and that it comes back.
+    Parameters
+    ----------
+    path
+        Load over time, (n_instants,), of any unit.
+    forward, backward
+        Words for a positive and for a negative load.
+    both
+        Words for a load of both signs, made from `forward`.
+    back
+        Words for a load that returns towards zero, made from the word for its sign.
     """
     size = np.abs(path)
     peak = float(size.max(initial=0.0))
@@ -282,9 +312,9 @@ def acting(
     if min(path.max(), -path.min()) > 0.0:
         return both.format(forward)
     word = forward if path.max() > 0.0 else backward
-    over = np.concatenate([[False], size > 0.5 * peak, [False]])
-    times = int(np.sum(over[1:] & ~over[:-1]))
-    if times >= AGAIN:
+    is_large = np.concatenate([[False], size > 0.5 * peak, [False]])
+    rises = int(np.sum(is_large[1:] & ~is_large[:-1]))
+    if rises >= AGAIN:
         return f"{word} again and again"
     if size[-1] < 0.5 * peak:
         return back.format(word)
@@ -292,7 +322,7 @@ def acting(
 
 
 def listed(parts: Sequence[str]) -> str:
-    """Write parts with commas, and the last with an "and"."""
+    """Join parts with commas, and the last one with "and"."""
     *first, last = parts
     if first:
         return f"{', '.join(first)} and {last}"
@@ -300,5 +330,5 @@ def listed(parts: Sequence[str]) -> str:
 
 
 def is_steel(young: float) -> bool:
-    """Whether something is about as stiff as steel."""
+    """Return whether Young's modulus, Pa, is about that of steel."""
     return 190e9 <= young <= 220e9

@@ -1,4 +1,4 @@
-"""Parallel elastic wires that rub on their neighbours, one of them broken (solver/README.md, 6)."""
+"""Parallel elastic wires with friction, one of them broken (solver/README.md, 6)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from solver.settings.scene import Icon, Settings
 
 
 class StrandSettings(Settings):
-    """Settings of the strand; by default the wire in the middle is broken, and pulled to and fro.
+    """Settings of the strand; by default the middle one of three wires is broken.
 
     The broken wire then regains its force over 0.2 m on either side of the break.
     """
@@ -56,8 +56,9 @@ class StrandSettings(Settings):
     grip = LOAD.choice(
         "force",
         ["force", "displacement"],
-        "What is given at the right end. force: the same force for every wire. displacement: the "
-        "same displacement for all, that which an unbroken wire needs for this force.",
+        "What is given at the right end. force: the same force for every wire. "
+        "displacement: the same displacement for all, that which an unbroken wire "
+        "needs for this force.",
     )
     friction = shared.friction("mu between neighbouring wires")
     friction_factors = shared.friction_factors("between two wires, from the first on")
@@ -68,7 +69,8 @@ class StrandSettings(Settings):
         3,
         (2, 200),
         (2, 20),
-        "Number of wires side by side; each rubs on the one before it and the one after it.",
+        "Number of wires side by side; each rubs on the one before it and the one "
+        "after it.",
     )
     broken = shared.STRAND.count(
         2,
@@ -81,7 +83,8 @@ class StrandSettings(Settings):
         0.5,
         (0.0, 1.0),
         (0.0, 1.0),
-        "Where the wire is broken, as a share of the length; at the nearest node between the ends.",
+        "Where the wire is broken, as a share of the length; at the nearest node "
+        "between the ends.",
         title="Position of the break",
         applies=lambda settings: settings.broken > 0,
     )
@@ -95,8 +98,8 @@ class StrandSettings(Settings):
     substructures = redefined(
         Settings.param["substructures"],
         6,
-        doc="Number of pieces (substructures) that a wire is cut into, at least two where one is "
-        "broken: all wires are cut at the break, and alike.",
+        doc="Number of pieces (substructures) that a wire is cut into, at least two "
+        "where one is broken: all wires are cut at the break, and alike.",
         title="Substructures per wire",
     )
     length = shared.size(
@@ -121,7 +124,7 @@ class StrandSettings(Settings):
         return float(self.young * self.section / self.length**2)
 
     def check_together(self) -> None:
-        """Refuse what is missing, pushed, too large, or without equilibrium."""
+        """Refuse factors not one an interface, and tensions without equilibrium."""
         super().check_together()
         shared.factors_of(self)
         self._check_equilibrium(self.path("load"))
@@ -133,7 +136,12 @@ class StrandSettings(Settings):
         """
         stiffness = self.young * self.section
         load = self.path("load")
-        is_moved = self.grip == "displacement"
+        right = End(load)
+        if self.grip == "displacement":
+            right = End(displacement=load * self.length / stiffness)
+        broken = None
+        if self.broken:
+            broken = self.broken, self._break_node()
         return Rods(
             length=self.length,
             stiffness=stiffness,
@@ -141,22 +149,20 @@ class StrandSettings(Settings):
             substructures=self.substructures,
             bound=shared.bound(self, np.ones(self.elements + 1)),
             left=End(displacement=np.zeros_like(load)),
-            right=End(displacement=load * self.length / stiffness)
-            if is_moved
-            else End(load),
+            right=right,
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
             wires=self.wires,
             factors=shared.factors_of(self),
-            broken=(self.broken, self._break_node()) if self.broken else None,
+            broken=broken,
             friction_law=self.law,
         )
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
-        """Forces of the broken wire and of each neighbour, where they are known."""
+        """Forces of the broken wire and of each neighbour, by a closed form."""
         strand = self.structure()
         exact = broken_wire(strand)
         if exact is not None:
@@ -164,47 +170,44 @@ class StrandSettings(Settings):
                 yield ExactCurve("axial force", strand.nodes, force)
 
     def sentence(self) -> str:
-        """The strand in a sentence."""
+        """Describe the strand in a sentence."""
         kind = "steel" if shared.is_steel(self.young) else "elastic"
         wires = f"{self.wires} {kind} wires"
         if self.broken:
-            broken = f", number {self.broken} broken,"
-        else:
-            broken = ""
+            wires = f"{wires}, number {self.broken} broken,"
         pulled = shared.acting(self.path("load"), "pulled", "pushed")
         if self.grip == "displacement":
-            grip = " by one grip"
-        else:
-            grip = ""
+            pulled = f"{pulled} by one grip"
         if self.pressure_load != "steady":
-            grip += "; what presses them together changes"
-        return (
-            f"{wires}{broken} rub on each other; their right ends are {pulled}{grip}."
-        )
+            pulled = f"{pulled}; what presses them together changes"
+        return f"{wires} rub on each other; their right ends are {pulled}."
 
     def _break_node(self) -> int:
+        """Number of the node at which the wire is broken, inside the wire."""
         node = round(self.break_position * self.elements)
         return min(max(node, 1), self.elements - 1)
 
     def _check_equilibrium(self, tension: Array) -> None:
-        """Refuse forces that pull the end of the broken wire out: friction alone holds it."""
+        """Refuse tensions, (n_instants,), N, that pull the broken wire's end out."""
         if self.grip != "force" or not self.broken:
             return
         share = 1.0 - self._break_node() / self.elements
-        beside = shared.factors_of(self)[max(self.broken - 2, 0) : self.broken].tolist()
+        factors = shared.factors_of(self)
+        beside = factors[max(self.broken - 2, 0) : self.broken].tolist()
         pressed = self.friction * self.path("pressure_load")
         bound = np.sum(
             [self.law.without_slip(factor * pressed) for factor in beside], axis=0
         )
-        most = share * self.length * bound * self.law.strongest
-        worst = int(np.argmax(tension - most))
+        # Friction alone holds the wire beyond its break.
+        friction = share * self.length * bound * self.law.strongest
+        worst = int(np.argmax(tension - friction))
         largest = float(tension[worst])
-        capacity = float(most[worst])
+        capacity = float(friction[worst])
         if largest > capacity or largest == capacity > 0.0:
             raise self.refusal(
                 self.size_or_table("load"),
-                f"tensions below {plain(capacity)} N, all that friction can hold of the broken "
-                "wire beyond its break",
-                "pull less, raise friction or pressure, move the break to the left, or take the "
-                "grip of given displacement",
+                f"tensions below {plain(capacity)} N, all that friction can hold of "
+                "the broken wire beyond its break",
+                "pull less, raise friction or pressure, move the break to the left, or "
+                "take the grip of given displacement",
             )

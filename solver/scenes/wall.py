@@ -1,4 +1,4 @@
-"""A wall of bricks that only touch: where many bodies pass a load on, the method is at home."""
+"""A wall of bricks in contact without mortar."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from solver.settings.load_paths import PRESETS
 from solver.settings.scene import Icon
 
 MOST_BRICKS = 1500
-"""Bricks at most: with their joints they take some 2 GB."""
+"""Largest number of bricks: with their joints they take some 2 GB."""
 
 
 class WallSettings(PlaneSettings):
-    """Settings of the wall; by default it is pressed from above, and its top moves to and fro."""
+    """Settings of the wall; by default it is pressed, and its top moves to and fro."""
 
     scene = "wall"
     title = "Wall of bricks"
@@ -31,8 +31,8 @@ class WallSettings(PlaneSettings):
     )
     icon = Icon(
         ground="M3 29H45",
-        body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 17H41V22H34Z"
-        "M7 11H23V16H7ZM25 11H41V16H25Z",
+        body="M7 23H23V28H7ZM25 23H41V28H25ZM7 17H14V22H7ZM16 17H32V22H16ZM34 "
+        "17H41V22H34ZM7 11H23V16H7ZM25 11H41V16H25Z",
         load="M14 6H34M30 3L34 6L30 9",
     )
     CHIEF = ("top_load", "displacement", "traction", "pressure")
@@ -48,14 +48,15 @@ class WallSettings(PlaneSettings):
     bond = BODY.choice(
         "running",
         ["running", "stack"],
-        "running: bricks lie over the joints of the course below, and every second course begins "
-        "and ends with a half. stack: joints lie one above the other.",
+        "running: bricks lie over the joints of the course below, and every second "
+        "course begins and ends with a half. stack: joints lie one above the other.",
     )
     opening = BODY.count(
         0,
         (0, 198),
         (0, 6),
-        "Width of an opening in the middle, in bricks, under a lintel; 0 leaves it out.",
+        "Width of an opening in the middle, in bricks, under a lintel; 0 leaves it "
+        "out.",
     )
     opening_height = BODY.count(
         3,
@@ -85,8 +86,8 @@ class WallSettings(PlaneSettings):
     top = LOAD.choice(
         "moved",
         ["moved", "pulled"],
-        "What drives the top of the wall. moved: a displacement along it, with which all of it "
-        "goes. pulled: a traction along it.",
+        "What drives the top of the wall. moved: a displacement along it, with which "
+        "all of it goes. pulled: a traction along it.",
     )
     displacement = LOAD.quantity(
         1e-4,
@@ -112,8 +113,8 @@ class WallSettings(PlaneSettings):
         "delayed",
         PRESETS,
         {"time": "s", "value": "m or Pa"},
-        "Displacement or traction of the top over time: a preset of the largest value, or points "
-        "(s, m or Pa).",
+        "Displacement or traction of the top over time: a preset of the largest value, "
+        "or points (s, m or Pa).",
         title="Path of the top",
     )
     slope, slope_load = shared.sized_path(
@@ -156,8 +157,9 @@ class WallSettings(PlaneSettings):
         MOST_BRICKS,
         (1, MOST_BRICKS),
         (1, 80),
-        "Groups of bricks between which macro forces are in balance; within a group none are. With "
-        "as many as there are bricks the coarse problem is whole, with one there is none.",
+        "Groups of bricks between which macro forces are in balance; within a group "
+        "none are. With as many as there are bricks the coarse problem is whole, with "
+        "one there is none.",
         title="Groups of bricks",
         applies=lambda settings: settings.multiscale,
     )
@@ -177,53 +179,46 @@ class WallSettings(PlaneSettings):
 
     @cached_property
     def _bricks(self) -> list[Brick]:
+        """Bricks of the wall, halves and a lintel among them."""
         size = self.elements, self.elements_up
         bricks = bonded(self.bond, self.bricks, self.courses, size)
         if not self.opening:
             return bricks
         first = (self.bricks - self.opening) // 2
-        return with_opening(
-            bricks, size, (first, first + self.opening), self.opening_height
-        )
+        columns = first, first + self.opening
+        return with_opening(bricks, size, columns, self.opening_height)
 
     @property
     def _groups(self) -> Indices | None:
+        """Group of every brick, (n_bricks,); None where each is a group of its own."""
         if self.brick_groups >= self.n_substructures:
             return None
-        return grouped(
-            self._bricks, (self.elements, self.elements_up), self.brick_groups
-        )
+        size = self.elements, self.elements_up
+        return grouped(self._bricks, size, self.brick_groups)
 
     @property
     def ends(self) -> dict[str, int]:
-        """Largest numbers of parts: each brick may be a group."""
+        """Largest numbers of parts as settings are: each brick may be a group."""
         return super().ends | {"brick_groups": self.n_substructures}
 
     @property
     def jumps(self) -> int:
-        """Components of all contacts: a joint more has two bed nodes more."""
+        """Number of components of all contacts: a further joint adds two bed nodes."""
         beds = self.elements * self.bricks + 2 * self.bricks + 1
         heads = self.bricks * (self.elements_up - 1)
         return int(2 * self.courses * (beds + heads))
 
     def check_together(self) -> None:
-        """Refuse halves that no element fits, joints without a pair, and too many bricks."""
-        for name, most, beside in (
-            ("opening", self.bricks - 2, f"two of {self.bricks} bricks stay beside it"),
-            (
-                "opening_height",
-                self.courses - 1,
-                f"one of {self.courses} courses is the lintel",
-            ),
-        ):
-            value = getattr(self, name)
-            if self.opening and value > most:
-                remedy = "lower it, or build a larger wall"
-                raise self.refusal(name, f"at most {max(most, 0)}, as {beside}", remedy)
+        """Refuse an opening, elements or numbers of bricks that do not fit together."""
+        if self.opening:
+            beside = f"two of {self.bricks} bricks stay beside it"
+            self._check_opening("opening", self.bricks - 2, beside)
+            above = f"one of {self.courses} courses is the lintel"
+            self._check_opening("opening_height", self.courses - 1, above)
         super().check_together()
-        if (
-            self.opening or (self.bond == "running" and self.courses > 1)
-        ) and self.elements % 2:
+        is_running = self.bond == "running" and self.courses > 1
+        has_halves = self.opening or is_running
+        if has_halves and self.elements % 2:
             remedy = "take an even number, or bond=stack"
             raise self.refusal(
                 "elements", "an even number, as there are half bricks", remedy
@@ -238,7 +233,17 @@ class WallSettings(PlaneSettings):
             raise self.refusal(
                 "courses",
                 f"a wall of at most {MOST_BRICKS} bricks, of 2 GB",
-                f"these are {self.n_substructures}: take fewer courses, or bricks of a course",
+                f"these are {self.n_substructures}: take fewer courses, or bricks of a "
+                "course",
+            )
+
+    def _check_opening(self, name: str, largest: int, reason: str) -> None:
+        """Refuse a size of the opening beyond the largest one, in bricks or courses."""
+        if getattr(self, name) > largest:
+            raise self.refusal(
+                name,
+                f"at most {max(largest, 0)}, as {reason}",
+                "lower it, or build a larger wall",
             )
 
     def structure(self) -> Stack:
@@ -261,33 +266,27 @@ class WallSettings(PlaneSettings):
         )
 
     def sentence(self) -> str:
-        """The wall in a sentence."""
-        way = "moved" if self.top == "moved" else "pulled"
-        ways = (
-            f"{way} {where}" for where in ("to the right", "to the left", "to and fro")
+        """Describe the wall in a sentence."""
+        verb = "moved" if self.top == "moved" else "pulled"
+        driven = shared.acting(
+            self.path("top_load"),
+            f"{verb} to the right",
+            f"{verb} to the left",
+            f"{verb} to and fro",
         )
-        driven = shared.acting(self.path("top_load"), *ways)
-        if np.any(self.path("slope_load")):
-            ground = "a tilted ground"
-        else:
-            ground = "the ground"
+        is_tilted = np.any(self.path("slope_load"))
+        ground = "a tilted ground" if is_tilted else "the ground"
+        pressed = ""
         if np.any(self.path("pressure_load")):
             pressed = ", pressed from above,"
-        else:
-            pressed = ""
         if self.n_substructures == 1:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
-        if self.bond == "running":
-            bond = "in running bond"
-        else:
-            bond = "one above the other"
+        bond = "in running bond" if self.bond == "running" else "one above the other"
+        bricks = f"{self.n_substructures} bricks {bond}"
         if self.opening:
-            hole = " round an opening"
-        else:
-            hole = ""
-        bricks = f"{self.n_substructures} bricks {bond}{hole}{pressed}"
-        if self.is_rough:
-            touch = "and rub on"
-        else:
-            touch = "and slide freely on"
-        return f"{bricks} only touch, {touch} each other and {ground}; the top is {driven}."
+            bricks = f"{bricks} round an opening"
+        touch = "rub on" if self.is_rough else "slide freely on"
+        return (
+            f"{bricks}{pressed} only touch, and {touch} each other and {ground}; the "
+            f"top is {driven}."
+        )

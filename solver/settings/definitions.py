@@ -1,4 +1,4 @@
-"""Definitions of settings: which values a setting takes, and how they are read and checked.
+"""Definitions of settings, and functions that read and check their values.
 
 Widgets, address, command line and saved files all derive from these definitions.
 """
@@ -11,7 +11,6 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from textwrap import shorten
 from typing import Any, Protocol
 
@@ -25,8 +24,7 @@ ANY = -1e15, 1e15
 POSITIVE = ANY, (0.0, 1e15)
 """Bounds of both columns of a path without values below zero."""
 FAR = 1e6
-"""Numbers from here on are no limits to anybody's problem, but to the digits of a
-computer."""
+"""Bound from which on a message calls a range unlimited: no problem has such values."""
 
 
 GONE = {
@@ -34,13 +32,13 @@ GONE = {
     "k_friction_scale": "k_scale is for all interfaces",
     "k_normal_scale": "k_scale is for all interfaces",
 }
-"""Settings that files of early versions have, and why there are none any more."""
+"""Settings of early versions that exist no more, with the reason."""
 NEAREST = 3
-"""Settings that are named, at most, where a name is unknown."""
+"""Largest number of settings that the refusal of an unknown name proposes."""
 ALIKE = 0.5
-"""Likeness from which on another name may have been meant."""
+"""Smallest likeness of a setting that the refusal of an unknown name proposes."""
 MEANING = 70
-"""Characters of the meaning of each."""
+"""Largest number of characters of the meaning of a proposed setting."""
 
 
 class SettingError(RefusedError):
@@ -49,24 +47,24 @@ class SettingError(RefusedError):
 
 @dataclass(frozen=True)
 class About:
-    """What a front needs to know of a setting beyond its value.
+    """Properties of a setting that a front needs beside its value.
 
     Attributes
     ----------
     group
-        Heading under which it stands.
+        Heading under which the setting stands.
     unit
         SI unit, empty for a pure number.
     applies
-        Whether it does anything, given all the settings.
+        Function of all settings: whether the setting changes anything.
     path
-        Setting of the path over time that reaches this value: where it is a table, that
-        has its own size, and this value does nothing.
+        Name of the setting of a path over time whose presets reach this value. A path
+        that is a table has its own size, and this value does nothing.
     places
-        What it places or scales in a picture: "right x" along a side, "body"
-        throughout.
+        Loads in a picture that the setting places or scales: "right x" along a side,
+        "body" throughout.
     presets
-        A line on each of the presets that it has, by name, without a full stop.
+        Descriptions of the presets of the setting by name, without a full stop.
     """
 
     group: str
@@ -78,16 +76,16 @@ class About:
 
 
 class Described(Protocol):
-    """A preset, whatever it makes."""
+    """A preset of any kind of setting."""
 
     @property
     def description(self) -> str:
-        """A line on it, without a full stop."""
+        """Description in a line, without a full stop."""
 
 
 @dataclass(frozen=True)
 class TablePreset:
-    """A table with a name: a line on it, and rows that the settings make."""
+    """A preset of a table: its description, and a function from settings to rows."""
 
     description: str
     rows: Callable[[Any], Rows]
@@ -96,16 +94,17 @@ class TablePreset:
 class CurveParameter(Parameter):
     """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 
-    With more than two columns it is a table, whose rows stand in any order.
+    A setting of more than two columns is a table, whose rows stand in any order.
 
     Attributes
     ----------
     presets
-        By name: a path over time is a `load_paths.Preset`, others are a `TablePreset`.
+        Presets by name: of a path over time each is a `load_paths.Preset`, of others a
+        `TablePreset`.
     columns, units
         Names of the columns, and their units, empty for a pure number.
     bounds
-        Ends of the columns, of integers for whole numbers.
+        Lower and upper bound of each column; integers for a column of whole numbers.
     """
 
     __slots__ = ["bounds", "columns", "presets", "units"]
@@ -126,17 +125,17 @@ class CurveParameter(Parameter):
 
     @property
     def abscissa(self) -> str:
-        """What the first column has."""
+        """Name of the first column."""
         return str(self.columns[0])
 
     @property
     def is_path(self) -> bool:
-        """Whether it has an abscissa, which increases, and one value."""
+        """Return whether rows are an abscissa, which increases, and one value."""
         return len(self.columns) == 2
 
 
 def about(parameter: Parameter) -> About:
-    """Record of a setting's definition."""
+    """Properties of a setting that a front needs, from its definition."""
     record: About = parameter.metadata["about"]
     return record
 
@@ -148,25 +147,25 @@ def help_of(definition: Parameter) -> str:
 
 
 def title_of(definition: Parameter) -> str:
-    """What a widget calls a setting."""
+    """Label of a setting on its widget."""
     return definition.label or ""
 
 
 def is_logarithmic(definition: Any) -> bool:
-    """Whether a slider over a number is logarithmic: where it goes over far more than a decade."""
+    """Return whether a slider is logarithmic: its range is far more than a decade."""
     low, high = definition.softbounds
-    return bool(
-        low > 0.0
-        and high >= (100 if isinstance(definition, param.Integer) else 20) * low
-    )
+    ratio = 20
+    if isinstance(definition, param.Integer):
+        ratio = 100
+    return bool(low > 0.0 and high >= ratio * low)
 
 
 @dataclass(frozen=True)
 class SettingGroup:
-    """Heading under which settings stand, which makes their definitions.
+    """Heading of a group of settings, with a method for each kind of definition.
 
-    All have help; what else they take are entries of `About`, and a `title` where a
-    widget does not call a setting by its name.
+    Every definition has a help text. Further arguments are fields of `About`, and
+    `title`, the label of a widget that does not show the name of the setting.
     """
 
     name: str
@@ -225,7 +224,7 @@ class SettingGroup:
         bounds: Sequence[tuple[float, float]] = (),
         **record: Any,
     ) -> CurveParameter:
-        """Path or table: a preset's name or rows, with unit and bounds of each column."""
+        """Path or table: a preset's name, or rows with units and bounds of columns."""
         bounds = bounds or [ANY] * len(units)
         common = self._common(doc, presets=_lines_on(presets), **record)
         return CurveParameter(default, presets, units, bounds, **common)
@@ -239,6 +238,7 @@ class SettingGroup:
 
 
 def _lines_on(presets: Mapping[str, Described]) -> dict[str, str]:
+    """Descriptions of presets by name."""
     return {name: preset.description for name, preset in presets.items()}
 
 
@@ -257,7 +257,7 @@ def redefined(
     title: str | None = None,
     **record: Any,
 ) -> Any:
-    """Setting for some scenes, with another default, slider, help and entries of `About`."""
+    """Define a setting anew for some scenes, with changes to its definition."""
     again = copy.copy(definition)
     again.default = default
     if slider is not None:
@@ -270,52 +270,65 @@ def redefined(
 
 
 def allowed(definition: Parameter) -> str:
-    """Words on which values a setting takes."""
+    """Words on the values that a setting takes."""
     if isinstance(definition, CurveParameter):
-        rows = f"pairs [[{', '.join(definition.columns)}], ...]"
-        if not definition.is_path:
-            units = (f" in {unit}" if unit else "" for unit in definition.units)
-            heads = map("".join, zip(definition.columns, units, strict=True))
-            rows = f"rows [[{', '.join(heads)}], ...]"
-        return f"{', '.join(definition.presets)}, or {rows}"
+        return f"{', '.join(definition.presets)}, or {_allowed_rows(definition)}"
     if isinstance(definition, param.Boolean):
         return "true or false"
     if isinstance(definition, param.Selector):
         return ", ".join(definition.objects)
+    return _allowed_numbers(definition)
+
+
+def _allowed_rows(definition: CurveParameter) -> str:
+    """Words on the rows of a table."""
+    if definition.is_path:
+        return f"pairs [[{', '.join(definition.columns)}], ...]"
+    heads = []
+    for column, unit in zip(definition.columns, definition.units, strict=True):
+        if unit:
+            heads.append(f"{column} in {unit}")
+        else:
+            heads.append(column)
+    return f"rows [[{', '.join(heads)}], ...]"
+
+
+def _allowed_numbers(definition: Any) -> str:
+    """Words on the range of a number."""
     low, high = definition.bounds
-    least, most = (
-        f"{plain(end)} {about(definition).unit}".strip() for end in (low, high)
-    )
+    unit = about(definition).unit
+    minimum = f"{plain(low)} {unit}".strip()
+    maximum = f"{plain(high)} {unit}".strip()
     if isinstance(definition, param.Integer):
-        return f"a whole number from {least} to {most}"
+        return f"a whole number from {minimum} to {maximum}"
     if high < FAR:
-        return f"a number from {least} to {most}"
+        return f"a number from {minimum} to {maximum}"
     if low < 0.0:
-        return f"any number (at most {most} in size)"
+        return f"any number (at most {maximum} in size)"
     if low > 0.0:
-        return f"any number above 0 (from {least} to {most})"
-    return f"any number from 0 on (to {most})"
+        return f"any number above 0 (from {minimum} to {maximum})"
+    return f"any number from 0 on (to {maximum})"
 
 
 def unknown(
     name: str, value: object, scene: str, known: Mapping[str, Parameter]
 ) -> SettingError:
-    """Refusal of a name that no setting of a scene has, with the nearest ones and their meaning."""
-    own = f"a setting of {scene}"
+    """Refusal of an unknown name, with settings of similar names and their meaning."""
+    can = f"a setting of {scene}"
     if name in GONE:
-        return SettingError(name, value, own, f"it is gone: {GONE[name]}; leave it out")
+        return SettingError(name, value, can, f"it is gone: {GONE[name]}; leave it out")
     likeness = {other: _likeness(name, other, known[other]) for other in known}
     near = [other for other in likeness if likeness[other] >= ALIKE]
     near.sort(key=lambda other: -likeness[other])
     remedy = "correct the name or leave it out"
     if near:
-        told = [f"{other} ({_meaning(known[other])})" for other in near[:NEAREST]]
-        remedy = f"did you mean {', or '.join(told)}?"
-    return SettingError(name, value, own, f"there is no such setting, {remedy}")
+        proposals = [f"{other} ({_meaning(known[other])})" for other in near[:NEAREST]]
+        remedy = f"did you mean {', or '.join(proposals)}?"
+    return SettingError(name, value, can, f"there is no such setting, {remedy}")
 
 
 def _likeness(name: str, other: str, definition: Parameter) -> float:
-    """Likeness of a name to that of a setting: in spelling, in words, in words of its meaning."""
+    """Likeness of a name to a setting in spelling, in words, and in its meaning."""
     spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
     words = set(name.lower().split("_"))
     in_name = words & set(other.split("_"))
@@ -325,7 +338,7 @@ def _likeness(name: str, other: str, definition: Parameter) -> float:
 
 
 def _meaning(definition: Parameter) -> str:
-    """First clause of the help of a setting, or the names that it is one of."""
+    """First clause of the help of a setting, or the names of its choices."""
     if isinstance(definition, param.Selector):
         return f"one of {allowed(definition)}"
     clause = re.split(r"[.:;,]", definition.doc or "", maxsplit=1)[0]
@@ -333,13 +346,10 @@ def _meaning(definition: Parameter) -> str:
 
 
 def checked_value(definition: Parameter, name: str, value: object) -> Any:
-    """Value of a setting in its own type; a wrong type, or one out of range, is refused."""
+    """Value of a setting in its own type; refuse a wrong type or range."""
     if isinstance(definition, CurveParameter):
         return _checked_curve(definition, name, value)
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError(name, value, allowed(definition), remedy)
-
+    refuse = _refusing(definition, name, value)
     if isinstance(definition, param.Boolean):
         if not isinstance(value, bool):
             raise refuse("write true or false")
@@ -360,43 +370,27 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     return int(value)
 
 
+Refuse = Callable[[str], SettingError]
+"""Refusal of a value, made from the remedy."""
+
+
+def _refusing(definition: Parameter, name: str, value: object) -> Refuse:
+    """Make the function from a remedy to the refusal of a value."""
+    return lambda remedy: SettingError(name, value, allowed(definition), remedy)
+
+
 def _checked_curve(definition: CurveParameter, name: str, value: object) -> str | Rows:
+    """Preset, or rows of numbers; refuse others."""
     if isinstance(value, str) and value in definition.presets:
         return value
-    refuse = partial(SettingError, name, value, allowed(definition))
+    refuse = _refusing(definition, name, value)
     if isinstance(value, str):
         raise refuse("choose a preset, or give a table of points")
     if not isinstance(value, list | tuple) or not value:
         raise refuse(f"give at least one {'pair' if definition.is_path else 'row'}")
-    rows = []
-    size = len(definition.columns)
-    for number, row in enumerate(value, start=1):
-        if not isinstance(row, list | tuple) or len(row) != size:
-            if definition.is_path:
-                what = "a pair of numbers"
-            else:
-                what = f"{size} numbers"
-            raise refuse(f"row {number} must be {what}")
-        if not all(map(is_number, row)):
-            raise refuse(f"row {number} has an entry that is not a number")
-        columns = definition.columns, definition.units, definition.bounds
-        for entry, column, unit, (low, high) in zip(row, *columns, strict=True):
-            if entry < low == 0.0:
-                least = f"{column}s of at least 0 {unit}".rstrip()
-                raise SettingError(name, value, least, f"raise the negative {column}")
-            is_counted = isinstance(low, int)
-            if not low <= entry <= high or (is_counted and entry != int(entry)):
-                if is_counted:
-                    kind = "a whole number"
-                else:
-                    kind = "a number"
-                ends = " to ".join(
-                    f"{plain(end)} {unit}".strip() for end in (low, high)
-                )
-                raise refuse(
-                    f"row {number}: {column} is {plain(entry)}, give {kind} from {ends}"
-                )
-        rows.append(tuple(map(float, row)))
+    rows: list[tuple[float, ...]] = []
+    for number in range(1, len(value) + 1):
+        rows.append(_checked_row(definition, name, value, number))
         if definition.is_path and number > 1 and rows[-1][0] <= rows[-2][0]:
             raise refuse(
                 f"row {number}: {definition.abscissa} must increase from row to row"
@@ -404,14 +398,45 @@ def _checked_curve(definition: CurveParameter, name: str, value: object) -> str 
     return tuple(rows)
 
 
+def _checked_row(
+    definition: CurveParameter, name: str, value: Sequence[Any], number: int
+) -> tuple[float, ...]:
+    """Numbers of a row of a table, by the row's number from 1 on; refuse others."""
+    refuse = _refusing(definition, name, value)
+    row = value[number - 1]
+    n_columns = len(definition.columns)
+    if not isinstance(row, list | tuple) or len(row) != n_columns:
+        expected = f"{n_columns} numbers"
+        if definition.is_path:
+            expected = "a pair of numbers"
+        raise refuse(f"row {number} must be {expected}")
+    if not all(is_number(entry) for entry in row):
+        raise refuse(f"row {number} has an entry that is not a number")
+    for place, entry in enumerate(row):
+        column = definition.columns[place]
+        unit = definition.units[place]
+        low, high = definition.bounds[place]
+        if entry < low == 0.0:
+            can = f"{column}s of at least 0 {unit}".rstrip()
+            raise SettingError(name, value, can, f"raise the negative {column}")
+        is_counted = isinstance(low, int)
+        if not low <= entry <= high or (is_counted and entry != int(entry)):
+            kind = "a whole number" if is_counted else "a number"
+            minimum = f"{plain(low)} {unit}".strip()
+            maximum = f"{plain(high)} {unit}".strip()
+            raise refuse(
+                f"row {number}: {column} is {plain(entry)}, give {kind} "
+                f"from {minimum} to {maximum}"
+            )
+    return tuple(float(entry) for entry in row)
+
+
 def parse(text: str) -> object:
     """Value of a setting from text, as typed on a command line or in an address."""
     try:
         table: dict[str, object] = tomllib.loads(f"value = {text}")
-    except (
-        ValueError,
-        RecursionError,
-    ):  # no TOML, digits beyond Python's limit, deep nesting
+    except (ValueError, RecursionError):
+        # It is no TOML, has digits beyond Python's limit, or is nested too deeply.
         return text
     if len(table) == 1:
         return table["value"]

@@ -10,12 +10,12 @@ from solver.settings.definitions import ANY, CONTACT, Rows, TablePreset, about
 from solver.settings.method import MethodSettings
 
 SHORTEST_SLIP = 1e-12
-"""Between points of a strength, m."""
+"""Smallest slip between two points of a strength, m."""
 LARGEST_FACTOR = 1e3
-"""Of a strength."""
+"""Largest factor of a strength."""
 STIFFNESSES = 1e-9, 1e9
-"""Of contacts and springs, over that of bodies: softer or stiffer, no digits are
-left."""
+"""Smallest and largest stiffness of contacts and springs, over the stiffness of bodies.
+Beyond, no digits are left."""
 
 
 STRENGTHS = {
@@ -35,27 +35,28 @@ class FrictionSettings(MethodSettings):
     friction_law = CONTACT.choice(
         "coulomb",
         ["coulomb", "compliant", "slip-dependent", "general"],
-        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
-        "way like a spring before it slips (Jenkins' element), as in joints and fretting. "
-        "slip-dependent: its bound grows or falls with the slip that has gone by, as when surfaces "
-        "run in. general: all of that together, with its stiffness in absolute units, and cohesion "
-        "and a cap.",
+        "coulomb: a point sticks until the friction force reaches its bound. "
+        "compliant: it gives way like a spring before it slips (Jenkins' element), as "
+        "in joints and fretting. slip-dependent: its bound grows or falls with the "
+        "slip that has gone by, as when surfaces run in. general: all of that "
+        "together, with its stiffness in absolute units, and cohesion and a cap.",
     )
     contact_stiffness = CONTACT.quantity(
         100.0,
         (1e-3, 1e9),
         (1.0, 1e4),
-        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
-        "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
-        "multiple of the stiffest E S over the square of the longest L.",
+        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the "
+        "harmonic mean S of its elements, or of E / L in the plane; of all wires of a "
+        "rope alike, as a multiple of the stiffest E S over the square of the longest "
+        "L.",
         applies=lambda settings: settings.friction_law == "compliant",
     )
     tangential_stiffness = CONTACT.quantity(
         0.0,
         (0.0, 1e18),
         (1e4, 1e9),
-        "Stiffness of a spring along the interface, in series with friction, per length of rod: a "
-        "bond, a soft layer. 0: rigid.",
+        "Stiffness of a spring along the interface, in series with friction, per "
+        "length of rod: a bond, a soft layer. 0: rigid.",
         unit="N/m^2",
         applies=lambda settings: settings.is_general,
     )
@@ -72,8 +73,8 @@ class FrictionSettings(MethodSettings):
         0.0,
         (0.0, 1e15),
         (0.0, 5000.0),
-        "Largest friction force per length of rod that pressure and cohesion make, before slip. 0: "
-        "none.",
+        "Largest friction force per length of rod that pressure and cohesion make, "
+        "before slip. 0: none.",
         unit="N/m",
         applies=lambda settings: settings.is_general,
     )
@@ -81,9 +82,9 @@ class FrictionSettings(MethodSettings):
         "constant",
         STRENGTHS,
         {"slip": "m", "factor": ""},
-        "Factor on the largest friction force over the accumulated slip of a point: a preset, or "
-        "points (m, factor), the first (0, 1), such as a peak, softening and a residual; the last "
-        "one stays.",
+        "Factor on the largest friction force over the accumulated slip of a point: a "
+        "preset, or points (m, factor), the first (0, 1), such as a peak, softening "
+        "and a residual; the last one stays.",
         bounds=(ANY, (0.0, LARGEST_FACTOR)),
         title="Strength over slip",
         applies=lambda settings: settings.is_general,
@@ -108,12 +109,12 @@ class FrictionSettings(MethodSettings):
 
     @property
     def is_general(self) -> bool:
-        """Whether all parts of the friction law are given."""
+        """Return whether all parts of the friction law are given."""
         return bool(self.friction_law == "general")
 
     @property
     def is_linear_in_slip(self) -> bool:
-        """Whether friction changes with slip by a ratio over a length."""
+        """Return whether friction changes with slip by a ratio over a length."""
         by_ratio = self.is_general and self.strength == "linear"
         return by_ratio or bool(self.friction_law == "slip-dependent")
 
@@ -124,16 +125,14 @@ class FrictionSettings(MethodSettings):
 
     @property
     def law(self) -> FrictionLaw:
-        """Law of friction, beside mu."""
+        """Law of friction, without mu."""
         if self.friction_law == "compliant":
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
-        changes = self.is_linear_in_slip or (
-            self.is_general and self.strength != "constant"
-        )
-        if changes:
-            strength = Strength(*zip(*self.strength_points(), strict=True))
-        else:
-            strength = None
+        is_given = self.is_general and self.strength != "constant"
+        strength = None
+        if self.is_linear_in_slip or is_given:
+            slips, factors = zip(*self.strength_points(), strict=True)
+            strength = Strength(slips, factors)
         if not self.is_general:
             return FrictionLaw(strength=strength)
         return FrictionLaw(
@@ -144,43 +143,51 @@ class FrictionSettings(MethodSettings):
         )
 
     def strength_points(self) -> Rows:
-        """Points of the strength over the slip, or those that stand for its preset."""
+        """Points (slip, factor) of the strength: of its table, or of its preset."""
         table: str | Rows = self.strength
-        if not (self.is_linear_in_slip or isinstance(table, str)):
-            return table
         if self.is_linear_in_slip:
-            last = self.friction_ratio
-        else:
-            last = 1.0
-        return (0.0, 1.0), (self.slip_length, last)
+            return (0.0, 1.0), (self.slip_length, self.friction_ratio)
+        if isinstance(table, str):
+            return (0.0, 1.0), (self.slip_length, 1.0)
+        return table
 
     def check_together(self) -> None:
-        """Refuse a strength that does not begin at 1, and stiffness beyond a number's digits."""
+        """Refuse a strength that does not begin at 1, and too soft or stiff contact."""
         super().check_together()
-        table = self.strength
-        if self.is_general and not isinstance(table, str):
-            begins = len(table) > 1 and table[0] == (0.0, 1.0)
-            if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
-                raise self.refusal(
-                    "strength",
-                    "at least two points (slip, factor), the first (0, 1), and slips that grow by "
-                    f"{plain(SHORTEST_SLIP)} m",
-                    "the factor at slip 0 is 1, as the rest of the law says what friction is there",
-                )
-        if self.is_general:
-            for name in self.definitions().keys() & {
-                "tangential_stiffness",
-                "normal_stiffness",
-            }:
-                remedy = "write 0 where nothing gives way, or take away friction where nothing holds"
-                self.check_digits(name, self.contact_unit, remedy)
+        if not self.is_general:
+            return
+        self._check_strength()
+        stiffnesses = {"tangential_stiffness", "normal_stiffness"}
+        for name in self.definitions().keys() & stiffnesses:
+            self.check_digits(
+                name,
+                self.contact_unit,
+                "write 0 where nothing gives way, or take away friction where nothing "
+                "holds",
+            )
 
-    def check_digits(self, name: str, size: float, remedy: str) -> None:
-        """Refuse a stiffness that leaves no digits beside that of bodies, or of theirs."""
+    def _check_strength(self) -> None:
+        """Refuse a table that does not begin at (0, 1), or has too close slips."""
+        table = self.strength
+        if isinstance(table, str):
+            return
+        begins = len(table) > 1 and table[0] == (0.0, 1.0)
+        if not begins or np.diff(np.array(table)[:, 0]).min() < SHORTEST_SLIP:
+            raise self.refusal(
+                "strength",
+                "at least two points (slip, factor), the first (0, 1), and slips that "
+                f"grow by {plain(SHORTEST_SLIP)} m",
+                "the factor at slip 0 is 1, as the rest of the law says what friction "
+                "is there",
+            )
+
+    def check_digits(self, name: str, stiffness: float, remedy: str) -> None:
+        """Refuse a stiffness of which no digits are left beside that of bodies."""
         value = getattr(self, name)
-        unit = about(self.definitions()[name]).unit
-        low, high = (share * size for share in STIFFNESSES)
+        definition = self.definitions()[name]
+        unit = about(definition).unit
+        low, high = (share * stiffness for share in STIFFNESSES)
         if self.applies(name) and value and not low <= value <= high:
-            none = "0, or " if self.definitions()[name].bounds[0] == 0.0 else ""
-            allowed = f"{none}from {plain(low)} {unit} to {plain(high)} {unit} with such bodies"
-            raise self.refusal(name, allowed, remedy)
+            none = "0, or " if definition.bounds[0] == 0.0 else ""
+            ends = f"from {plain(low)} {unit} to {plain(high)} {unit}"
+            raise self.refusal(name, f"{none}{ends} with such bodies", remedy)

@@ -1,4 +1,4 @@
-"""Settings of time and of load paths, which all scenes have, and the instants of a run."""
+"""Settings of time and of load paths of all scenes, and the instants of a run."""
 
 from __future__ import annotations
 
@@ -25,18 +25,17 @@ from solver.settings.load_paths import (
 
 EVERY_POINT = 2_000_000
 """Nodes times instants up to which every point of a table of a path is an instant: 10 s
-along the bar. Beyond, those stay without which it would be wrong by `THINNED`
-somewhere."""
+along the bar. Beyond, points are left out while the path stays within `THINNED`."""
 THINNED = 1e-3
-"""Share of its range by which a path that is thinned may differ from its table."""
+"""Largest difference of a thinned path from its table, over the path's range."""
 POINTS = 9
-"""Of a table that stands for a preset which is not linear between its corners."""
+"""Points of a table that stands for a preset with curved parts."""
 STRAIGHT = 1e-9
-"""Share of its range by which rounding bends a straight part of a path."""
+"""Deviation of a straight part of a path by rounding, over the path's range."""
 
 
 class LoadSettings(FrictionSettings):
-    """Settings of time and of load paths, beside those of the method and of friction."""
+    """Settings of time and load paths, beside those of method and friction."""
 
     elements: param.Integer[int]
 
@@ -44,15 +43,17 @@ class LoadSettings(FrictionSettings):
         1,
         (1, 5000),
         (1, 20),
-        "How often what the presets of load paths do, after their beginning, is done in the "
-        "interval; a preset that does not come back (ramp, hold, random) stays as it is.",
+        "How often what the presets of load paths do, after their beginning, is done "
+        "in the interval; a preset that does not come back (ramp, hold, random) stays "
+        "as it is.",
         applies=lambda settings: settings.is_repeatable,
     )
     duration = LOAD.quantity(
         1.0,
         (1e-9, 1e9),
         (0.1, 10.0),
-        "Length of the time interval. Friction does not feel the rate: only the time axis changes.",
+        "Length of the time interval. Friction does not feel the rate: only the time "
+        "axis changes.",
         title="Duration T",
         unit="s",
     )
@@ -60,8 +61,8 @@ class LoadSettings(FrictionSettings):
         101,
         (1, 20_001),
         (11, 401),
-        "Number of instants at which the problem is solved, at least: points at which a path turns "
-        "or bends are instants too, and the load is linear between them.",
+        "Number of instants at which the problem is solved, at least: points at which "
+        "a path turns or bends are instants too, and the load is linear between them.",
     )
     seed = LOAD.count(
         1,
@@ -92,23 +93,22 @@ class LoadSettings(FrictionSettings):
     @classmethod
     @cache
     def _sizes(cls) -> Mapping[str, tuple[str, ...]]:
-        """Settings of what presets of each path over time may reach."""
-        paths = {
-            name: about(definition).path
-            for name, definition in cls.definitions().items()
-        }
-        return {
-            path: tuple(n for n in paths if paths[n] == path)
-            for path in paths.values()
-            if path
-        }
+        """Names of the settings of the value of presets, by the name of the path."""
+        sizes: dict[str, tuple[str, ...]] = {}
+        for name, definition in cls.definitions().items():
+            path = about(definition).path
+            if path:
+                sizes[path] = (*sizes.get(path, ()), name)
+        return sizes
 
     def size_setting(self, path: str) -> str | None:
-        """Setting of the largest value that a preset of a path reaches; None where that is 1."""
+        """Name of the setting of the value of a path's presets; None: it is 1."""
         sizes = self._sizes().get(path, ())
         definitions = self.definitions()
-        acting = (name for name in sizes if about(definitions[name]).applies(self))
-        return next(acting, sizes[0] if sizes else None)
+        for name in sizes:
+            if about(definitions[name]).applies(self):
+                return name
+        return sizes[0] if sizes else None
 
     def size_of(self, path: str) -> float:
         """Largest value that a preset of a path over time reaches."""
@@ -118,17 +118,17 @@ class LoadSettings(FrictionSettings):
         return float(getattr(self, name))
 
     def acts(self, path: str) -> bool:
-        """Whether a path over time has any size, of its preset or of its own."""
+        """Return whether a path is a table, or a preset of a value that is not 0."""
         return not isinstance(getattr(self, path), str) or self.size_of(path) != 0.0
 
     def size_or_table(self, path: str) -> str:
-        """Name of the setting by which a path becomes smaller: of its size, or its table."""
+        """Name of the setting that makes a path smaller: its size, or its table."""
         if isinstance(getattr(self, path), str):
             return self.size_setting(path) or path
         return path
 
     def curve_units(self, name: str) -> tuple[str, ...]:
-        """Units of a curve under the present values: those of a path are as its size."""
+        """Units of a curve as settings are; the value of a path has its size's."""
         units: tuple[str, ...] = self.definitions()[name].units
         size = self.size_setting(name)
         if size is None:
@@ -136,7 +136,7 @@ class LoadSettings(FrictionSettings):
         return (units[0], about(self.definitions()[size]).unit)
 
     def preset(self, name: str) -> Preset | None:
-        """Preset that a path over time has; None where it is a table."""
+        """Preset of a path over time; None where the path is a table."""
         value = getattr(self, name)
         if not isinstance(value, str):
             return None
@@ -145,14 +145,14 @@ class LoadSettings(FrictionSettings):
 
     @property
     def is_repeatable(self) -> bool:
-        """Whether any load path is a preset that comes back to where it began."""
-        presets = map(self.preset, self.paths)
+        """Return whether any load path is a preset that is periodic."""
+        presets = [self.preset(name) for name in self.paths]
         return any(
             preset is not None and preset.repeats is not None for preset in presets
         )
 
     def times(self) -> Array:
-        """Instants, shape (n_instants,), s: points of all paths, and others spread between them."""
+        """Instants, (n_instants,), s: points of all paths, and others between them."""
         return self._times
 
     @property
@@ -162,6 +162,7 @@ class LoadSettings(FrictionSettings):
 
     @cached_property
     def _times(self) -> Array:
+        """Instants, (n_instants,), s; of large problems those of thinned tables."""
         instants = self._instants({name: getattr(self, name) for name in self._tables})
         if self.n_nodes * len(instants) > EVERY_POINT and self._tables:
             instants = self._instants(
@@ -172,62 +173,83 @@ class LoadSettings(FrictionSettings):
 
     @property
     def _tables(self) -> tuple[str, ...]:
+        """Names of the paths over time that are tables."""
         return tuple(name for name in self.paths if self.preset(name) is None)
 
     def _thinned(self, name: str) -> Rows:
-        """Points of a table without which its path would be wrong by a share of its range."""
+        """Points of a table that its path needs to stay within a share of its range."""
         table: Rows = getattr(self, name)
         kept = thinned(table, THINNED * float(np.ptp(np.array(table)[:, 1])))
         return tuple(table[place] for place in kept)
 
     def _instants(self, tables: Mapping[str, Rows]) -> Array:
-        """Instants for these tables and all presets; a single one has those where paths turn."""
-        knots = {name: np.array(table)[:, 0] for name, table in tables.items()}
-        presets = (
-            name for name in self.paths if name not in tables and self.size_of(name)
+        """Instants, (n_instants,), s, for some tables and all presets.
+
+        Of a path, all points are instants; where one instant is set, the points at
+        which the path turns.
+        """
+        points = [NO_KNOTS]
+        corners = [NO_KNOTS]
+        for name, table in tables.items():
+            times = np.array(table)[:, 0]
+            if self.instants == 1:
+                times = self._turning(name, times)
+            points.append(times)
+        for name in self.paths:
+            if name in tables or not self.size_of(name):
+                continue
+            times = self.knots(name)
+            if self.instants == 1:
+                times = self._turning(name, times)
+            corners.append(times)
+        return instants_of(
+            self.duration,
+            self.instants,
+            np.concatenate(points),
+            np.concatenate(corners),
         )
-        knots |= {name: self.knots(name) for name in presets}
-        if self.instants == 1:
-            knots = {name: self._turning(name, times) for name, times in knots.items()}
-        given = [knots[name] for name in tables]
-        corners = [times for name, times in knots.items() if name not in tables]
-        joined = (np.concatenate([NO_KNOTS, *times]) for times in (given, corners))
-        return instants_of(self.duration, self.instants, *joined)
 
     def knots(self, name: str) -> Array:
-        """Times at which a path turns or bends, s; a table's points."""
+        """Times at which a path turns or bends, (n_knots,), s; a table's points."""
         preset = self.preset(name)
         if preset is None:
             return np.array(getattr(self, name))[:, 0]
         return self.duration * preset.corners(self.seed, self.cycles)
 
     def _turning(self, name: str, knots: Array) -> Array:
+        """Knots inside the interval at which a path turns back, (n_turns,), s."""
         inside = knots[(knots > 0.0) & (knots < self.duration)]
         every = np.concatenate([[0.0], inside, [self.duration]])
         return turning_knots(every, self.path_at(name, every))
 
     def left_out(self) -> Iterator[str]:
-        """Yield what a run does not see of its tables: paths of too many points are thinned."""
+        """Yield sentences on points of tables that a run leaves out by thinning."""
         times = self.times()
         for name in self._tables:
-            when, values = np.array(getattr(self, name)).T
-            inside = (when >= times[0]) & (when <= times[-1])
-            seen = interpolate(np.column_stack([times, self.path(name)]), when[inside])
-            lost = float(np.abs(values[inside] - seen).max(initial=0.0))
+            abscissae, values = np.array(getattr(self, name)).T
+            inside = (abscissae >= times[0]) & (abscissae <= times[-1])
+            given = abscissae[inside]
+            solved = interpolate(np.column_stack([times, self.path(name)]), given)
+            difference = float(np.abs(values[inside] - solved).max(initial=0.0))
             span = float(np.ptp(values))
-            count = len(apart(when[inside], times, SAME * self.duration))
-            if self.instants > 1 and count and lost > STRAIGHT * span:
+            count = len(apart(given, times, SAME * self.duration))
+            if self.instants > 1 and count and difference > STRAIGHT * span:
+                share = f"{100.0 * difference / span:.2g} %"
                 yield (
-                    f"{name}: {count} of {len(values)} points are left out; they differ from the "
-                    f"path that is solved by at most {100.0 * lost / span:.2g} % of their range"
+                    f"{name}: {count} of {len(values)} points are left out; they "
+                    f"differ from the path that is solved by at most {share} of their "
+                    "range"
                 )
 
     def path(self, name: str) -> Array:
-        """A quantity over time from the setting of its path; a table has its own size."""
+        """Values of a path at the instants of the run, (n_instants,), in its unit.
+
+        A preset is scaled by the setting of its size; a table has its own size.
+        """
         return self.path_at(name, self.times())
 
     def path_at(self, name: str, instants: Array) -> Array:
-        """The same at instants of one's own, s."""
+        """Values of a path at given instants, s; both of shape (n_instants,)."""
         preset = self.preset(name)
         if preset is None:
             return interpolate(getattr(self, name), instants)
@@ -235,17 +257,17 @@ class LoadSettings(FrictionSettings):
         return self.size_of(name) * values
 
     def drives(self) -> tuple[Drive, ...]:
-        """Loads and motions over time that are not zero, by the settings of their sizes."""
-        found = []
+        """Non-zero loads and motions over time, by the settings of their sizes."""
+        drives = []
         for path in self.paths:
             values = self.path(path)
             if np.any(values):
                 unit = self.curve_units(path)[1]
-                found.append(Drive(self.size_or_table(path), unit, values))
-        return tuple(found)
+                drives.append(Drive(self.size_or_table(path), unit, values))
+        return tuple(drives)
 
     def points(self, name: str) -> Rows:
-        """Points of a curve or rows of a table, or those that stand for its preset."""
+        """Rows of a curve: of its table, or of a table that stands for its preset."""
         value: str | Rows = getattr(self, name)
         if not isinstance(value, str):
             return value
@@ -263,9 +285,9 @@ class LoadSettings(FrictionSettings):
         return as_points(times[kept], values[kept])
 
 
-def as_points(where: Array, values: Array) -> Rows:
-    """Points with as many digits as one likes to read."""
-    return tuple(
-        (float(f"{a:.6g}"), float(f"{b:.6g}"))
-        for a, b in zip(where, values, strict=True)
-    )
+def as_points(abscissae: Array, values: Array) -> Rows:
+    """Points (abscissa, value) of six digits, from arrays of shape (n_points,)."""
+    points = []
+    for abscissa, value in zip(abscissae, values, strict=True):
+        points.append((float(f"{abscissa:.6g}"), float(f"{value:.6g}")))
+    return tuple(points)

@@ -1,4 +1,4 @@
-"""Load paths over time, from a named preset or a table of points, and the instants of a run.
+"""Load paths over time, presets or tables of points, and the instants of a run.
 
 A preset is a path over the phase of an interval, from 0 to 1.
 """
@@ -11,47 +11,61 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.settings.definitions import Rows
 
 RANDOM_POINTS = 12
+"""Straight lines of a random walk."""
 NO_LOAD = 1e-14
-"""What rounding makes of a whole number of half waves, where a load vanishes."""
+"""Largest value of a sine that rounding leaves at a whole number of half waves."""
 DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
+"""Turning points of "decaying", as shares of the value."""
 HELD = 0.25
-"""Share of the interval after which "hold" stays where it is, and "delayed" and
+"""Share of the interval after which "hold" stays at its value, and "delayed" and
 "cycles" begin."""
 CYCLES = 6
+"""Cycles of the presets "cycles", "shaken" and "pulses"."""
 LOOSE = 0.2
-"""Share of its pressure that a bolt has left when it has loosened."""
+"""Share of its pressure that a loosened bolt has left."""
 SAME = 1e-12
-"""Share of the interval by which rounding may set one time apart from another."""
+"""Largest distance of equal times by rounding, as a share of the interval."""
 NO_KNOTS = np.zeros(0)
 Wave = Callable[[Array], Array]
 
 
 def interpolate(points: Rows | Array, where: Array) -> Array:
-    """Values of a table of (abscissa, value), linear in between and held outside."""
+    """Values of a table of (abscissa, value), linear in between and constant outside.
+
+    `where` are abscissae of any shape; the values have that shape, too.
+    """
     abscissae, values = np.array(points).T
     between: Array = np.interp(where, abscissae, values)
+    # Between points that almost coincide the slope may exceed the largest number.
     steep = ~np.isfinite(between)
-    if steep.any():  # a slope beyond the largest number: points that all but coincide
-        between[steep] = values[
-            np.searchsorted(abscissae, where[steep], side="right") - 1
-        ]
+    if steep.any():
+        before = np.searchsorted(abscissae, where[steep], side="right") - 1
+        between[steep] = values[before]
     return between
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A path with a name: straight lines between points after a beginning that has the first.
+    """A path over the phase of the interval, with straight lines between its points.
 
-    The description is a line on it, where "the value" is the largest that it reaches.
-
-    Points, for a seed of what is random, are phases after the beginning, and ordinates.
-    It begins after a share of the interval, and comes back to where it is from another
-    on, if at all. A wave has ordinates at such phases in place of straight lines, where
-    it bends.
+    Attributes
+    ----------
+    description
+        The path in a line, in which "the value" is the largest that it reaches.
+    points
+        Function of a seed, which matters to random paths: phases after the beginning,
+        from 0 to 1, and ordinates, both of shape (n_points,).
+    begins
+        Share of the interval up to which the path keeps its first ordinate.
+    repeats
+        Share of the interval from which on the path is periodic; None: it is not.
+    wave
+        Function from phases after the beginning to ordinates of the same shape, of a
+        path that bends between its points.
     """
 
     description: str
@@ -61,7 +75,10 @@ class Preset:
     wave: Wave | None = None
 
     def value(self, phase: Array, seed: int, cycles: int = 1) -> Array:
-        """Values at phases; what comes back is gone through so many times in the same time."""
+        """Values at phases of the interval, both of shape (n_phases,).
+
+        The periodic part is passed `cycles` times in the same time.
+        """
         if cycles > 1 and self.repeats is not None:
             turns = cycles * (phase - self.repeats) / (1.0 - self.repeats)
             again = self.repeats + (1.0 - self.repeats) * (turns - np.floor(turns))
@@ -72,7 +89,7 @@ class Preset:
         return np.interp(after, *self.points(seed))
 
     def corners(self, seed: int, cycles: int = 1) -> Array:
-        """Phases inside the interval at which it turns back or bends."""
+        """Phases inside the interval at which the path turns or bends, (n_corners,)."""
         corners = self.begins + (1.0 - self.begins) * self.points(seed)[0][:-1]
         corners = corners[corners > 0.0]
         if cycles == 1 or self.repeats is None:
@@ -89,30 +106,30 @@ def _lines(
     repeats: float | None = None,
     wave: Wave | None = None,
 ) -> Preset:
-    """Preset of ordinates that are evenly spaced."""
+    """Preset of ordinates at evenly spaced phases."""
     points = np.linspace(0.0, 1.0, len(ordinates)), np.array(ordinates)
     return Preset(description, lambda seed: points, begins, repeats, wave)
 
 
 def _walk(seed: int) -> tuple[Array, Array]:
-    """Points of a random walk."""
+    """Phases and ordinates of a random walk, each of shape (RANDOM_POINTS + 1,)."""
     steps = np.random.default_rng(seed).uniform(-1.0, 1.0, RANDOM_POINTS)
     walk = np.concatenate([[0.0], np.cumsum(steps)])
     return np.linspace(0.0, 1.0, len(walk)), walk / np.max(np.abs(walk))
 
 
 def _size_of_walk(seed: int) -> tuple[Array, Array]:
-    """Points of a random walk's size: its own, and where it changes its sign."""
+    """Phases and ordinates of a random walk's size, (n_points,), with its zeros."""
     phases, walk = _walk(seed)
     crossed = np.flatnonzero(walk[:-1] * walk[1:] < 0.0)
     zeros = crossed + walk[crossed] / (walk[crossed] - walk[crossed + 1])
     every = np.union1d(phases, zeros / RANDOM_POINTS)
-    return every, np.where(
-        np.isin(every, phases), np.abs(np.interp(every, phases, walk)), 0.0
-    )
+    size = np.abs(np.interp(every, phases, walk))
+    return every, np.where(np.isin(every, phases), size, 0.0)
 
 
 def _sine(phase: Array) -> Array:
+    """Sine of period 1, of the shape of the phases, without rounding at zeros."""
     wave = np.sin(2.0 * np.pi * phase)
     return np.where(np.abs(wave) < NO_LOAD, 0.0, wave)
 
@@ -139,29 +156,32 @@ PRESETS: dict[str, Preset] = {
         wave=_sine,
     ),
     "decaying": _lines(
-        "goes to and fro, to 1, -0.85, 0.7, -0.55, 0.4, -0.25 and 0.1 times the value, and to 0",
+        "goes to and fro, to 1, -0.85, 0.7, -0.55, 0.4, -0.25 and 0.1 times the value, "
+        "and to 0",
         *(0.0, *DECAY, 0.0),
         repeats=0.0,
     ),
     "random": Preset(
-        "a random walk of 12 straight lines, as the seed has it, whose largest size is the value",
+        "a random walk of 12 straight lines, as the seed has it, whose largest size is "
+        "the value",
         _walk,
     ),
     "hold": Preset(
-        "rises evenly to the value in the first quarter of the interval, and stays there",
+        "rises evenly to the value in the first quarter of the interval, and stays "
+        "there",
         lambda seed: (np.array([0.0, HELD, 1.0]), np.array([0.0, 1.0, 1.0])),
     ),
     "delayed": _lines(
-        "0 for the first quarter of the interval, then a wave of a sine: to the value, to its "
-        "opposite, and back to 0",
+        "0 for the first quarter of the interval, then a wave of a sine: to the value, "
+        "to its opposite, and back to 0",
         *QUARTERS,
         begins=HELD,
         repeats=HELD,
         wave=_sine,
     ),
     "cycles": _lines(
-        "0 for the first quarter of the interval, then six times to the value, to its opposite "
-        "and back to 0, in straight lines",
+        "0 for the first quarter of the interval, then six times to the value, to its "
+        "opposite and back to 0, in straight lines",
         *(0.0, *QUARTERS[1:] * CYCLES),
         begins=HELD,
         repeats=HELD,
@@ -171,7 +191,8 @@ PRESETS: dict[str, Preset] = {
 PULLS: dict[str, Preset] = {
     **PRESETS,
     "cycle": _lines(
-        "goes to the value, to 0, to the value, to 0 and to the value again, in straight lines",
+        "goes to the value, to 0, to the value, to 0 and to the value again, in "
+        "straight lines",
         *(0.0, 1.0, 0.0, 1.0, 0.0, 1.0),
         repeats=0.2,
     ),
@@ -182,25 +203,27 @@ PULLS: dict[str, Preset] = {
         wave=lambda phase: _sine(phase) ** 2,
     ),
     "decaying": _lines(
-        "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the value, and to 0",
+        "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the "
+        "value, and to 0",
         *(0.0, *(0.5 + 0.5 * DECAY), 0.0),
         repeats=0.0,
     ),
     "random": Preset(
-        "the size of a random walk of 12 straight lines, as the seed has it, at most the value",
+        "the size of a random walk of 12 straight lines, as the seed has it, at most "
+        "the value",
         _size_of_walk,
     ),
     "delayed": _lines(
-        "0 for the first quarter of the interval, then two waves of a sine squared, from 0 to the "
-        "value and back",
+        "0 for the first quarter of the interval, then two waves of a sine squared, "
+        "from 0 to the value and back",
         *QUARTERS,
         begins=HELD,
         repeats=HELD,
         wave=lambda phase: _sine(phase) ** 2,
     ),
     "cycles": _lines(
-        "0 for the first quarter of the interval, then six times to the value and back to 0, in "
-        "straight lines",
+        "0 for the first quarter of the interval, then six times to the value and back "
+        "to 0, in straight lines",
         *(0.0, *[1.0, 0.0] * CYCLES),
         begins=HELD,
         repeats=HELD,
@@ -211,26 +234,26 @@ PULLS: dict[str, Preset] = {
 PRESSURES: dict[str, Preset] = {
     "steady": _lines("the value from the beginning to the end", 1.0, 1.0),
     "loosening": _lines(
-        "the value for the first quarter of the interval, then falls evenly to a fifth of it, as "
-        "of a bolt",
+        "the value for the first quarter of the interval, then falls evenly to a fifth "
+        "of it, as of a bolt",
         *(1.0, LOOSE),
         begins=HELD,
     ),
     "tightening": _lines(
-        "a fifth of the value for the first quarter of the interval, then rises evenly to the "
-        "value",
+        "a fifth of the value for the first quarter of the interval, then rises evenly "
+        "to the value",
         *(LOOSE, 1.0),
         begins=HELD,
     ),
     "shaken": _lines(
-        "the value for the first quarter of the interval, then six times down to a fifth of it and "
-        "back, in straight lines",
+        "the value for the first quarter of the interval, then six times down to a "
+        "fifth of it and back, in straight lines",
         *(1.0, *[LOOSE, 1.0] * CYCLES),
         begins=HELD,
         repeats=HELD,
     ),
 }
-"""Presets of what presses: all of it at first, or in the end, and never nothing."""
+"""Presets of a pressure: never zero, and the value at the beginning or at the end."""
 
 INJECTIONS: dict[str, Preset] = {
     "steady": PRESSURES["steady"],
@@ -255,59 +278,83 @@ INJECTIONS: dict[str, Preset] = {
 def instants_of(
     duration: float, number: int, knots: Array = NO_KNOTS, corners: Array = NO_KNOTS
 ) -> Array:
-    """Instants spread over a time interval, s, with knots of paths among them.
+    """Instants of a time interval, (n_instants,), s, among them knots of paths.
 
-    Between knots they are evenly spaced, and no step is longer than one of `number`
-    equal ones: of instants from 0 on, or of a single one at the end. Knots outside do
-    not count; corners, which are those of presets, are an instant or a knot where they
-    differ from it by rounding alone.
+    Between knots instants are evenly spaced.
+
+    Parameters
+    ----------
+    duration
+        Length of the interval, s.
+    number
+        Number of equidistant instants from 0 to the end, whose step no step of the
+        result exceeds; 1 is the end alone.
+    knots
+        Points of tables, (n_knots,), s; knots outside the interval do not count.
+    corners
+        Points of presets, (n_corners,), s. A corner that differs by rounding alone from
+        an instant or a knot is that instant or knot.
     """
     if number > 1:
         even = np.linspace(0.0, duration, number)
     else:
         even = np.array([duration])
+    rounding = SAME * duration
     knots = np.unique(knots[(knots >= 0.0) & (knots <= duration)])
     corners = np.unique(corners)
-    corners = corners[np.diff(corners, prepend=-duration) > SAME * duration]
-    every = np.union1d(knots, apart(corners, knots, SAME * duration))
-    if len(apart(every, even, SAME * duration)) == 0 and np.all(
-        np.diff(every) > SAME * duration
-    ):
+    corners = corners[np.diff(corners, prepend=-duration) > rounding]
+    every = np.union1d(knots, apart(corners, knots, rounding))
+    is_among_even = len(apart(every, even, rounding)) == 0
+    if is_among_even and np.all(np.diff(every) > rounding):
         return even
     every = np.union1d(every, even[[0, -1]])
     shares = np.diff(every) * ((number - 1) / duration)
     steps = np.maximum(np.ceil(shares - SAME * number), 1.0).astype(np.intp)
+    return _divided(every, steps)
+
+
+def _divided(ends: Array, steps: Indices) -> Array:
+    """Ends of intervals, (n_intervals + 1,), with each divided into equal steps.
+
+    `steps` is the number of steps of each interval, (n_intervals,).
+    """
     first = np.concatenate([[0], np.cumsum(steps)])
-    place = np.arange(first[-1]) - np.repeat(first[:-1], steps)
-    spread = np.repeat(every[:-1], steps) + place * np.repeat(
-        np.diff(every) / steps, steps
-    )
-    return np.append(spread, every[-1])
+    step = np.arange(first[-1]) - np.repeat(first[:-1], steps)
+    length = np.repeat(np.diff(ends) / steps, steps)
+    spread = np.repeat(ends[:-1], steps) + step * length
+    return np.append(spread, ends[-1])
 
 
-def apart(times: Array, others: Array, least: float) -> Array:
-    """Times that are farther than that from all others, which are sorted."""
+def apart(times: Array, others: Array, distance: float) -> Array:
+    """Times that are farther than a distance from all others.
+
+    Times and others are of shape (n_times,) and (n_others,), s; others are sorted.
+    """
     if len(others) == 0:
         return times
     after = np.searchsorted(others, times).clip(0, len(others) - 1)
     nearest = np.minimum(
         np.abs(times - others[after]), np.abs(times - others[after - 1])
     )
-    return np.asarray(times[nearest > least])
+    return np.asarray(times[nearest > distance])
 
 
 def turning_knots(knots: Array, values: Array) -> Array:
-    """Knots at which a path turns back, on its way from zero to values at all knots."""
+    """Knots, (n_turns,), s, at which a path turns back that begins at zero.
+
+    Knots, s, and the values of the path there have shape (n_knots,).
+    """
     steps = np.diff(values, prepend=0.0)
     moves = np.flatnonzero(steps)
     turns = np.sign(steps[moves[1:]]) != np.sign(steps[moves[:-1]])
     return np.asarray(knots[moves[:-1][turns]])
 
 
-def thinned(points: Rows | Array, allowed: float) -> Array:
-    """Numbers of the points of a table that the others do not tell, within an allowed error.
+def thinned(points: Rows | Array, allowed: float) -> Indices:
+    """Indices of points of a table, (n_kept,), whose path differs by an allowed error.
 
-    The first and the last point stay, and the largest and the smallest value.
+    The table has shape (n_points, 2); the error is in the unit of its values. The first
+    and the last point are kept, and the largest and the smallest value.
     """
     times, values = np.array(points).T.tolist()
     kept = [0]

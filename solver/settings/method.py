@@ -1,4 +1,4 @@
-"""Settings of the method, which all scenes have, and how settings are checked and changed."""
+"""Settings of the method of all scenes, and checks and changes of settings."""
 
 from __future__ import annotations
 
@@ -22,14 +22,15 @@ STOP = SettingGroup("Stop")
 
 
 def _on_modes(settings: MethodSettings) -> bool:
+    """Return whether the linear stage finds a sum of modes (PGD)."""
     return bool(settings.linear_stage == "pgd")
 
 
 class MethodSettings(param.Parameterized):
-    """Settings of the method, which hold alone and together; a scene adds its own.
+    """Settings of the method; load, friction and scenes add theirs in derived classes.
 
-    `checked` is the one edge at which values are verified; `replace` gives new
-    settings.
+    `checked` is the one place at which values are verified, each alone and all
+    together. Settings never change; `replace` makes new ones.
     """
 
     scene: str = ""
@@ -52,8 +53,8 @@ class MethodSettings(param.Parameterized):
             "tolerance": 1e-10,
         },
     }
-    """What `method` sets at once; a scene that lacks an option keeps its own
-    default."""
+    """Values of the settings that `method` sets at once. A scene without one of these
+    options keeps its own default."""
 
     substructures = DECOMPOSITION.count(
         10,
@@ -63,25 +64,26 @@ class MethodSettings(param.Parameterized):
     )
     multiscale = DECOMPOSITION.switch(
         True,
-        "Also balance the mean forces between substructures at every iteration, by a small coarse "
-        "problem. Without it, a load travels one substructure an iteration.",
+        "Also balance the mean forces between substructures at every iteration, by a "
+        "small coarse problem. Without it, a load travels one substructure an "
+        "iteration.",
         title="Multiscale (coarse problem)",
         applies=lambda settings: settings.n_substructures > 1,
     )
     method = METHOD.choice(
         "fast",
         ["fast", "paper"],
-        "fast: what reaches the accuracy soonest. paper: the iteration of the paper. Sets search "
-        "direction, acceleration, start, relaxation, finish and tolerance at once; each can be "
-        "changed afterwards.",
+        "fast: what reaches the accuracy soonest. paper: the iteration of the paper. "
+        "Sets search direction, acceleration, start, relaxation, finish and tolerance "
+        "at once; each can be changed afterwards.",
     )
     search_direction = METHOD.choice(
         "auto",
         ["paper", "auto"],
-        "How k, the stiffness that joins the two stages of an iteration, is chosen. paper: from "
-        "the length of a substructure. auto: at points that may slip, from the length that is "
-        "expected to slide and that of an element; between bodies that turn out to slip nowhere, "
-        "from their depth.",
+        "How k, the stiffness that joins the two stages of an iteration, is chosen. "
+        "paper: from the length of a substructure. auto: at points that may slip, from "
+        "the length that is expected to slide and that of an element; between bodies "
+        "that turn out to slip nowhere, from their depth.",
     )
     k_scale = METHOD.quantity(
         1.0,
@@ -94,22 +96,24 @@ class MethodSettings(param.Parameterized):
         0.8,
         (0.01, 1.0),
         (0.1, 1.0),
-        "How far an iteration goes towards its new result: 1 all the way (Peaceman-Rachford), 0.5 "
-        "half of it (Douglas-Rachford). Less is slower and safer.",
+        "How far an iteration goes towards its new result: 1 all the way "
+        "(Peaceman-Rachford), 0.5 half of it (Douglas-Rachford). Less is slower and "
+        "safer.",
     )
     linear_stage = METHOD.choice(
         "full",
         ["full", "pgd"],
-        "full: a value for every point and instant. pgd: a sum of a few modes, each a shape in "
-        "space times a function of time (model reduction). That holds many cycles of a load in a "
-        "fraction of the memory; full fields come sooner to any error.",
+        "full: a value for every point and instant. pgd: a sum of a few modes, each a "
+        "shape in space times a function of time (model reduction). That holds many "
+        "cycles of a load in a fraction of the memory; full fields come sooner to any "
+        "error.",
     )
     pgd_modes = METHOD.count(
         10,
         (1, 1000),
         (1, 20),
-        "Most modes kept for a substructure; the smallest are dropped. Many cycles of a load need "
-        "no more than one.",
+        "Most modes kept for a substructure; the smallest are dropped. Many cycles of "
+        "a load need no more than one.",
         title="Most PGD modes",
         applies=_on_modes,
     )
@@ -117,9 +121,9 @@ class MethodSettings(param.Parameterized):
         1e-7,
         (1e-14, 1.0),
         (1e-12, 1e-3),
-        "Share of a substructure's field that may be lost: so much is dropped with the smallest "
-        "modes, and no mode is added for a residual below it. Most of a field is displacement: "
-        "with 1e-4, 15 % of a contact force were lost.",
+        "Share of a substructure's field that may be lost: so much is dropped with the "
+        "smallest modes, and no mode is added for a residual below it. Most of a field "
+        "is displacement: with 1e-4, 15 % of a contact force were lost.",
         title="PGD tolerance",
         applies=_on_modes,
     )
@@ -135,53 +139,55 @@ class MethodSettings(param.Parameterized):
         1e-5,
         (0.0, 1.0),
         (0.0, 0.5),
-        "Equal substructures use the same modes if these miss at most this share of each one's "
-        "field. 0: each has modes of its own.",
+        "Equal substructures use the same modes if these miss at most this share of "
+        "each one's field. 0: each has modes of its own.",
         title="PGD basis sharing",
         applies=lambda settings: _on_modes(settings) and settings.n_substructures > 1,
     )
     acceleration = METHOD.choice(
         "anderson",
         ["none", "anderson"],
-        "anderson: combine the last iterates so that the two stages agree best, which saves "
-        "iterations. none: take the newest as it is.",
+        "anderson: combine the last iterates so that the two stages agree best, which "
+        "saves iterations. none: take the newest as it is.",
         applies=lambda settings: not _on_modes(settings),
     )
     start = METHOD.choice(
         "nested",
         ["zero", "nested"],
-        "zero: start from nothing. nested: start from the solution on half the elements, which the "
-        "incremental solver finds; the run time includes that.",
+        "zero: start from nothing. nested: start from the solution on half the "
+        "elements, which the incremental solver finds; the run time includes that.",
     )
     k_update = METHOD.choice(
         "none",
         ["none", "status"],
-        "none: k is as the search direction says. status: once stick and slip have settled, k "
-        "becomes smaller where points slip; taken back if that does not help.",
+        "none: k is as the search direction says. status: once stick and slip have "
+        "settled, k becomes smaller where points slip; taken back if that does not "
+        "help.",
         title="Update of k",
         applies=lambda settings: not _on_modes(settings),
     )
     finish = METHOD.choice(
         "at-once",
         ["none", "accuracy", "at-once"],
-        "When a status step ends the run: keep the present stick, slip and opening, solve the "
-        "linear problem that is left, and take its solution if it obeys all laws. at-once: as soon "
-        "as one holds. accuracy: once the iterates themselves are within the accuracy; the answer "
-        "is then put beside them. none: only iterate.",
+        "When a status step ends the run: keep the present stick, slip and opening, "
+        "solve the linear problem that is left, and take its solution if it obeys all "
+        "laws. at-once: as soon as one holds. accuracy: once the iterates themselves "
+        "are within the accuracy; the answer is then put beside them. none: only "
+        "iterate.",
     )
     accuracy = STOP.quantity(
         0.01,
         (1e-12, 1.0),
         (1e-6, 0.1),
-        "The run ends when friction, and pressure where it is not known, are each estimated to be "
-        "wrong by less than this share; 0.01 is 1 %.",
+        "The run ends when friction, and pressure where it is not known, are each "
+        "estimated to be wrong by less than this share; 0.01 is 1 %.",
     )
     tolerance = STOP.quantity(
         1e-3,
         (1e-30, 1.0),
         (1e-16, 1e-2),
-        "Unless a status step ends it, a run also goes on until the LATIN indicator η is below "
-        "this. η is not an error.",
+        "Unless a status step ends it, a run also goes on until the LATIN indicator η "
+        "is below this. η is not an error.",
         title="Tolerance on η",
     )
     max_iterations = STOP.count(
@@ -195,13 +201,13 @@ class MethodSettings(param.Parameterized):
         1,
         (1, 64),
         (1, 4),
-        "Threads that share an iteration on a large structure, where the machine has nothing else "
-        "to do. The results are the same to the bit.",
+        "Threads that share an iteration on a large structure, where the machine has "
+        "nothing else to do. The results are the same to the bit.",
     )
 
     @property
     def n_bodies(self) -> int:
-        """Number of bodies, each of which is cut."""
+        """Number of bodies, each of which is cut into substructures."""
         return 1
 
     @property
@@ -215,15 +221,20 @@ class MethodSettings(param.Parameterized):
         """Definition of every setting, by name, in the order of their groups."""
         parameters = {name: cls.param[name] for name in cls.param}
         return {
-            n: one for n, one in parameters.items() if "about" in (one.metadata or {})
+            name: parameter
+            for name, parameter in parameters.items()
+            if "about" in (parameter.metadata or {})
         }
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
-        """Settings of plain values by name; what is left out is as by default, or by the method.
+        """Make settings of values by name; others are set by the method, or by default.
 
-        Refuses an unknown name, a wrong type, a value out of range, and values that do
-        not fit together with a `SettingError`.
+        Raises
+        ------
+        SettingError
+            If a name is unknown, a value has a wrong type or is out of range, or values
+            do not fit together.
         """
         definitions = cls.definitions()
         clean = {}
@@ -231,17 +242,15 @@ class MethodSettings(param.Parameterized):
             if name not in definitions:
                 raise unknown(name, value, cls.scene, definitions)
             clean[name] = checked_value(definitions[name], name, value)
-        values = {
-            **cls.of_method(clean.get("method", definitions["method"].default)),
-            **clean,
+        method = clean.get("method", definitions["method"].default)
+        complete = cls.of_method(method) | clean
+        # To set a value takes param some time, even where it is the default.
+        changed = {
+            name: value
+            for name, value in complete.items()
+            if value is not definitions[name].default
         }
-        # A default that is given takes param as long as anything else.
-        others = {
-            n: value
-            for n, value in values.items()
-            if value is not definitions[n].default
-        }
-        settings = cls(**others)
+        settings = cls(**changed)
         settings.check_together()
         return settings
 
@@ -251,10 +260,8 @@ class MethodSettings(param.Parameterized):
         values = dict(cls.METHODS[method])
         for name, value in values.items():
             definition = cls.definitions()[name]
-            if (
-                isinstance(definition, param.Selector)
-                and value not in definition.objects
-            ):
+            is_choice = isinstance(definition, param.Selector)
+            if is_choice and value not in definition.objects:
                 values[name] = definition.default
         return values
 
@@ -264,10 +271,10 @@ class MethodSettings(param.Parameterized):
         values = {
             name: definition.default for name, definition in cls.definitions().items()
         }
-        return {**values, **cls.of_method(method)}
+        return values | cls.of_method(method)
 
     def check_together(self) -> None:
-        """Check what no setting can check alone; a scene extends this."""
+        """Refuse values that do not fit together; derived classes extend this."""
 
     def values(self) -> dict[str, Any]:
         """Plain value of every setting, by name."""
@@ -275,14 +282,15 @@ class MethodSettings(param.Parameterized):
 
     @cached_property
     def _values(self) -> Mapping[str, Any]:
-        # To ask param for all of them takes longer than an iteration, and they never
-        # change.
+        """Value of every setting, by name."""
+        # Values never change, and param takes longer for all of them than an iteration.
         return {name: getattr(self, name) for name in self.definitions()}
 
     def changed(self, base: Self | None = None) -> dict[str, Any]:
-        """Settings that differ from others, or from their defaults.
+        """Values that differ from those of other settings, or from the defaults.
 
-        Where the method differs too, those that it sets are compared with what it says.
+        Where the method differs, too, the settings that it sets are compared with the
+        values that it sets.
         """
         if base:
             defaults = base.values()
@@ -297,22 +305,22 @@ class MethodSettings(param.Parameterized):
         }
 
     def replace(self, /, **changes: object) -> Self:
-        """New settings with some values changed, checked as a whole.
+        """Make settings with some values changed, checked as a whole.
 
-        Another method brings its own values of all that it sets.
+        Another method brings its own values of all settings that a method sets.
         """
         values = self.values()
         if changes.get("method", self.method) != self.method:
-            own = self.METHODS[self.method]
-            values = {name: value for name, value in values.items() if name not in own}
-        return self.checked({**values, **changes})
+            for name in self.METHODS[self.method]:
+                del values[name]
+        return self.checked(values | changes)
 
     def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
-        """Refusal of the present value of a setting: what is allowed beside others, what to do."""
+        """Refusal of the value of a setting, with what is allowed and a remedy."""
         return SettingError(name, getattr(self, name), allowed, remedy)
 
     def applies(self, name: str) -> bool:
-        """Whether a setting does anything under the present values."""
+        """Return whether a setting changes anything under the present values."""
         record = about(self.definitions()[name])
         if record.path and not isinstance(getattr(self, record.path), str):
             return False

@@ -1,4 +1,4 @@
-"""Tables over a place along a body, as a mesh sees them."""
+"""Profiles: tables over the position along a body, and their values on a mesh."""
 
 from __future__ import annotations
 
@@ -13,22 +13,30 @@ from solver.settings.load_paths import interpolate
 
 
 class Profile(NamedTuple):
-    """A preset along a body: a line on it, and points over shares of the length."""
+    """A preset along a body: its description, and points (share of length, value)."""
 
     description: str
     points: Rows
 
 
 UNSEEN = 0.01
-"""Share of its range by which a table may differ between nodes from the line through
-them."""
+"""Largest difference between a table and the line through nodes that needs no remark,
+as a share of the table's range."""
 STEEP = 1e-8
 """Relative change over a piece below which the mean of the inverse is that of the
 middle."""
 
 
 def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indices]:
-    """Ends of pieces of shares between points, the tables there, and each share's first piece."""
+    """Divide shares into pieces on which all tables are linear.
+
+    `edges` are the ends of the shares, (n_shares + 1,), m.
+
+    Returns
+    -------
+    Ends of the pieces, (n_pieces + 1,), m; values of each table there, (n_pieces + 1,);
+    and the first piece of each share, (n_shares,).
+    """
     points = np.concatenate([np.array(table)[:, 0] for table in tables])
     ends: Array = np.union1d(edges, points[(points > edges[0]) & (points < edges[-1])])
     values = [interpolate(table, ends) for table in tables]
@@ -36,23 +44,29 @@ def _pieces(tables: list[Rows], edges: Array) -> tuple[Array, list[Array], Indic
 
 
 def shares_of(nodes: Array) -> Array:
-    """Ends of the shares of nodes in a row, which meet half-way, (n_nodes + 1,), of (n_nodes,)."""
+    """Ends of the shares of nodes, (n_nodes + 1,), m, halfway between the nodes."""
     return np.concatenate([nodes[:1], nodes[:-1] + 0.5 * np.diff(nodes), nodes[-1:]])
 
 
 def means(tables: list[Rows], edges: Array) -> Array:
-    """Mean of the product of one or two tables over every share, from their ends, m."""
+    """Mean over every share of the product of one or two tables, (n_shares,).
+
+    `edges` are the ends of the shares, (n_shares + 1,), m.
+    """
     ends, values, first = _pieces(tables, edges)
-    left = math.prod(one[:-1] for one in values)
-    right = math.prod(one[1:] for one in values)
-    middle = math.prod(0.5 * (one[:-1] + one[1:]) for one in values)
+    left = math.prod(each[:-1] for each in values)
+    right = math.prod(each[1:] for each in values)
+    middle = math.prod(0.5 * (each[:-1] + each[1:]) for each in values)
     # Simpson's rule is exact for products of three linear functions.
     whole = np.diff(ends) * (left + 4.0 * middle + right) / 6.0
     return np.asarray(np.add.reduceat(whole, first) / np.diff(edges))
 
 
 def harmonic_means(table: Rows, edges: Array) -> Array:
-    """Inverse of the mean of the inverse of a table over every share."""
+    """Harmonic mean of a table over every share, (n_shares,).
+
+    `edges` are the ends of the shares, (n_shares + 1,), m.
+    """
     ends, (values,), first = _pieces([table], edges)
     change = np.diff(values) / values[:-1]
     is_steep = np.abs(change) > STEEP
@@ -63,10 +77,10 @@ def harmonic_means(table: Rows, edges: Array) -> Array:
 
 
 def gap_at(table: Rows, nodes: Array) -> Array:
-    """Gap at nodes; a point between two that is lower than both is put at the nearer.
+    """Gap at nodes, both of shape (n_nodes,), m, from a table (position, gap).
 
-    A slope or a curve that the nodes tell stays as it is: only what would touch first
-    and lies between nodes is moved.
+    A point between two nodes that is lower than both, and so would touch first, counts
+    at the nearer node. Slopes and curves that nodes show stay as they are.
     """
     gap = interpolate(table, nodes)
     x, values = np.array(table).T
@@ -83,7 +97,11 @@ def gap_at(table: Rows, nodes: Array) -> Array:
 
 
 def off_nodes(table: Rows, length: float, pieces: int) -> Array:
-    """How far points are off the line through evenly spaced nodes, shape (n_points,)."""
+    """Distances of a table's points from the line through the nodes, (n_points,), m.
+
+    There are as many `pieces` between evenly spaced nodes over the length, m. Points
+    outside the length have a distance of zero.
+    """
     x, values = np.array(table).T
     nodes = np.linspace(0.0, length, pieces + 1)
     off = np.abs(np.interp(x, nodes, interpolate(table, nodes)) - values)

@@ -1,7 +1,7 @@
-"""Settings of a scene: those that all have, and what is known of a scene by its settings alone.
+"""Base of the settings of a scene, with the properties that follow from them.
 
-A settings object is checked once, at the edge, and cannot be changed; `replace` gives a
-new one.
+A settings object is checked once, where it is made, and cannot be changed; `replace`
+gives a new one.
 """
 
 from __future__ import annotations
@@ -19,14 +19,13 @@ from solver.settings.definitions import SettingError, about
 from solver.settings.load import LoadSettings
 
 LARGEST_FIELD = 25_000_000
-"""Nodes times instants; a run keeps about ten fields over them."""
+"""Largest number of nodes times instants; a run keeps about ten fields over them."""
 COARSEST = 6
-"""Elements below which a mesh is not coarsened: a front needs a few to be seen at
-all."""
+"""Smallest number of elements of a coarsened mesh: fewer show no front of slip."""
 
 
 class Icon(NamedTuple):
-    """A small picture by which a scene is known: paths as in SVG, on a field of 48 times 32."""
+    """A small picture of a scene: paths as in SVG, on a field of 48 times 32."""
 
     ground: str
     body: str
@@ -34,7 +33,7 @@ class Icon(NamedTuple):
 
 
 class Settings(LoadSettings):
-    """Settings of a scene: those of the method, of friction and of time, and its own."""
+    """Settings of a scene: of the method, of friction and of time, and its own."""
 
     length: param.Number[float]
     friction: param.Number[float]
@@ -42,11 +41,11 @@ class Settings(LoadSettings):
 
     title: ClassVar[str]
     source: ClassVar[str]
-    """What it is called, and where it comes from."""
+    """Title and source of the scene."""
     icon: ClassVar[Icon]
     kind: ClassVar[Literal["rod", "wires", "helices", "plane"]]
-    """What there is to see: a rod on its support, wires beside each other, wires around
-    a core, or plane bodies."""
+    """Kind of the bodies: a rod on its support, wires beside each other, wires around a
+    core, or plane bodies."""
     CHIEF: ClassVar[tuple[str, ...]]
     ALSO_CHIEF: ClassVar[tuple[str, ...]] = (
         "seed",
@@ -54,34 +53,33 @@ class Settings(LoadSettings):
         "substructures",
         "k_scale",
     )
-    """Settings that a scene is about, in the order in which one thinks of them: its
-    own, and those of friction and the method."""
+    """Chief settings of the scene in their order of importance: those of the scene
+    itself, and those of friction and the method."""
     GROWS: ClassVar[tuple[str, ...]]
-    """Settings by which the structure becomes larger as it is, all of them together."""
+    """Settings that are raised together for a larger structure of the same kind."""
     MESH: ClassVar[tuple[str, ...]] = ("elements",)
     """Numbers of elements: twice each is a mesh of half the size."""
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
-    """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
+    """Numbers of parts, and the numbers that they divide and cannot exceed."""
     opens: ClassVar[bool] = False
-    """Whether contact may open, so that what presses is an unknown."""
+    """Contact may open, so that the contact pressure is an unknown."""
     has_joints: ClassVar[bool] = False
-    """Whether bodies touch each other at joints, and do not lie on the next all
-    along."""
+    """Bodies touch each other at joints, and not along the whole of the next one."""
 
     def structure(self) -> Structure:
-        """Bodies, with all that acts on them."""
+        """Make the bodies, with all loads and supports."""
         raise NotImplementedError
 
     def sentence(self) -> str:
-        """What there is, what acts on it, and what rubs, for whoever sees it for the first time."""
+        """Describe bodies, loads and friction in a sentence for a newcomer."""
         raise NotImplementedError
 
     def coarser(self) -> Iterator[Problem]:
-        """Yield the same problem, uncut, on ever coarser meshes, as long as a front is seen.
+        """Yield the same problem, with one substructure, on ever coarser meshes.
 
-        Until it does not fit its mesh, as where the break of a wire, at the nearest
-        node, leaves less than the tension to friction, or where a mesh so coarse has
-        more instants.
+        The last mesh is the coarsest one that shows a front of slip, has the same
+        instants, and fits the settings. (In a strand, the broken wire's break moves to
+        the nearest node, and friction beyond it may then carry less than the tension.)
         """
         coarse = self
         while (elements := coarse.elements // 2) >= COARSEST:
@@ -96,7 +94,7 @@ class Settings(LoadSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
-        """What is known of the scene without a mesh; often that is nothing.
+        """Closed forms of the scene, as curves; none by default.
 
         The solution is that of an incremental solver: closed forms of contact are for
         its forces.
@@ -105,12 +103,13 @@ class Settings(LoadSettings):
 
     @property
     def jumps(self) -> int:
-        """Components of all contacts, which a reference condenses; none on a lone rod."""
-        return (2 if self.opens else 1) * self.n_interfaces * (self.elements + 1)
+        """Number of components of all contacts, which a reference condenses."""
+        components = 2 if self.opens else 1
+        return components * self.n_interfaces * (self.elements + 1)
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Whether the force of its loop stands over a displacement, m."""
+        """Return whether the loop of the scene is a force over a displacement, m."""
         return True
 
     @property
@@ -119,33 +118,33 @@ class Settings(LoadSettings):
         return self.n_bodies - 1
 
     def has(self, name: str) -> bool:
-        """Whether there is such a setting, which does something and is not 0."""
+        """Return whether the scene has a setting that applies and is not 0."""
         return bool(self.values().get(name)) and self.applies(name)
 
     def changed_meanings(self) -> Mapping[str, str]:
-        """Describe settings that meant something else in files of before, by name.
+        """Describe settings that had another meaning in files of the first format.
 
-        Of those that do something; a sentence without its name.
+        Sentences without the name of the setting, by name, of settings that apply.
         """
         return {}
 
     def behind(self) -> Mapping[str, str]:
-        """Settings that place or scale what acts on the scene, where any does.
+        """Settings that place or scale loads, by the load: "right x", "body".
 
-        By what they are behind: "right x" along a side, "body" throughout. Of several
-        the last counts that is not 0.
+        "right x" is a load along a side, "body" one throughout. Of several settings of
+        a load the last one counts that is not 0, or else the first.
         """
         settings: dict[str, str] = {}
         for name, definition in self.definitions().items():
-            for place in about(definition).places:
-                if self.applies(name) and (
-                    place not in settings or getattr(self, name)
-                ):
-                    settings[place] = name
+            if not self.applies(name):
+                continue
+            for load in about(definition).places:
+                if load not in settings or getattr(self, name):
+                    settings[load] = name
         return settings
 
     def with_change(self, name: str, value: object) -> Self:
-        """Change one setting; numbers of parts that exceed it come down with it."""
+        """Make settings with one change; lower numbers of parts that exceed it."""
         changes = {name: value}
         for part, whole in self.PARTS.items():
             if name == whole and isinstance(value, int) and value < getattr(self, part):
@@ -154,28 +153,33 @@ class Settings(LoadSettings):
 
     @property
     def ends(self) -> dict[str, int]:
-        """Largest numbers of parts that there are to deal out, by the name of their setting."""
+        """Largest numbers of parts as settings are, by the name of the setting."""
         return {part: getattr(self, whole) for part, whole in self.PARTS.items()}
 
     def check_together(self) -> None:
-        """Refuse more parts than there is to deal out, fields beyond memory, and no law at all."""
+        """Refuse more parts than elements or wires, and fields beyond memory."""
         super().check_together()
         for part, whole in self.PARTS.items():
-            value = getattr(self, part)
-            most = getattr(self, whole)
-            if value > most:
+            largest = getattr(self, whole)
+            if getattr(self, part) > largest:
                 raise self.refusal(
                     part,
-                    f"{self.definitions()[part].bounds[0]} to {whole} ({most})",
+                    f"{self.definitions()[part].bounds[0]} to {whole} ({largest})",
                     f"lower {part} or raise {whole}",
                 )
-        most = LARGEST_FIELD // self.n_nodes
-        if self.n_instants > most:
-            raise SettingError(
-                "instants",
-                self.n_instants,
-                f"at most {most} with {self.n_nodes} nodes",
-                "give fewer instants, or a coarser mesh"
-                if self.n_instants == self.instants
-                else "give paths with fewer points or cycles, or a coarser mesh",
-            )
+        self._check_field()
+
+    def _check_field(self) -> None:
+        """Refuse more instants than a field over all nodes can have."""
+        largest = LARGEST_FIELD // self.n_nodes
+        if self.n_instants <= largest:
+            return
+        remedy = "give paths with fewer points or cycles, or a coarser mesh"
+        if self.n_instants == self.instants:
+            remedy = "give fewer instants, or a coarser mesh"
+        raise SettingError(
+            "instants",
+            self.n_instants,
+            f"at most {largest} with {self.n_nodes} nodes",
+            remedy,
+        )
