@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-import runpy
 import subprocess
 import sys
 from pathlib import Path
 
-import panel as pn
 import pytest
-from bokeh.document import Document
-from panel.io.state import set_curdoc
+from browser import Chrome, serving
 
 from solver.commands.cli import main
 
@@ -99,17 +96,22 @@ def test_a_page_comes_to_the_closed_form(tmp_path: Path) -> None:
     assert float(lines["ratio to exact"]) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_a_page_that_is_served_shows_one_iteration_after_the_other() -> None:
-    document = Document()
-    with set_curdoc(document):
-        page = runpy.run_path(str(SCRIPTS / "page.py"), run_name="bokeh_app")
-    assert document.title == "A bar is pulled"
-    assert len(document.roots) == 1
-    assert document.session_callbacks[0].period == 200
-    page["step"]()
-    page["step"]()
-    assert page["view"].figure.title.text == "iteration 2"
-    pn.state.kill_all_servers()
+TITLES = """[...(window.Bokeh?.documents[0]?._all_models.values() ?? [])]
+    .filter((model) => model.type === "Figure").map((model) => model.title.text)"""
+"""Titles of all figures of a page, in its browser."""
+
+
+def test_a_page_that_is_served_shows_one_iteration_after_the_other(
+    tmp_path: Path, chrome: Chrome
+) -> None:
+    panel = str(Path(sys.executable).with_name("panel"))
+    command = (panel, "serve", str(SCRIPTS / "page.py"))
+    page = chrome.new_page()
+    with serving(tmp_path / "log", serves=command, place=tmp_path) as server:
+        page.goto(f"{server.root}/page")
+        assert page.title() == "A bar is pulled"
+        page.wait_for_function(f"{TITLES}[0] === 'iteration 10'", polling=20)
+    chrome.leave(page)
 
 
 def test_every_script_has_a_test_here() -> None:
