@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
+from benchmarks.draw_architecture import main as main_of_picture
 from packaging.specifiers import SpecifierSet
 
 from solver.commands.cli import main
@@ -20,8 +22,11 @@ LESSONS = ROOT / "app" / "lessons" / "README.md"
 SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
 CASES = ROOT / "solver" / "study" / "cases" / "README.md"
 METHOD = ROOT / "solver" / "latin" / "README.md"
+EXTENDING = ROOT / "solver" / "EXTENDING.md"
 READMES = [FRONT, PAGE, LESSONS, CASES, MATHEMATICS, METHOD, MEASUREMENTS, SWEEPS]
+PAPERS = [*READMES, EXTENDING]
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
+PAPER_NAMES = [str(paper.relative_to(ROOT)) for paper in PAPERS]
 
 
 def words(path: Path) -> str:
@@ -45,7 +50,7 @@ def paths_in(readme: Path) -> set[str]:
     return {*files, *re.findall(r"`([\w./-]+/)`", text)}
 
 
-@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+@pytest.mark.parametrize("readme", PAPERS, ids=PAPER_NAMES)
 def test_every_path_that_is_named_exists(readme: Path) -> None:
     gone = [
         name
@@ -64,7 +69,7 @@ def test_every_program_runs(readme: Path, capsys: pytest.CaptureFixture[str]) ->
         assert "converged" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+@pytest.mark.parametrize("readme", PAPERS, ids=PAPER_NAMES)
 def test_every_link_leads_somewhere(readme: Path) -> None:
     for target in re.findall(r"\]\(([^)]+)\)", readme.read_text(encoding="utf-8")):
         if target.startswith("http"):
@@ -78,7 +83,7 @@ def test_every_link_leads_somewhere(readme: Path) -> None:
         assert not place or place in map(anchor, headings(page)), target
 
 
-@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+@pytest.mark.parametrize("readme", PAPERS, ids=PAPER_NAMES)
 def test_every_command_that_is_named_is_one(
     readme: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -114,3 +119,25 @@ def test_the_container_has_one_of_them() -> None:
         r"^FROM python:(3\.\d+)", (ROOT / "Dockerfile").read_text(), re.M
     )
     assert version in PROMISED
+
+
+def test_the_version_is_one() -> None:
+    version = PROJECT["project"]["version"]
+    text = FRONT.read_text(encoding="utf-8")
+    assert f"Slipfront, version {version}," in text
+    _, _, changes = text.partition("## Changes")
+    assert re.findall(r"^\*\*(.*)\*\*$", changes, re.MULTILINE)[0] == version
+
+
+def test_the_front_is_short() -> None:
+    assert len(FRONT.read_text(encoding="utf-8").split()) < 2500
+
+
+def test_the_picture_of_the_rooms_names_every_package(tmp_path: Path) -> None:
+    main_of_picture(tmp_path / "rooms.svg")
+    for picture in (tmp_path / "rooms.svg", ROOT / "static" / "architecture.svg"):
+        drawn = ElementTree.fromstring(picture.read_text(encoding="utf-8"))
+        words = set(re.findall(r"\w+", " ".join(drawn.itertext())))
+        for package in ("solver", "app"):
+            for room in (ROOT / package).rglob("__init__.py"):
+                assert room.parent.name in words, room

@@ -3,9 +3,9 @@
     python tests/benchmarks/draw_architecture.py [FILE.svg]
 
 A room is a folder, with its own folders below its name; files that stand in no folder
-share a box on each floor. A room stands one floor above the highest that it imports;
-rooms that import each other stand beside each other. Arrows go down; those that follow
-from others are left out.
+share a box on each floor. What starts a program is at the top, all else right below the
+lowest that imports it; rooms that import each other stand beside each other. Arrows go
+down; those that follow from others are left out.
 """
 
 from __future__ import annotations
@@ -97,20 +97,26 @@ def reached_by(graph: Mapping[str, set[str]]) -> Graph:
 
 
 def floors_of(graph: Mapping[str, set[str]]) -> dict[str, int]:
-    """Floor of each node, from 0 on; those that import each other share one."""
+    """Floor of each node, 0 the lowest; those that import each other share one.
+
+    What nothing imports is at the top, all else right below the lowest that imports it.
+    """
     reached = reached_by(graph)
     circles = {
         node: frozenset(other for other in reached[node] if node in reached[other])
         for node in graph
     }
-    below = {
-        circle: {circles[other] for node in circle for other in graph[node]} - {circle}
-        for circle in circles.values()
+    above: dict[frozenset[str], set[frozenset[str]]] = {
+        circle: set() for circle in circles.values()
     }
-    floors: dict[frozenset[str], int] = {}
-    for circle in TopologicalSorter(below).static_order():
-        floors[circle] = 1 + max((floors[other] for other in below[circle]), default=-1)
-    return {node: floors[circles[node]] for node in graph}
+    for node, others in graph.items():
+        for other in others - circles[node]:
+            above[circles[other]].add(circles[node])
+    depths: dict[frozenset[str], int] = {}
+    for circle in TopologicalSorter(above).static_order():
+        depths[circle] = 1 + max((depths[other] for other in above[circle]), default=-1)
+    lowest = max(depths.values())
+    return {node: lowest - depths[circles[node]] for node in graph}
 
 
 def boxes_of(root: Path, floors: Mapping[str, int]) -> list[list[Box]]:
