@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -169,7 +168,6 @@ class BlockSettings(SideSettings):
         load="M24 1V9M20 5L24 9L28 5M32 7H44M40 3L44 7L40 11",
     )
     CHIEF = ("top_tangential_load", "top_tangential_displacement")
-    SMALL: ClassVar = {"elements": 16, "elements_up": 6, "instants": 13}
 
     gap = CONTACT.curve(
         "parabola",

@@ -39,6 +39,8 @@ class Settings(LoadSettings):
     length: param.Number[float]
     friction: param.Number[float]
     """Every scene defines these, where it shows them."""
+    SMALL: ClassVar[Mapping[str, object]]
+    """Settings with which a run takes next to no time, for tests."""
 
     title: ClassVar[str]
     source: ClassVar[str]
@@ -58,8 +60,6 @@ class Settings(LoadSettings):
     own, and those of friction and the method."""
     GROWS: ClassVar[tuple[str, ...]]
     """Settings by which the structure becomes larger as it is, all of them together."""
-    SMALL: ClassVar[Mapping[str, object]]
-    """Settings with which a run takes next to no time, for tests."""
     MESH: ClassVar[tuple[str, ...]] = ("elements",)
     """Numbers of elements: twice each is a mesh of half the size."""
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
