@@ -16,15 +16,18 @@ from solver.commands.cli import main
 ROOT = Path(__file__).resolve().parents[1]
 FRONT = ROOT / "README.md"
 PAGE = ROOT / "app" / "README.md"
-MATHEMATICS = ROOT / "solver" / "README.md"
+ENGINE = ROOT / "solver" / "README.md"
+MATHEMATICS = ROOT / "solver" / "MATHEMATICS.md"
 MEASUREMENTS = ROOT / "solver" / "study" / "README.md"
 LESSONS = ROOT / "app" / "lessons" / "README.md"
 SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
 CASES = ROOT / "solver" / "study" / "cases" / "README.md"
 METHOD = ROOT / "solver" / "latin" / "README.md"
 EXTENDING = ROOT / "solver" / "EXTENDING.md"
-READMES = [FRONT, PAGE, LESSONS, CASES, MATHEMATICS, METHOD, MEASUREMENTS, SWEEPS]
-PAPERS = [*READMES, EXTENDING]
+READMES = [FRONT, PAGE, LESSONS, CASES, ENGINE, METHOD, MEASUREMENTS, SWEEPS]
+PAPERS = [*READMES, MATHEMATICS, EXTENDING]
+CITED = {"MATHEMATICS.md": MATHEMATICS}
+"""Papers that are cited by their name alone; others by their path."""
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
 PAPER_NAMES = [str(paper.relative_to(ROOT)) for paper in PAPERS]
 
@@ -141,3 +144,49 @@ def test_the_picture_of_the_rooms_names_every_package(tmp_path: Path) -> None:
         for package in ("solver", "app"):
             for room in (ROOT / package).rglob("__init__.py"):
                 assert room.parent.name in words, room
+
+
+def citations(path: Path) -> list[tuple[str, list[str]]]:
+    """Papers that a file cites, each with the numbers of sections."""
+    text = path.read_text(encoding="utf-8")
+    between = r"(?:,[\s#]+(?:and[\s#]+)?|[\s#]+and[\s#]+)"
+    found = re.findall(rf"([\w./]+\.md)`?((?:{between}\d+\b)+)", text)
+    return [(paper, re.findall(r"\d+", numbers)) for paper, numbers in found]
+
+
+def test_every_section_that_is_cited_exists() -> None:
+    count = 0
+    for folder in ("app", "solver", "tests"):
+        for path in (ROOT / folder).rglob("*"):
+            if path.suffix not in (".py", ".md", ".toml", ".html"):
+                continue
+            for name, numbers in citations(path):
+                paper = CITED.get(name, ROOT / name)
+                assert paper.exists(), (path, name)
+                known = {heading.split(".")[0] for heading in headings(paper)}
+                assert set(numbers) <= known, (path, name)
+                count += len(numbers)
+    assert count > 40
+
+
+def test_every_module_of_the_engine_is_named_once_in_its_map() -> None:
+    text = ENGINE.read_text(encoding="utf-8")
+    _, _, section = text.partition("## What is where")
+    section = section.partition("\n[How to add](EXTENDING.md)")[0]
+    named = re.findall(r"`([\w/]+\.py)`", section)
+    modules = [
+        str(path.relative_to(ENGINE.parent))
+        for path in ENGINE.parent.rglob("*.py")
+        if path.name != "__init__.py" and path.parent.name != "examples"
+    ]
+    assert sorted(named) == sorted(modules)
+
+
+def test_mathematics_and_map_share_one_numbering() -> None:
+    numbers = [
+        int(heading.split(".")[0])
+        for paper in (MATHEMATICS, ENGINE)
+        for heading in headings(paper)
+        if heading[0].isdigit()
+    ]
+    assert sorted(numbers) == list(range(1, len(numbers) + 1))
