@@ -204,6 +204,13 @@ def test_the_command_runs_a_scene_and_lists_the_page_among_its_own(image, tmp_pa
     assert "serve the page" in run(image, tmp_path, "slipfront", "--help").stdout
 
 
+def test_an_example_is_written_and_runs(image, tmp_path):
+    done = run(image, tmp_path, "slipfront", "example", "two_bricks")
+    assert done.returncode == 0, done.stderr
+    done = run(image, tmp_path, "python", "two_bricks.py")
+    assert "certified: True" in done.stdout, done.stderr
+
+
 def test_a_program_outside_the_tree_solves_a_problem_of_its_own(image, tmp_path):
     folder, _ = image
     done = run(image, tmp_path, "python", "-c", PROGRAM)

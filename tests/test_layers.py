@@ -13,6 +13,7 @@ import pytest
 from solver.scenes import CATALOGUE
 
 ROOT = Path(__file__).resolve().parents[1]
+EXAMPLES = ROOT / "solver" / "examples"
 LAYERS = [
     "arrays",
     "refusal",
@@ -40,11 +41,16 @@ others are above, and in no worker."""
 
 
 def modules(package):
-    """Path of every module of a package, by its full name."""
+    """Path of every module of a package, by its full name.
+
+    The scripts of `solver/examples` are no modules: they are written beside a user, may
+    import Panel, and nothing imports them.
+    """
     found = {}
     for path in sorted((ROOT / package).rglob("*.py")):
         name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
-        found[name.removesuffix(".__init__")] = path
+        if path.parent != EXAMPLES:
+            found[name.removesuffix(".__init__")] = path
     return found
 
 
@@ -171,3 +177,9 @@ def test_scenes_are_reached_by_the_catalogue_alone():
     scenes = {f"solver.scenes.{scene}" for scene in CATALOGUE}
     for name in EVERY:
         assert name.startswith("solver.scenes") or not imports(name) & scenes, name
+
+
+def test_examples_are_scripts_that_nothing_imports():
+    assert not (EXAMPLES / "__init__.py").exists()
+    for name in EVERY:
+        assert not any(other.startswith("solver.examples") for other in imports(name))

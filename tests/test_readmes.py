@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
+from benchmarks.draw_architecture import main as main_of_picture
 from packaging.specifiers import SpecifierSet
 
 from solver.commands.cli import main
@@ -14,14 +16,20 @@ from solver.commands.cli import main
 ROOT = Path(__file__).resolve().parents[1]
 FRONT = ROOT / "README.md"
 PAGE = ROOT / "app" / "README.md"
-MATHEMATICS = ROOT / "solver" / "README.md"
+ENGINE = ROOT / "solver" / "README.md"
+MATHEMATICS = ROOT / "solver" / "MATHEMATICS.md"
 MEASUREMENTS = ROOT / "solver" / "study" / "README.md"
 LESSONS = ROOT / "app" / "lessons" / "README.md"
 SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
 CASES = ROOT / "solver" / "study" / "cases" / "README.md"
 METHOD = ROOT / "solver" / "latin" / "README.md"
-READMES = [FRONT, PAGE, LESSONS, CASES, MATHEMATICS, METHOD, MEASUREMENTS, SWEEPS]
+EXTENDING = ROOT / "solver" / "EXTENDING.md"
+READMES = [FRONT, PAGE, LESSONS, CASES, ENGINE, METHOD, MEASUREMENTS, SWEEPS]
+PAPERS = [*READMES, MATHEMATICS, EXTENDING]
+CITED = {"MATHEMATICS.md": MATHEMATICS}
+"""Papers that are cited by their name alone; others by their path."""
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
+PAPER_NAMES = [str(paper.relative_to(ROOT)) for paper in PAPERS]
 
 
 def words(path: Path) -> str:
@@ -45,7 +53,7 @@ def paths_in(readme: Path) -> set[str]:
     return {*files, *re.findall(r"`([\w./-]+/)`", text)}
 
 
-@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+@pytest.mark.parametrize("readme", PAPERS, ids=PAPER_NAMES)
 def test_every_path_that_is_named_exists(readme: Path) -> None:
     gone = [
         name
@@ -64,7 +72,7 @@ def test_every_program_runs(readme: Path, capsys: pytest.CaptureFixture[str]) ->
         assert "converged" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+@pytest.mark.parametrize("readme", PAPERS, ids=PAPER_NAMES)
 def test_every_link_leads_somewhere(readme: Path) -> None:
     for target in re.findall(r"\]\(([^)]+)\)", readme.read_text(encoding="utf-8")):
         if target.startswith("http"):
@@ -78,7 +86,7 @@ def test_every_link_leads_somewhere(readme: Path) -> None:
         assert not place or place in map(anchor, headings(page)), target
 
 
-@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+@pytest.mark.parametrize("readme", PAPERS, ids=PAPER_NAMES)
 def test_every_command_that_is_named_is_one(
     readme: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -114,3 +122,71 @@ def test_the_container_has_one_of_them() -> None:
         r"^FROM python:(3\.\d+)", (ROOT / "Dockerfile").read_text(), re.M
     )
     assert version in PROMISED
+
+
+def test_the_version_is_one() -> None:
+    version = PROJECT["project"]["version"]
+    text = FRONT.read_text(encoding="utf-8")
+    assert f"Slipfront, version {version}," in text
+    _, _, changes = text.partition("## Changes")
+    assert re.findall(r"^\*\*(.*)\*\*$", changes, re.MULTILINE)[0] == version
+
+
+def test_the_front_is_short() -> None:
+    assert len(FRONT.read_text(encoding="utf-8").split()) < 2500
+
+
+def test_the_picture_of_the_rooms_names_every_package(tmp_path: Path) -> None:
+    main_of_picture(tmp_path / "rooms.svg")
+    for picture in (tmp_path / "rooms.svg", ROOT / "static" / "architecture.svg"):
+        drawn = ElementTree.fromstring(picture.read_text(encoding="utf-8"))
+        words = set(re.findall(r"\w+", " ".join(drawn.itertext())))
+        for package in ("solver", "app"):
+            for room in (ROOT / package).rglob("__init__.py"):
+                assert room.parent.name in words, room
+
+
+def citations(path: Path) -> list[tuple[str, list[str]]]:
+    """Papers that a file cites, each with the numbers of sections."""
+    text = path.read_text(encoding="utf-8")
+    between = r"(?:,[\s#]+(?:and[\s#]+)?|[\s#]+and[\s#]+)"
+    found = re.findall(rf"([\w./]+\.md)`?((?:{between}\d+\b)+)", text)
+    return [(paper, re.findall(r"\d+", numbers)) for paper, numbers in found]
+
+
+def test_every_section_that_is_cited_exists() -> None:
+    count = 0
+    for folder in ("app", "solver", "tests"):
+        for path in (ROOT / folder).rglob("*"):
+            if path.suffix not in (".py", ".md", ".toml", ".html"):
+                continue
+            for name, numbers in citations(path):
+                paper = CITED.get(name, ROOT / name)
+                assert paper.exists(), (path, name)
+                known = {heading.split(".")[0] for heading in headings(paper)}
+                assert set(numbers) <= known, (path, name)
+                count += len(numbers)
+    assert count > 40
+
+
+def test_every_module_of_the_engine_is_named_once_in_its_map() -> None:
+    text = ENGINE.read_text(encoding="utf-8")
+    _, _, section = text.partition("## What is where")
+    section = section.partition("\n[How to add](EXTENDING.md)")[0]
+    named = re.findall(r"`([\w/]+\.py)`", section)
+    modules = [
+        str(path.relative_to(ENGINE.parent))
+        for path in ENGINE.parent.rglob("*.py")
+        if path.name != "__init__.py" and path.parent.name != "examples"
+    ]
+    assert sorted(named) == sorted(modules)
+
+
+def test_mathematics_and_map_share_one_numbering() -> None:
+    numbers = [
+        int(heading.split(".")[0])
+        for paper in (MATHEMATICS, ENGINE)
+        for heading in headings(paper)
+        if heading[0].isdigit()
+    ]
+    assert sorted(numbers) == list(range(1, len(numbers) + 1))

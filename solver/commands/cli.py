@@ -24,6 +24,7 @@ from solver.commands.console import (
     refusing,
     warn,
 )
+from solver.commands.examples import add_examples
 from solver.commands.reports import add_reports
 from solver.commands.runs import add_checks
 from solver.discrete import Problem
@@ -122,6 +123,7 @@ def _parser() -> argparse.ArgumentParser:
     settings.add_argument("scene")
     add_reports(commands)
     add_checks(commands)
+    add_examples(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone
             further.load()(commands)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import param
@@ -169,6 +169,7 @@ class BarSettings(Settings):
     )
     kind = "rod"
     CHIEF = ("load", "peak", "right_displacement")
+    SMALL: ClassVar = {"elements": 20, "instants": 21, "substructures": 4}
     GROWS = ("elements",)
 
     peak, load = shared.sized_path(

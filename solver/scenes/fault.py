@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -141,6 +142,7 @@ class FaultSettings(PlaneSettings):
         load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
     )
     CHIEF = ("injection_load", "overpressure", "shear_stress")
+    SMALL: ClassVar = {"elements": 16, "elements_up": 8, "instants": 13}
     opens = False
     loop_is_over_displacement = False
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -38,6 +39,7 @@ class InclineSettings(PlaneSettings):
         load="M27 12L30 13L30 8L35 11L35 6L40 9L46 6M20 15V26M17 23L20 26L23 23",
     )
     CHIEF = ("slope_load", "slope")
+    SMALL: ClassVar = {"elements": 12, "elements_up": 6, "instants": 13}
     loop_is_over_displacement = False
 
     slope, slope_load = shared.sized_path(

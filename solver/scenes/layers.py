@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -42,6 +43,7 @@ class LayersSettings(PlaneSettings):
         load="M44 6V20M40 16L44 20L48 16",
     )
     CHIEF = ("bend_load", "deflection", "moment", "force")
+    SMALL: ClassVar = {"elements": 16, "layers": 2, "instants": 13}
     GROWS = ("layers",)
     across = "thickness"
 

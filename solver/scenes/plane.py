@@ -39,6 +39,7 @@ class PlaneSettings(Settings):
     across = "height"
     PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
     MESH = ("elements", "elements_up")
+    SMALL: ClassVar = {"elements": 16, "elements_up": 6, "instants": 13}
     GROWS = (*MESH, *PARTS)
     kind = "plane"
     opens = True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -63,6 +63,14 @@ class RopeSettings(Settings):
     )
     kind = "helices"
     CHIEF = ("construction", "layers", "bending", "load", "curvature", "tension")
+    SMALL: ClassVar = {
+        "layers": 1,
+        "length": 0.15,
+        "tension": 4e4,
+        "substructures": 2,
+        "elements": 10,
+        "instants": 13,
+    }
     ALSO_CHIEF = ("friction", "k_scale")
     GROWS = ("layers",)
     loop_is_over_displacement = False

@@ -36,6 +36,7 @@ class StrandSettings(Settings):
     )
     kind = "wires"
     CHIEF = ("load", "peak")
+    SMALL: ClassVar = {"elements": 10, "instants": 11}
     GROWS = ("wires",)
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
 

@@ -36,6 +36,14 @@ class WallSettings(PlaneSettings):
         load="M14 6H34M30 3L34 6L30 9",
     )
     CHIEF = ("top_load", "displacement", "traction", "pressure")
+    SMALL: ClassVar = {
+        "bricks": 3,
+        "courses": 3,
+        "elements": 4,
+        "elements_up": 2,
+        "instants": 13,
+        "displacement": 5e-05,
+    }
     ALSO_CHIEF = ("friction", "bricks", "courses", "multiscale")
     GROWS = ("bricks", "courses")
     has_joints = True

@@ -38,6 +38,8 @@ class Settings(LoadSettings):
     length: param.Number[float]
     friction: param.Number[float]
     """Every scene defines these, where it shows them."""
+    SMALL: ClassVar[Mapping[str, object]]
+    """Settings with which a run takes next to no time, for tests."""
 
     title: ClassVar[str]
     source: ClassVar[str]
