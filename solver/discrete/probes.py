@@ -108,7 +108,7 @@ class Reaction:
     """A weighted sum of the forces that hold degrees of freedom of given displacement.
 
     The holding forces are the forces of the elements there, less loads and the contact
-    forces of the same nodes (solver/README.md, 6).
+    forces of the same nodes (MATHEMATICS.md, 6).
 
     Attributes
     ----------

@@ -434,7 +434,7 @@ class Problem:
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces, and the macro forces from outside, scaled.
 
-        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; README,
+        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; MATHEMATICS.md,
         2).
         """
         parts = [part for law in self.interfaces.values() for part in law.macro_parts()]

@@ -1,4 +1,4 @@
-"""Indicators of an iterate, none of which is an error (solver/README.md, 4)."""
+"""Indicators of an iterate, none of which is an error (MATHEMATICS.md, 4)."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ structure counts as not moving."""
 
 
 def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
-    """Violation of the laws by W and F, whatever k (solver/README.md, 4).
+    """Violation of the laws by W and F, whatever k (MATHEMATICS.md, 4).
 
     Friction with bound q and slip increment v violates its law by q|v| + F v with F cut
     to |F| <= q, which is nowhere negative and zero exactly where Coulomb's law holds,

@@ -169,7 +169,7 @@ class Iterate:
 
     @cached_property
     def behaviour(self) -> float:
-        """The k-free indicator (solver/README.md, 4)."""
+        """The k-free indicator (MATHEMATICS.md, 4)."""
         return behaviour_of(
             self.problem, self.boundary_displacement, self.boundary_force
         )

@@ -1,4 +1,4 @@
-"""The LATIN iteration as a generator (paper, Fig. 1; solver/README.md, 2)."""
+"""The LATIN iteration as a generator (paper, Fig. 1; MATHEMATICS.md, 2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The LATIN method as a value made of parts (paper, Fig. 1; solver/README.md, 2)."""
+"""The LATIN method as a value made of parts (paper, Fig. 1; MATHEMATICS.md, 2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Linear laws: prescribed displacements, forces, glued cuts (solver/README.md, 2)."""
+"""Linear laws: prescribed displacements, forces, glued cuts (MATHEMATICS.md, 2)."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ class Perfect(Interface):
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Local stage in which both sides move by the mean of their z, weighted by k.
 
-        See solver/README.md, 2; `k` is that of all rows, (n_rows,).
+        See MATHEMATICS.md, 2; `k` is that of all rows, (n_rows,).
         """
         first = as_slice(self.first)
         second = as_slice(self.second)

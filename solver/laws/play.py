@@ -1,4 +1,4 @@
-"""The play operator: Coulomb friction pointwise, in closed form (solver/README.md, 2).
+"""The play operator: Coulomb friction pointwise, in closed form (MATHEMATICS.md, 2).
 
 A clip of a clip is a clip, so the recursion in time is an associative scan: blocks of
 instants are composed side by side. Where the reach changes with the slip that has gone
@@ -29,7 +29,7 @@ def play(target: Array, reach: Array) -> Array:
 
     Returns
     -------
-    Position with friction, shape (n_points, n_times), m (solver/README.md, 2).
+    Position with friction, shape (n_points, n_times), m (MATHEMATICS.md, 2).
     """
     if reach.ndim < target.ndim:
         reach = reach[:, None]

@@ -1,7 +1,7 @@
 """Stiffness beside an interface with friction, and the search direction k for it.
 
 Small k converges fast globally and slowly locally, large k the reverse
-(solver/README.md, 5).
+(MATHEMATICS.md, 5).
 """
 
 from __future__ import annotations

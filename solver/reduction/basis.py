@@ -1,6 +1,6 @@
 """A separated basis: space modes times time functions.
 
-(solver/README.md, 3; paper, problem 2.3.)
+(MATHEMATICS.md, 3; paper, problem 2.3.)
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 A slip front is no sum of a few products, but a fixed function of one product: as in the
 Front Transport Reduction of P. Krah and others (J. Sci. Comput. 96, 28, 2023). The
 function here is the clip of the local stage; its stops are the bound, and the friction
-that the last reversal of the load left behind (solver/README.md, 16).
+that the last reversal of the load left behind (MATHEMATICS.md, 16).
 """
 
 from __future__ import annotations

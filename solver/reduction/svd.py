@@ -130,7 +130,7 @@ def decompositions(
 def front_decay(count: int) -> Array:
     """Decay sigma_n/sigma_1 of a front of constant speed, shape (count,).
 
-    (solver/README.md, 3.)
+    (MATHEMATICS.md, 3.)
     """
     return np.asarray(1.0 / (2.0 * np.arange(1, count + 1) - 1.0))
 

@@ -3,7 +3,7 @@
 With J the jumps of the displacement (above minus below), the displacement u under
 contact forces f is that of K u = F + J' f. It is u = T j + Z a
 (`solver.reference.glued`): with jumps j, and a of the structure glued at its contacts.
-So S jump = f + q (solver/README.md, 6), if only the structure, glued at its contacts,
+So S jump = f + q (MATHEMATICS.md, 6), if only the structure, glued at its contacts,
 is held. Jumps and forces are stacked as `Problem.sum_of_contact` says.
 
 Three parts are kept apart, as they may differ by any number of digits:

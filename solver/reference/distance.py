@@ -1,4 +1,4 @@
-"""Errors: how far fields are from a reference (solver/README.md, 4), and from their equations."""
+"""Errors: how far fields are from a reference (MATHEMATICS.md, 4), and from their equations."""
 
 from __future__ import annotations
 

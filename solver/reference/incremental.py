@@ -1,7 +1,7 @@
 """The incremental reference: friction on the assembled structure, instant by instant.
 
 Over one instant the displacement increment v minimises a strictly convex function
-(solver/README.md, 6),
+(MATHEMATICS.md, 6),
 
     phi(v) = 1/2 v' K v - g' v + sum r |v|,
 

@@ -5,14 +5,14 @@ friction bound coupled to the normal force), and corrects the states by the jump
 forces of its solution (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
 The solution is exact once the states repeat. The bound (r + mu f_n) g(s) of a slip s is
 taken by its tangent, which adds its growth per slip to the stiffness where contacts
-slip (solver/README.md, 14).
+slip (MATHEMATICS.md, 14).
 
 From a distant guess the states may cycle, above all where bodies are held by contact
 alone, as they may move without limit. With springs at all jumps, relaxed at the last
 solution, every body is held: that is the proximal point method (Rockafellar, SIAM J.
 Control Optim. 14, 1976). Its steps are short, and where they come to rest the springs
 carry nothing. The springs are softened from step to step, until the states hold without
-them (solver/README.md, 6).
+them (MATHEMATICS.md, 6).
 """
 
 from __future__ import annotations

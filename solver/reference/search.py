@@ -1,7 +1,7 @@
 """The minimum over one instant of rods on supports with a known bound.
 
 With the stiffness K of rods one after the other, which is tridiagonal, and the bounds
-r, the increment v minimises (solver/README.md, 6 and 14)
+r, the increment v minimises (MATHEMATICS.md, 6 and 14)
 
     phi(v) = 1/2 v' K v - g' v + sum r |v|.
 

@@ -3,7 +3,7 @@
 **Known bounds** (A. Klarbring, M. Ciavarella, J. R. Barber, Shakedown in elastic
 contact problems with Coulomb friction, Int. J. Solids Struct. 44, 2007): slip that
 stays leaves forces behind that keep all others within the bound b at all instants
-(solver/README.md, 15). The matrix from slip to these is regular, so that they may be
+(MATHEMATICS.md, 15). The matrix from slip to these is regular, so that they may be
 any. The limit holds wherever the slip begins.
 
 **In the plane** slip changes what presses. With all contacts closed their forces follow

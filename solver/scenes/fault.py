@@ -1,7 +1,7 @@
 """A fault with a fluid that flows in, reduces friction, and drives a front of slip.
 
 The strength of the fault is mu (sigma - p), with p the pressure of the fluid, which
-spreads along it by diffusion (solver/README.md, 17).
+spreads along it by diffusion (MATHEMATICS.md, 17).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A block on a slope that rises and falls, with a spring uphill (solver/README.md, 9).
+"""A block on a slope that rises and falls, with a spring uphill (MATHEMATICS.md, 9).
 
 The block is drawn as it lies on the slope: x runs uphill, and its weight turns instead.
 The spring pulls at the foot of the uphill side once it has slid down by the slack.

@@ -1,4 +1,4 @@
-"""A strand of helical wires, stretched and bent (solver/README.md, 6)."""
+"""A strand of helical wires, stretched and bent (MATHEMATICS.md, 6)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parallel elastic wires with friction, one of them broken (solver/README.md, 6)."""
+"""Parallel elastic wires with friction, one of them broken (MATHEMATICS.md, 6)."""
 
 from __future__ import annotations
 

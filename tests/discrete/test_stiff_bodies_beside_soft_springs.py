@@ -1,6 +1,6 @@
 """A stiff body beside a soft spring, and the other way round: rigid motion hides no deformation.
 
-Balance and closed forms: solver/README.md, 9.
+Balance and closed forms: MATHEMATICS.md, 9.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Rods whose friction falls with slip are solved wherever there is an equilibrium (README, 14).
+"""Softening rods are solved wherever there is an equilibrium (MATHEMATICS.md, 14).
 
 Whether there is one is found apart from the solver: by trying all statuses of a short
 rod.

@@ -1,4 +1,4 @@
-"""A rod with ends of its own, heat, and a support that moves (solver/README.md, 8)."""
+"""A rod with ends of its own, heat, and a support that moves (MATHEMATICS.md, 8)."""
 
 import numpy as np
 import pytest

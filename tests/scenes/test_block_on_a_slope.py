@@ -1,6 +1,6 @@
 """A block on a slope sticks, slides into its spring, comes back late, and tips.
 
-Closed forms: solver/README.md, 9.
+Closed forms: MATHEMATICS.md, 9.
 """
 
 from __future__ import annotations

@@ -185,5 +185,5 @@ def test_the_work_of_a_cycle_is_stored_or_dissipated(change):
     )
     if scene.wires == 2:
         # Each side of the break is a friction bar, whose cycles are closed
-        # (solver/README.md, 6).
+        # (MATHEMATICS.md, 6).
         assert stored[second] == pytest.approx(stored[first], abs=1e-6 * dissipated)

@@ -1,4 +1,4 @@
-"""Contact that gives way before it slips: closed forms, every scene (solver/README.md, 8)."""
+"""Contact that gives way before it slips: closed forms, every scene (MATHEMATICS.md, 8)."""
 
 from __future__ import annotations
 

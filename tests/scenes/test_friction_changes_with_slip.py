@@ -1,4 +1,4 @@
-"""Friction that hardens, softens, is cohesive or capped (solver/README.md, 8 and 14)."""
+"""Friction that hardens, softens, is cohesive or capped (MATHEMATICS.md, 8 and 14)."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class CutRods:
     """Parallel rods with the same cuts, ends, elements and instants.
 
     Lengths are scaled by the longest rod, forces by ES of the stiffest
-    (solver/README.md, 1).
+    (MATHEMATICS.md, 1).
 
     Each rod rubs on a support of its own, or on the rods before and behind it; `names`
     are the names of these interfaces, `places` the positions of the nodes of each rod,

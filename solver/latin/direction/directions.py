@@ -28,7 +28,7 @@ than 300 with 1.1 (measured).
 
 @dataclass(frozen=True)
 class SearchDirection(ABC):
-    """Rule for k, with a factor on it (solver/README.md, 5).
+    """Rule for k, with a factor on it (MATHEMATICS.md, 5).
 
     Attributes
     ----------

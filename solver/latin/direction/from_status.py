@@ -1,4 +1,4 @@
-"""Search direction k that follows the contact status (solver/README.md, 5)."""
+"""Search direction k that follows the contact status (MATHEMATICS.md, 5)."""
 
 from __future__ import annotations
 

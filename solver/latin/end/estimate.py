@@ -1,4 +1,4 @@
-"""Error estimate of the contact force, without a reference (solver/README.md, 7)."""
+"""Error estimate of the contact force, without a reference (MATHEMATICS.md, 7)."""
 
 from __future__ import annotations
 

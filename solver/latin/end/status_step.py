@@ -4,7 +4,7 @@ The statuses of an iterate make the problem linear, instant after instant. Statu
 the linear solution shows to be wrong are corrected where they stand: a Newton method
 that begins where LATIN ends. If statuses and solution agree at every instant, all laws
 and equilibrium hold. Then the solution is that of the discrete problem up to rounding,
-whatever k and the method were, and is called certified (solver/README.md, 7).
+whatever k and the method were, and is called certified (MATHEMATICS.md, 7).
 """
 
 from __future__ import annotations

@@ -360,7 +360,7 @@ class StopState:
 
         That is the k-free indicator, or the distance to a certified solution. The LATIN
         indicator alone can be fooled: a search direction that is far from the stiffness
-        in play makes it as small as one likes (solver/README.md, 4). The k-free
+        in play makes it as small as one likes (MATHEMATICS.md, 4). The k-free
         indicator is relative to the contact forces, which vanish where all contacts
         open.
         """

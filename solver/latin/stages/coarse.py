@@ -23,7 +23,7 @@ class CoarseProblem:
 
     F = (k - k H k)(y + W~) - k W_f for a target y, and P^T F = P^T F_d fixes w~: one
     small system on the whole structure, factored once, solved for all instants
-    (solver/README.md, 2). The coarse problem reads and changes the targets of its
+    (MATHEMATICS.md, 2). The coarse problem reads and changes the targets of its
     groups, at the rows that carry macro quantities. The members of a group share the
     part of P that they see, so their macro forces are one product.
     """

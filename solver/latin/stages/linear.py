@@ -30,7 +30,7 @@ class LinearStage:
     """Elasticity along the search direction E-, factored for one problem and one k.
 
     With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1
-    B^T and W_f comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2).
+    B^T and W_f comes from body forces; then W - F/k = 2 W - y (MATHEMATICS.md, 2).
     The state of the stage is y: relaxation mixes y, and everything else follows from
     it. The groups hold y, in full, block by block of instants, or on separated bases.
 

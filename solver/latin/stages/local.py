@@ -14,7 +14,7 @@ class LocalStage:
     """Interface laws along the search direction E+, ready for one problem and one k.
 
     The local stage reads z = W - F/k of the linear stage alone, and its result is W^ +
-    F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together. Laws
+    F^/k = 2 W^ - z (MATHEMATICS.md, 2). Laws of one kind are applied together. Laws
     that are local in time are applied block by block of instants.
 
     Parameters

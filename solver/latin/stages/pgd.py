@@ -1,4 +1,4 @@
-"""Linear stage on separated bases (paper, section 2.2; solver/README.md, 3).
+"""Linear stage on separated bases (paper, section 2.2; MATHEMATICS.md, 3).
 
 With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G =
 k (u - Z) (paper, eq. 3), whose G + k Z is k u. So the modes meet the search direction

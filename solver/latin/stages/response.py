@@ -28,7 +28,7 @@ class Response:
     """Boundary response H k of a substructure, by a sparse solution for every column.
 
     H k y is the boundary displacement under boundary forces k y, with k as springs to
-    rest (solver/README.md, 2).
+    rest (MATHEMATICS.md, 2).
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ A rigid motion costs no force, so the linear stage leaves it free and E+ alone h
 with all contacts slipping, an iteration moves the body by about (spring over k) of the
 distance that is missing. So here k is taken as zero along that motion: at every instant
 the local stage shifts the whole body to where its own forces and the load balance
-(solver/README.md, 2). What remains is the same iteration between both stages, for the
+(MATHEMATICS.md, 2). What remains is the same iteration between both stages, for the
 deformation, whatever the spring.
 """
 

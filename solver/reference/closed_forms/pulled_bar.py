@@ -1,4 +1,4 @@
-"""Closed forms: a clamped bar pulled over its support, a broken wire (solver/README.md, 6, 8, 14).
+"""Closed forms: a clamped bar pulled over its support, a broken wire (MATHEMATICS.md, 6, 8, 14).
 
 Under Coulomb friction sliding needs the whole bound between a section and the free end,
 R(x) = integral of mu p from x to L. So the normal force N(x, t) follows the load F(t)
@@ -168,7 +168,7 @@ def pulled_changing_bar(
 ) -> float:
     """End displacement where friction changes with slip, under a force grown from zero, m.
 
-    Before any point has slipped as far as its friction changes (solver/README.md, 14).
+    Before any point has slipped as far as its friction changes (MATHEMATICS.md, 14).
 
     Parameters
     ----------

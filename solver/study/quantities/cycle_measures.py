@@ -106,7 +106,7 @@ def _free_lengths(run: FinishedRun) -> Array:
 def shakedown_factor(run: FinishedRun) -> float:
     """Largest factor on the swing about the mean of the last cycle that shakes down.
 
-    With that factor slip can still cease (`solver/README.md`, 15). NaN where no limit
+    With that factor slip can still cease (MATHEMATICS.md, 15). NaN where no limit
     is known, or where not even the mean load keeps all contacts closed.
     """
     try:

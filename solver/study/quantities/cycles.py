@@ -4,7 +4,7 @@ A cycle goes from one turning point of a load to the next but one, so that the f
 loading from rest is not part of a cycle. Slip ceases, dies out, goes to and fro, or
 goes on in one direction (J. R. Barber, Frictional systems subjected to oscillating
 loads, Ann. Solid Struct. Mech. 2, 2011). The fate is told only where the last three
-cycles agree on it (solver/README.md, 15).
+cycles agree on it (MATHEMATICS.md, 15).
 """
 
 from __future__ import annotations
