@@ -37,7 +37,8 @@ class Spectra(ExtraView):
 
     applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the axes, the curves of all substructures and their colour bar."""
         made = self.begin(
             ("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0)
         )
@@ -70,7 +71,8 @@ class ModePlot(ExtraView):
 
     needs = frozenset({"modes"})
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each mode, and the selected instant."""
         self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
         self.add("now", "VSpan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
@@ -127,7 +129,8 @@ class ClipErrors(ExtraView):
         )
     )
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each way to store the friction, and the size of the table."""
         made = self.begin(
             ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),

@@ -33,7 +33,8 @@ class ContactForce(View):
     name = "Contact force"
     needs = frozenset({"beside"})
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw curves of LATIN, the reference, the bound and what they are compared with."""
         made = self.begin(("x", "m"), ("force", "N/m"))
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)

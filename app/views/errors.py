@@ -57,7 +57,8 @@ class Convergence(ErrorPlot):
 
     name = "Convergence"
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each error and indicator of the history."""
         made = self.begin(
             ("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST)
         )
@@ -120,7 +121,8 @@ class ErrorTime(ErrorPlot):
 
     applies = staticmethod(has_reference)
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw curves of this run and of the ghost, and the reference's run time."""
         made = self.begin(
             ("run time, s",), ("force error",), x_axis_type="log", y_axis_type="log",
             x_range=(1e-3, 1.0), y_range=(LEAST_IN_TIME, MOST_IN_TIME),

@@ -45,7 +45,8 @@ class HysteresisLoop(View):
 
     applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each loop, and the selected instant."""
         made = self.begin()
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
@@ -127,7 +128,8 @@ class Cycles(CyclePlot):
 
     name = "Cycles"
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the loops of the cycles, and the selected instant."""
         self.begin()
         self.add("loops", "MultiLine", "xs ys color", width=2)
         self.add("now", "Scatter", color=ERROR, size=10)
@@ -159,7 +161,8 @@ class CycleEnergy(CyclePlot):
 
     name = "Energy a cycle"
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a bar for each cycle."""
         made = self.begin(("cycle",), ("energy", "J"))
         whole(made.xaxis[0])
         bars = self.add("bars", "VBar", "x top color", width=0.7)
@@ -190,7 +193,8 @@ class SlipPlane(View):
         )
     )
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the limits of slip of both points, and the path of their slip."""
         self.begin(("left slip", "m"), ("right slip", "m"))
         self.add("room", "Patch", color=DISPLACEMENT, alpha=0.3)
         self.add("left", color=LATIN, width=1.5)

@@ -44,7 +44,8 @@ class Scene(View):
     name = "Scene"
     is_bare = False
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw all layers of the picture, and follow the pointer and the figure's size."""
         made = self._made = bare(90, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
         self._draw(made)
         self._peaks: dict[str, float] = {}

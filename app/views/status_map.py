@@ -21,7 +21,8 @@ class StatusMap(View):
 
     applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the image of the status, with marks of what is selected."""
         made = self.begin(("x", "m"), ("t", "s"))
         made.center = []
         self.mark(KEYS)

@@ -29,7 +29,8 @@ class Timeline(View):
 
     name = "Load path"
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the paths, and follow the pointer along them."""
         made = self._made = bare(40, (-0.01, 1.01), (LOW, HIGH))
         self._number = 0
         axis = made.xaxis

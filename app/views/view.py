@@ -101,7 +101,7 @@ class View:
             "selection_policy": UnionRenderers(),
         }
         self._filter = AllIndices()
-        self._make()
+        self.make()
         size = self._type
         self._type = TEXT
         self.magnify(size)
@@ -134,7 +134,7 @@ class View:
         """Size of the type of what belongs to arrows, as CSS has it."""
         return WORDS if self._type == TEXT else self._type
 
-    def _make(self) -> None:
+    def make(self) -> None:
         """Make the figure, by `begin` and `add`."""
         raise NotImplementedError
 
