@@ -46,7 +46,7 @@ class Scene(View):
 
     def make(self) -> None:
         """Draw all layers of the picture, and follow the pointer and the figure's size."""
-        made = self._made = bare(90, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
+        made = self._figure = bare(90, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
         self._draw(made)
         self._peaks: dict[str, float] = {}
         self._factor: float | None = None

@@ -31,7 +31,7 @@ class Timeline(View):
 
     def make(self) -> None:
         """Draw the paths, and follow the pointer along them."""
-        made = self._made = bare(40, (-0.01, 1.01), (LOW, HIGH))
+        made = self._figure = bare(40, (-0.01, 1.01), (LOW, HIGH))
         self._number = 0
         axis = made.xaxis
         axis.major_label_standoff = 1
