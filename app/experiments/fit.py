@@ -65,19 +65,22 @@ class FitTab(CommandTab):
 
     @property
     def words(self) -> str:
-        """What it does, and what is missing."""
+        """Description of the fit, and of what is missing to start it."""
+        missing = ""
         if self.measured is None:
             missing = NO_LOOP
-        elif self.chosen.value:
-            missing = ""
-        else:
+        elif not self.chosen.value:
             missing = NO_SETTING
-        return f"Settings with which the run is as near to a measured loop as can be. {missing}"
+        return (
+            "Settings with which the run is as near to a measured loop as can be. "
+            f"{missing}"
+        )
 
     def show(self) -> None:
         """Offer the settings that can be fitted, and show the last fit."""
         settings = self.state.settings
-        titles = {title_of(settings.definitions()[n]): n for n in fittable(settings)}
+        definitions = settings.definitions()
+        titles = {title_of(definitions[name]): name for name in fittable(settings)}
         kept = [name for name in self.chosen.value if name in titles.values()]
         if self.chosen.options != titles or self.chosen.value != kept:
             self.chosen.param.update(options=titles, value=kept)
