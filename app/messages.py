@@ -1,4 +1,4 @@
-"""What the page and its worker process send each other."""
+"""Messages between the page and its worker process."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Needs:
-    """What frames shall carry: extras of views in sight, and quantities; for what is selected."""
+    """Extras of views in sight and quantities that frames shall carry, and the selection."""
 
     extras: frozenset[str] = frozenset()
     interface: str = ""

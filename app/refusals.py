@@ -20,7 +20,7 @@ NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 def message_of(
     refusal: RefusedError, settings: Settings, name: str = "", value: Any = None
 ) -> str:
-    """What was refused, why, and what is allowed, in a sentence.
+    """A sentence on a refusal: the setting, the value, the reason, the allowed values.
 
     Where the setting `name` was to change to `value`, another one may be refused.
     """
@@ -67,7 +67,7 @@ def _in_unit(text: str, si: str, unit: Unit) -> str:
 
 
 def amounts_in_titles(settings: Settings, text: str) -> str:
-    """A text whose settings with an amount, as in traction = 2e5 Pa, are as their fields say it."""
+    """A text whose settings with amounts, as traction = 2e5 Pa, are in the units of fields."""
     definitions = settings.definitions()
 
     def said(match: re.Match[str]) -> str:
@@ -102,7 +102,7 @@ def _in_titles(settings: Settings, text: str) -> str:
 
 
 def _written(value: object, unit: Unit | None = None) -> str:
-    """A value as one would say it, a number in a unit."""
+    """A value as text; a number in a unit."""
     if isinstance(value, bool):
         return "on" if value else "off"
     if isinstance(value, list | tuple):

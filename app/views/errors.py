@@ -32,7 +32,7 @@ top."""
 
 
 class ErrorPlot(View):
-    """A plot of what the run has come to so far, also where an earlier iterate is gone back to."""
+    """A plot of the run so far, also while an earlier iterate is shown."""
 
     def _newest(self, frame: Frame) -> Frame:
         newest: Frame = self.state.newest or frame
@@ -46,14 +46,14 @@ class ErrorPlot(View):
         up: str,
         title: str = "",
     ) -> None:
-        """Draw a column of a history over another one, as far as both are positive and finite."""
+        """Draw a column of a history over another one where both are finite, the first positive."""
         x, y = (history.get(column, np.zeros(0)) for column in (across, up))
         shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
         self.draw(name, x[shown], y[shown], title)
 
 
 class Convergence(ErrorPlot):
-    """Error of the force bold, and indicators on an axis that does not flatten it."""
+    """Errors and indicators over iterations; the error of the force is bold."""
 
     name = "Convergence"
 
@@ -109,13 +109,13 @@ class Convergence(ErrorPlot):
 
 
 def _searched(frame: Frame) -> dict[str, Floats]:
-    """The history without the answer, which is no iteration."""
+    """The history without the answer, which is no iteration, shape (n_iterations,) each."""
     count = len(frame.history["iteration"]) - (1 if frame.is_answer else 0)
     return {name: values[:count] for name, values in frame.history.items()}
 
 
 class ErrorTime(ErrorPlot):
-    """Error over the time of the method, set-up included, by which settings are compared."""
+    """Error over the run time of the method, set-up included, to compare settings."""
 
     name = "Error over run time"
 

@@ -1,4 +1,4 @@
-"""Loops: force over displacement, cycle by cycle, and the slip of a point over that of another."""
+"""Loops: force over displacement, by cycles, and the slip of one point over another's."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class HysteresisLoop(View):
 def _beside(
     brought: comparison.OtherResults | MeasuredLoop | None, frame: Frame
 ) -> tuple[Array, Array]:
-    """A measured loop; or another program's displacement of the end, under the run's load."""
+    """A measured loop, or another program's loop under the run's load, (n,) each, m and N."""
     if isinstance(brought, MeasuredLoop):
         return brought.displacement, brought.force
     if brought is None or brought.quantity != comparison.DISPLACEMENT:
@@ -105,7 +105,7 @@ def _beside(
 
 
 class CyclePlot(ExtraView):
-    """A plot of what cycles of the load do."""
+    """A plot of the cycles of the load."""
 
     needs = frozenset({"cycles"})
 
@@ -114,7 +114,7 @@ class CyclePlot(ExtraView):
     )
 
     def _add_legend(self) -> None:
-        """Name the first and the last cycle, and what becomes of slip."""
+        """Add a legend of the first and the last cycle, and of how slip goes on."""
         self.mark({"first": SCALE[0], "last": SCALE[-1], "text": UNSEEN})
         self.legend(first="cycle 1", last="last", text="text")
 
@@ -124,7 +124,7 @@ class CyclePlot(ExtraView):
 
 
 class Cycles(CyclePlot):
-    """Force over displacement from the first cycle to the last, and what becomes of slip."""
+    """Force over displacement from the first cycle to the last."""
 
     name = "Cycles"
 
@@ -181,7 +181,7 @@ class CycleEnergy(CyclePlot):
 
 
 class SlipPlane(View):
-    """Where two points have slipped, and the lines between which both stick."""
+    """Slips of two points, and the lines between which both stick."""
 
     name = "Slip plane"
     needs = frozenset({"slips"})
@@ -208,7 +208,7 @@ class SlipPlane(View):
         )  # fmt: skip
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show where both have slipped so far, and the lines at which they slip now."""
+        """Show the slips of both points so far, and the lines at which they slip now."""
         slips = frame.extras.get("slips", {})
         column = frame.run.column(selection.phase)
         self.show("held", slips is None)

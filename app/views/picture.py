@@ -1,4 +1,4 @@
-"""One picture of the scene, as columns of the sources of its figure, px."""
+"""A picture of the scene, as columns of the sources of its figure, px."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Views of wires: where a strand is cut, and the force along rods and wires."""
+"""Views of wires: a section of a strand, and the axial force along rods and wires."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 
 
 class WireSection(ExtraView):
-    """All wires where a bent strand is cut, coloured by stress and ringed where they slip.
+    """Section of a bent strand: wires are coloured by stress and ringed where they slip.
 
     A tap selects a wire.
     """

@@ -1,4 +1,4 @@
-"""The load path as the time line: one drags along it to choose the instant."""
+"""The load path as a time line, along which the instant is dragged."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HIGH = 2.7
 
 
 class Timeline(View):
-    """What is given over time, each path over its largest value, and the selected instant."""
+    """Load paths over time, each over its largest value, and the selected instant."""
 
     name = "Load path"
 
@@ -93,7 +93,7 @@ class Timeline(View):
 
 
 def paths_of(run: Run) -> list[tuple[str, Array]]:
-    """What is given over time, first what changes: its name with its range, and values."""
+    """Title with range, and values, (n_instants,), of each load path, constant ones last."""
     described = run.geometry.description
     given: list[tuple[str, Array, Unit]] = []
     if described.tilt is not None:

@@ -1,4 +1,4 @@
-"""What a process does that makes a report: a command of the command line, in a folder."""
+"""Process of a report: runs a command of the command line in a folder."""
 
 from __future__ import annotations
 

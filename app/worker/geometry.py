@@ -1,4 +1,4 @@
-"""From a problem to the bodies that are drawn, and how they move."""
+"""Geometry of the drawn bodies of a problem, and their displacements."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ Extras = dict[str, Callable[[Iterate, Needs], Any]]
 
 
 def floats(values: NDArray[np.generic]) -> Floats:
-    """Numbers as frames have them."""
+    """Arrays as frames have them, of the same shape."""
     return values.astype(np.float32, order="C")
 
 
 def thinned(size: int, most: int) -> Indices:
-    """Indices that stand for a long axis, first and last included."""
+    """Indices of a thinned axis, first and last included, at most `most`."""
     return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(np.intp))
 
 
@@ -94,7 +94,7 @@ class Drawn:
         )
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How the bodies have moved."""
+        """Displacements of nodes and points, and the status, at the shown instants."""
         moved = iterate.problem.at_rest(iterate.displacement)[self._dofs][
             :, :, self._columns
         ]
@@ -107,7 +107,7 @@ class Drawn:
 
 
 class DrawnRods(Drawn):
-    """Rods as rectangles above each other; they rub between them, or on what is below."""
+    """Rods as rectangles above each other, with interfaces between them or at a support."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         description = settings.structure().described()
@@ -176,11 +176,11 @@ class DrawnRods(Drawn):
         }
 
     def _forces(self, iterate: Iterate) -> Array:
-        """Those in all elements, shape (n_elements, n_instants), N."""
+        """Axial forces in all elements, shape (n_elements, n_instants), N."""
         return self._force(iterate.displacement[:, self._columns])
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
-        """They move along themselves."""
+        """Displacement of the nodes, which move along the rods, m."""
         moved = iterate.problem.at_rest(iterate.displacement)
         along = moved[np.ix_(self._along, self._columns)]
         return floats(np.stack([along, np.zeros_like(along)], axis=1))
@@ -271,7 +271,7 @@ class DrawnMesh(Drawn):
         return {"lines": floats(np.stack(lines)), "forces": floats(np.stack(forces))}
 
     def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of the nodes, (n_nodes, 2), of that of degrees of freedom, (n_dofs,), m."""
+        """Displacement of nodes, (n_nodes, 2), m, from degrees of freedom, (n_dofs,), m."""
         moved, still = (
             self._inside.displacement(size * displacement[:, None], [0])
             for size in (1.0, 0.0)

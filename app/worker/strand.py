@@ -1,4 +1,4 @@
-"""A strand that is bent: as it is seen from the side, and what views of its wires need.
+"""A bent strand: its wires as seen from the side, and the extras of its views.
 
 From the side one sees the wires in front of its outer layer: one looks across the plane
 of bending onto the cylinder that they share. Each has its strip of it, and half of them
@@ -90,7 +90,7 @@ class DrawnRope:
         self.extras["section"] = self._section
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How the strand is bent, which is given, and where its wires slip."""
+        """The given bending of the strand, and the status of its wires."""
         status = (
             iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
         )
@@ -99,13 +99,13 @@ class DrawnRope:
         )
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
-        """Mean stress over the section of every wire."""
+        """Mean stress over the section of every wire, (n_quads, n_instants), Pa."""
         stress = wire_stresses(self._rope, iterate.displacement, self._columns)
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
     def _angle(self, wire: Array, place: Array) -> Array:
-        """Polar angle of outer wires by their number, and at places along the strand."""
+        """Polar angle of outer wires, rad, by their numbers and positions along the strand, m."""
         turned = place * np.tan(self._lay) / self._helix
         return np.asarray(2.0 * np.pi * wire / self._count + turned)
 
@@ -145,7 +145,7 @@ class DrawnRope:
         return wires, *self._points_at(wires, share), sides
 
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
-        """The nearest contact points, and their nodes, at shares of the length of wires."""
+        """Nearest contact points and their nodes, (n,), at shares of the length of wires, (n,)."""
         elements = self._rope.elements
         node = np.clip(
             np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1)
@@ -167,7 +167,7 @@ class DrawnRope:
         return rows[kept], heights[kept], wires, points, sides
 
     def _moved(self, rows: Indices, heights: Array) -> Floats:
-        """Displacement of heights at steps, (n, 2, n_instants): sections stay plane and normal."""
+        """Displacement of points at heights, (n, 2, n_instants), m: sections stay plane."""
         up, slope = self._bent
         return floats(
             np.stack(
@@ -177,7 +177,7 @@ class DrawnRope:
 
     @cached_property
     def _bent(self) -> tuple[Array, Array]:
-        """Height and slope of the axis, (n_steps, n_instants), from the clamp or the middle."""
+        """Height, m, and slope of the axis from clamp or middle, (n_steps, n_instants) each."""
         rope = self._rope
         z = self._z
         if rope.is_clamped:
@@ -197,7 +197,7 @@ class DrawnRope:
         return up, slope
 
     def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """Axial force in the selected wire, as in rods, and what it would be if nothing slipped."""
+        """Axial force in the selected wire as in rods, with that of a wire that sticks."""
         rope = self._rope
         columns = self._columns
         names = [wire.name for wire in rope.wires]
@@ -215,7 +215,7 @@ class DrawnRope:
         }
 
     def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """All wires that a section at the selected place cuts, or at the clamp; first the core.
+        """All wires in a section at the selected position, or at the clamp; the core first.
 
         "place" along the strand, m; "wires", the interface of each, -1 for the core,
         (n,); "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean
