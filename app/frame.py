@@ -145,7 +145,7 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One iterate of a run."""
+    """An iterate of a run, as views show it."""
 
     run: Run
     iteration: int
