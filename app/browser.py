@@ -142,7 +142,10 @@ class Display:
         self.pulse.sent += 1
 
     def _on_painted(self) -> None:
-        """Go on after a pause in which other pages can paint: all share the server's thread."""
+        """Go on after a pause in which other pages can paint.
+
+        All share the server's thread.
+        """
         pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
         if pause < SHORTEST:
             self._go_on()

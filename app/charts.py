@@ -368,7 +368,10 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
 
 
 def contours(chart: Map) -> list[dict[str, Any]]:
-    """Contour lines of a map at round values: "x" and "y", (n,) each, and the value "z"."""
+    """Contour lines of a map at round values.
+
+    "x" and "y", (n,) each, and the value "z".
+    """
     known = chart.z[np.isfinite(chart.z)]
     low = known.min(initial=np.inf)
     high = known.max(initial=-np.inf)

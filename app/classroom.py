@@ -86,7 +86,10 @@ class Classroom:
         self.notify()
 
     def _let_go(self, now: float) -> None:
-        """Keep a copy of the parts that followers show: the state would keep the whole page."""
+        """Keep a copy of the parts that followers show.
+
+        The state would keep the whole page.
+        """
         self.leader = None
         self._gone_at = now
         last = self.state
@@ -96,7 +99,10 @@ class Classroom:
         self.state.number = last.number
 
     def poll_for(self, member: ClassMember) -> Poll | None:
-        """Predictions of the class as one of its pages sees them; None without a question."""
+        """Predictions of the class as one of its pages sees them.
+
+        None without a question.
+        """
         leader = self.state
         if leader.lesson not in LESSONS or self.is_over:
             return None
@@ -115,7 +121,10 @@ class Classroom:
         )
 
     def notify(self) -> None:
-        """Have all pages show the present state; counts of another lesson are closed again."""
+        """Have all pages show the present state.
+
+        Counts of another lesson are closed again.
+        """
         if self.opened != self.state.lesson:
             self.opened = ""
         for member in self.members:
@@ -317,7 +326,10 @@ class ClassMember(param.Parameterized):
         return f"You follow class {room.code}. Change anything to go on by yourself."
 
     def _address(self) -> str:
-        """Part of the page's address: the code of the class, and for its leader the key."""
+        """Part of the page's address.
+
+        The code of the class, and for its leader the key.
+        """
         if self.room is None:
             return ""
         if self.leads:

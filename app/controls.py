@@ -1,4 +1,7 @@
-"""The controls at the side: a widget of Panel's for each setting, from its definition."""
+"""The controls at the side.
+
+A widget of Panel's for each setting, from its definition.
+"""
 
 from __future__ import annotations
 
@@ -142,7 +145,10 @@ class SettingControl:
         return slider
 
     def _to_slider(self, value: float) -> float:
-        """Position of a value on the slider: in the unit of the field, or its logarithm."""
+        """Position of a value on the slider.
+
+        In the unit of the field, or its logarithm.
+        """
         if self._is_logarithmic:
             return math.log10(max(value, 1e-300))
         return float(f"{value / self._unit.factor:.10g}")
@@ -300,7 +306,10 @@ class Controls:
         self.update()
 
     def update(self) -> None:
-        """Show the present values; with another scene build the controls of that scene."""
+        """Show the present values.
+
+        With another scene build the controls of that scene.
+        """
         settings = self._state.settings
         with pn.io.hold():
             if settings.scene != self._built:

@@ -128,7 +128,10 @@ class Run:
     """Whether nothing acts, so that nothing moves."""
 
     def interface(self, name: str) -> str:
-        """The interface of a name; by default the first, of wires the last: it slips most."""
+        """The interface of a name.
+
+        By default the first, of wires the last: it slips most.
+        """
         if name in self.interfaces:
             return name
         return list(self.interfaces)[-1 if self.settings.kind == "helices" else 0]
@@ -187,7 +190,10 @@ class Frame:
 
     @property
     def stage(self) -> tuple[int, bool, bool]:
-        """Number of the run, and whether it is compared and over; axes change with it."""
+        """Number of the run, and whether it is compared and over.
+
+        Axes change with it.
+        """
         return self.run.number, bool(self.run.reference), self.status is not None
 
     def last(self, name: str) -> float:
@@ -199,7 +205,10 @@ class Frame:
 
     @property
     def error(self) -> float:
-        """Relative error of the contact force; estimated where there is no reference."""
+        """Relative error of the contact force.
+
+        Estimated where there is no reference.
+        """
         measured = self.last("error_force")
         if np.isfinite(measured):
             return measured

@@ -93,7 +93,10 @@ class Live:
     # What changes within a hold is sent at once, and in this order.
     @pn.io.hold()
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
-        """Show the cards, or the plots of a lesson; hide texts that give its answer away."""
+        """Show the cards, or the plots of a lesson.
+
+        Hide texts that give its answer away.
+        """
         state = self.state
         self._cards = self._all
         if kinds is not None:

@@ -100,7 +100,10 @@ class Page:
         self._guide.show()
 
     def loaded(self) -> None:
-        """Show the figures once a browser is there; go on with the run, or follow a class."""
+        """Show the figures once a browser is there.
+
+        Go on with the run, or follow a class.
+        """
         self._supervisor.open()
         self._live.open(self._guide.kinds)
         if not self.state.room:
@@ -190,7 +193,10 @@ class Page:
         self._live.look()
 
     def _place(self) -> None:
-        """Put visible parts alone on the page: beside hidden ones figures are not painted."""
+        """Put visible parts alone on the page.
+
+        Beside hidden ones figures are not painted.
+        """
         # The text and the line of the class are appended, and put in front by the style
         # sheet: a column whose children change their order loses some of them.
         beside = [self._live.view]

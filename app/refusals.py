@@ -1,4 +1,7 @@
-"""Refusals in the words of the page: titles in place of names, values in the units of fields."""
+"""Refusals in the words of the page.
+
+Titles in place of names, values in the units of fields.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The server that pages come from: their number and address, compressed files, and the log."""
+"""The server that pages come from.
+
+Their number and address, compressed files, and the log.
+"""
 
 from __future__ import annotations
 

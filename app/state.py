@@ -1,4 +1,7 @@
-"""The state of a page: its settings, frames and selection, and the orders to its worker."""
+"""The state of a page.
+
+Its settings, frames and selection, and the orders to its worker.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,8 @@ from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
 
 LIMIT = 24_000_000
-"""Largest memory of the frames of a run, bytes; beyond, every other frame is dropped."""
+"""Largest memory of the frames of a run, bytes; beyond, every other frame is
+dropped."""
 SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings that show the search from its start, as a page begins."""
 ANSWER = {"start": "nested", "finish": "at-once"}
@@ -85,7 +89,10 @@ class History:
         return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
 
     def after(self, iteration: int) -> int:
-        """Number of the next kept iterate of the search; after the last, of the answer."""
+        """Number of the next kept iterate of the search.
+
+        After the last, of the answer.
+        """
         numbers = self._search()
         index = bisect_right(numbers, iteration)
         if index < len(numbers):
@@ -106,7 +113,10 @@ def default_settings(scene: str) -> Settings:
 
 
 class PageState(param.Parameterized):
-    """The state of a page, set by widgets, watched by views; `send` passes orders on."""
+    """The state of a page, set by widgets, watched by views.
+
+    `send` passes orders on.
+    """
 
     settings = param.ClassSelector(
         class_=Settings, allow_None=False, doc="Of the run, checked."
@@ -183,7 +193,10 @@ class PageState(param.Parameterized):
         self.param.watch(lambda event: self.send(Pace(PACES[event.new])), "pace")
 
     def change(self, **values: object) -> bool:
-        """Change settings and run them; a refused value sets `refusal` and nothing else."""
+        """Change settings and run them.
+
+        A refused value sets `refusal` and nothing else.
+        """
         settings = self.settings
         for name, value in values.items():
             try:
@@ -195,7 +208,10 @@ class PageState(param.Parameterized):
         return True
 
     def drag(self, name: str, value: float) -> None:
-        """Run the value of a dragged slider if it is allowed; only the answer is shown."""
+        """Run the value of a dragged slider if it is allowed.
+
+        Only the answer is shown.
+        """
         try:
             settings = self.settings.with_change(name, value)
         except RefusedError:
@@ -205,7 +221,10 @@ class PageState(param.Parameterized):
         self.param.update(refusal="", settings=settings)
 
     def release(self, name: str, value: float) -> None:
-        """Run the value at which a slider is released; if refused, the last allowed one."""
+        """Run the value at which a slider is released.
+
+        If refused, the last allowed one.
+        """
         self.change(**{name: value})
         if self.is_dragged:
             self.run()
@@ -246,7 +265,10 @@ class PageState(param.Parameterized):
 
     @property
     def is_asked(self) -> bool:
-        """Check whether a lesson's question is open: in a class until its leader goes on."""
+        """Check whether a lesson's question is open.
+
+        In a class until its leader goes on.
+        """
         is_answered = self.prediction is not None
         if self.poll is not None:
             is_answered = self.poll.is_answered
@@ -266,7 +288,10 @@ class PageState(param.Parameterized):
         self.send(Pace(PACES[self.pace]))
 
     def step(self) -> None:
-        """Do one iteration and wait; if an earlier iterate is shown, show the next one."""
+        """Do one iteration and wait.
+
+        If an earlier iterate is shown, show the next one.
+        """
         shown = self.frame
         newest = self.newest
         if shown is not None and newest is not None and shown is not newest:

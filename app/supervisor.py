@@ -1,4 +1,7 @@
-"""The supervisor of a page's worker: starts it, and again when it ends, hangs or sticks."""
+"""The supervisor of a page's worker.
+
+Starts it, and again when it ends, hangs or sticks.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Buttons and sliders of a run: start, pause, step; pace; iterate; play through time."""
+"""Buttons and sliders of a run: start, pause, step.
+
+Pace; iterate; play through time.
+"""
 
 from __future__ import annotations
 
@@ -248,7 +251,10 @@ class Transport:
         self._state.change(**known(self._state.settings, values))
 
     def _show(self) -> None:
-        """Show the state of the run, but not while a slider is dragged: it changes at once."""
+        """Show the state of the run, but not while a slider is dragged.
+
+        It changes at once.
+        """
         state = self._state
         if state.is_dragged:
             return
@@ -287,7 +293,10 @@ class Transport:
 
     @property
     def _last(self) -> int:
-        """Number of the newest iterate; an answer follows the last iterate of the search."""
+        """Number of the newest iterate.
+
+        An answer follows the last iterate of the search.
+        """
         newest = self._state.newest
         if newest is None:
             return 0

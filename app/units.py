@@ -1,4 +1,7 @@
-"""Units that values are read in: each setting, axis and figure keeps one, chosen once."""
+"""Units that values are read in.
+
+Each setting, axis and figure keeps one, chosen once.
+"""
 
 from __future__ import annotations
 

@@ -55,7 +55,10 @@ class FitTab(CommandTab):
 
     @property
     def command(self) -> Command | None:
-        """The fit of the ticked settings to the loop; None without settings or a loop."""
+        """The fit of the ticked settings to the loop.
+
+        None without settings or a loop.
+        """
         names = ",".join(self.chosen.value)
         loop = self.measured
         if loop is None or not names:
@@ -105,7 +108,10 @@ class FitTab(CommandTab):
             self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
-        """The measured loop, and the nearest run so far; None without a measured loop."""
+        """The measured loop, and the nearest run so far.
+
+        None without a measured loop.
+        """
         measured = self.measured
         if measured is None:
             return None

@@ -1,4 +1,7 @@
-"""Long work of pages: commands, one at a time for all pages, and sweeps, side by side."""
+"""Long work of pages.
+
+Commands, one at a time for all pages, and sweeps, side by side.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Questions of the tab What if: a quantity over one or two settings, and their fields."""
+"""Questions of the tab What if.
+
+A quantity over one or two settings, and their fields.
+"""
 
 from __future__ import annotations
 

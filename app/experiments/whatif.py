@@ -35,7 +35,10 @@ SCALES = {"automatic": None, "linear": False, "logarithmic": True}
 
 
 class WhatIf:
-    """The tab What if; the state has the question, and the settings that do not vary."""
+    """The tab What if.
+
+    The state has the question, and the settings that do not vary.
+    """
 
     def __init__(self, state: PageState) -> None:
         self.state = state

@@ -60,7 +60,8 @@ PAGE = """<!DOCTYPE html>
 <body>{% from macros import embed %}{{ embed(docs[0].roots[0]) }}{{ plot_script }}</body>
 </html>
 """
-"""Template of `file_html`: in its own, Panel has a page load scripts from the network."""
+"""Template of `file_html`: in its own, Panel has a page load scripts from the
+network."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -168,7 +169,10 @@ def offline_page(
 def _document(
     slider: Slider, caption: Div, views: Sequence[View], settings: Settings
 ) -> Document:
-    """The parts of the page one below the other: wide figures, a grid of plots, settings."""
+    """The parts of the page one below the other.
+
+    Wide figures, a grid of plots, settings.
+    """
     wide = [view.figure for view in views if view.name in HEIGHTS]
     plots = [view.figure for view in views if view.name not in HEIGHTS]
     text = escape(dump(settings))

@@ -1,4 +1,7 @@
-"""The address of a page: reads it to show a state, and writes the state that is shown."""
+"""The address of a page.
+
+Reads it to show a state, and writes the state that is shown.
+"""
 
 from __future__ import annotations
 

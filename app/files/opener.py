@@ -182,7 +182,10 @@ class TableOpener:
         )
 
     def _take(self, read: Callable[[], tuple[Content, str]]) -> Content | None:
-        """Show or run the content of a file; None, and a message, where it is refused."""
+        """Show or run the content of a file.
+
+        None, and a message, where it is refused.
+        """
         content = None
         try:
             content, message = read()

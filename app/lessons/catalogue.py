@@ -1,4 +1,7 @@
-"""All lessons and cases: their settings, plots, and texts with quantities of a frame."""
+"""All lessons and cases.
+
+Their settings, plots, and texts with quantities of a frame.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +60,10 @@ def plots_of(case: str) -> list[str]:
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
-    """The plots beside a lesson; before the choice only those that do not show the answer."""
+    """The plots beside a lesson.
+
+    Before the choice only those that do not show the answer.
+    """
     return tuple(
         KINDS[name] for name in (lesson.views if is_answered else lesson.beside)
     )

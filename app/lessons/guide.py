@@ -286,7 +286,10 @@ class Guide:
         ]
 
     def _choice(self, number: int, label: str, lesson: Lesson) -> pmui.Button:
-        """The button of a choice: filled where it was predicted, green where it is right."""
+        """The button of a choice.
+
+        Filled where it was predicted, green where it is right.
+        """
         is_asked = self._state.is_asked
         variant = "outlined"
         if number == self._state.prediction:
@@ -304,7 +307,10 @@ class Guide:
         )
 
     def _of_class(self, poll: Poll | None) -> list[Any]:
-        """Parts below the choices: the number of predictions, and buttons to the answer."""
+        """Parts below the choices.
+
+        The number of predictions, and buttons to the answer.
+        """
         is_asked = self._state.is_asked
         answer = partial(self.predict, WITHOUT)
         if poll is None:

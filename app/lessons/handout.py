@@ -1,4 +1,7 @@
-"""A lesson on paper: a question with room to write, and overleaf its answer with plots."""
+"""A lesson on paper.
+
+A question with room to write, and overleaf its answer with plots.
+"""
 
 from __future__ import annotations
 

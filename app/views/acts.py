@@ -27,7 +27,8 @@ BOW = 0.22
 DEPTH = 9.0
 SPACING = 11.0
 BEYOND = 7.0
-"""Depth of hatching, spacing of its strokes, and length of a clamp beyond a body, px."""
+"""Depth of hatching, spacing of its strokes, and length of a clamp beyond a body,
+px."""
 RADIUS = 4.0
 """Radius of rollers, px."""
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 13)
@@ -170,7 +171,10 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
-    """As `anchor_of`, for a load on the top or bottom: beside its arrows, or over them."""
+    """As `anchor_of`, for a load on the top or bottom.
+
+    Beside its arrows, or over them.
+    """
     act = arrows.act
     up = act.away[1]
     is_left = float(np.mean(act.places[:, 0])) < 0.45
@@ -210,7 +214,10 @@ def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
 
 
 def text_of(act: Act, column: int) -> str:
-    """A symbol and its value at an instant; both end values where it varies on a side."""
+    """A symbol and its value at an instant.
+
+    Both end values where it varies on a side.
+    """
     unit = unit_of(act)
     now = np.atleast_1d(act.values.T[column])
     peak = float(np.abs(act.values).max())
@@ -271,7 +278,10 @@ def hatched(edge: Array, away: Array) -> Array:
 
 
 def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> Array:
-    """Line of a support below an edge, (2, 2), px, with its gap, (n_gaps,), m; (n, 2)."""
+    """Line of a support below an edge, (2, 2), px, with its gap, (n_gaps,), m.
+
+    (n, 2).
+    """
     if layout.description.height is None:
         below = (PITCH - THICKNESS) * layout.description.length * layout.scale[1]
         return np.asarray(edge - [0.0, max(below, BAND + 1.0)])
@@ -284,7 +294,10 @@ def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> A
 
 
 def _rollers(edge: Array, away: Array) -> Array:
-    """Rollers at an edge, (2, 2), and a line behind them, px; NaN behind each, (n, 2)."""
+    """Rollers at an edge, (2, 2), and a line behind them, px.
+
+    NaN behind each, (n, 2).
+    """
     count = max(int(np.hypot(*(edge[1] - edge[0])) / 30.0), 2)
     shares = (np.arange(count) + 0.5) / count
     centres = edge[0] + shares[:, None] * (edge[1] - edge[0]) + RADIUS * away

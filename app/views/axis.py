@@ -111,7 +111,10 @@ def edges(middles: Floats) -> Floats:
 
 
 def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
-    """Smallest and largest value of curves that are finite throughout; zeros without any."""
+    """Smallest and largest value of curves that are finite throughout.
+
+    Zeros without any.
+    """
     lows = []
     highs = []
     for curve in curves:

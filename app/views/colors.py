@@ -36,7 +36,8 @@ SCALE = (
     "#B07A00",
     "#C24E00",
 )
-"""Colours from the first to the last of many curves; no end fades into light or dark."""
+"""Colours from the first to the last of many curves; no end fades into light or
+dark."""
 
 
 def scaled(count: int) -> list[str]:

@@ -1,4 +1,7 @@
-"""Layout of the scene: position and scale of the bodies, magnification of displacements."""
+"""Layout of the scene.
+
+Position and scale of the bodies, magnification of displacements.
+"""
 
 from __future__ import annotations
 
@@ -147,7 +150,10 @@ def is_opposite(act: Act, other: Act) -> bool:
 def layout_of(
     geometry: Geometry, is_bare: bool, type_size: float, width: float, height: float
 ) -> Layout:
-    """The larger of two layouts in a figure in px: keys below the bodies, or at their left."""
+    """The larger of two layouts in a figure in px.
+
+    Keys below the bodies, or at their left.
+    """
     rows = 1
     if width < NARROW:
         rows = 2

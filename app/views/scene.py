@@ -1,4 +1,7 @@
-"""The figure of the scene, which the pointer drags and selects in; stress and thrust."""
+"""The figure of the scene, which the pointer drags and selects in.
+
+Stress and thrust.
+"""
 
 from __future__ import annotations
 

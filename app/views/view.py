@@ -225,7 +225,10 @@ class View:
         return ColumnDataSource(columns, **self._selects)
 
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
-        """Add marks to the legend only, by name; they share a glyph, as each costs time."""
+        """Add marks to the legend only, by name.
+
+        They share a glyph, as each costs time.
+        """
         nowhere = [np.nan] * len(colors)
         columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
         look = {"marker": "square", "size": 10, "color": "color"} | look
@@ -274,7 +277,10 @@ class View:
                 item.label = value(wanted)
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
-        """Fill a source; the legend has its entry, by a title, if the source has data."""
+        """Fill a source.
+
+        The legend has its entry, by a title, if the source has data.
+        """
         target = self.sources[name]
         columns = {column: _sent(values) for column, values in columns.items()}
         new = [
@@ -304,7 +310,10 @@ class View:
         ys: Sequence[ArrayLike],
         titles: Sequence[str],
     ) -> None:
-        """Draw curves over the same x, shape (n,), in SI; empty the names that are left."""
+        """Draw curves over the same x, shape (n,), in SI.
+
+        Empty the names that are left.
+        """
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
                 self.draw(name, [], [])
@@ -373,7 +382,10 @@ def hover(
 
 
 def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
-    """Properties of a kind of glyph; `color`, `width` etc. hold for its line and fill."""
+    """Properties of a kind of glyph.
+
+    `color`, `width` etc. hold for its line and fill.
+    """
     names = kind.properties()
     properties = {}
     for trait, given in look.items():
@@ -387,7 +399,10 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _sent(values: Any) -> Any:
-    """Values with short curves as lists: an array is sent by itself, in two messages."""
+    """Values with short curves as lists.
+
+    An array is sent by itself, in two messages.
+    """
     if isinstance(values, list):
         return [_sent(each) for each in values]
     is_curve = isinstance(values, np.ndarray) and values.ndim == 1

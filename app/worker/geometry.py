@@ -24,7 +24,8 @@ PITCH = 0.1
 """Thickness of a drawn rod, which has none in the model, and distance of two rods, over
 the length."""
 MOST_POINTS = 201
-"""Largest number of contact points of an interface, and of nodes of a rod, in a frame."""
+"""Largest number of contact points of an interface, and of nodes of a rod, in a
+frame."""
 MOST_WIRES = 6
 """Largest number of wires whose axial force is shown, beside a broken one."""
 MOST_QUADS = 400
@@ -296,7 +297,10 @@ class DrawnMesh(Drawn):
 
 
 def _kept_lines(grid: Indices, share: float, most: int) -> tuple[Indices, Indices]:
-    """Rows and columns of a grid of nodes that are drawn: a share, `most` cells at most."""
+    """Rows and columns of a grid of nodes that are drawn.
+
+    A share, `most` cells at most.
+    """
     n_rows, n_columns = np.subtract(grid.shape, 1)
     rows = max(int(share * n_rows), 1)
     columns = max(min(int(share * n_columns), most // rows), 1)

@@ -123,7 +123,10 @@ class Runner:
         return self.has_news and self.iterate is not None and not self.hurries
 
     def rest(self, is_seen: bool = True) -> float | None:
-        """Seconds until the next piece of work; None waits for an order, or to be seen."""
+        """Seconds until the next piece of work.
+
+        None waits for an order, or to be seen.
+        """
         is_to_be_seen = self.is_dragged and (self.has_news or not is_seen)
         if (
             self.iterate is None

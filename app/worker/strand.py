@@ -167,7 +167,10 @@ class DrawnRope:
         return rows[kept], heights[kept], wires, points, sides
 
     def _moved(self, rows: Indices, heights: Array) -> Floats:
-        """Displacement of points at heights, (n, 2, n_instants), m: sections stay plane."""
+        """Displacement of points at heights, (n, 2, n_instants), m.
+
+        Sections stay plane.
+        """
         up, slope = self._bent
         return floats(
             np.stack(
