@@ -96,7 +96,7 @@ class Display:
             self._update()
 
     def catch_up(self) -> None:
-        """Ask again whether the last picture is on the screen, once its answer counts as lost."""
+        """Ask again for the last picture, once its answer counts as lost."""
         if self.pulse.painted == self.pulse.sent or self._is_waiting():
             return
         if self._is_due:
@@ -176,7 +176,7 @@ class Browser(DataModel):
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
     ) -> None:
-        """Call actions of keys, by their names in the browser, where no field takes them.
+        """Call actions of keys, by their names in the browser, unless a field takes them.
 
         The state has the size of the window.
         """

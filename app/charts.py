@@ -50,7 +50,7 @@ STYLE = """<style>
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
-    """Draw the charts of a page that loads nothing (the entry point of `solver.study.page`).
+    """Draw charts for a page that loads nothing: entry point of `solver.study.page`.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
 
 
 def library(*more: str) -> str:
-    """Scripts of Bokeh and of further parts of it, for a page that loads nothing (HTML)."""
+    """Scripts of Bokeh and further parts, for a page that loads nothing (HTML)."""
     # Not `Resources.render`: in it Panel has a page load scripts from the network.
     texts = Resources(mode="inline", components=["bokeh", *more]).js_raw
     return "\n".join(f"<script>{text}</script>" for text in texts)
@@ -114,7 +114,7 @@ class LiveChart:
         self._drawn: list[Any] = []
 
     def show(self, chart: Chart) -> None:
-        """Show a chart, in the figure of the last one if axes and curves are the same."""
+        """Show a chart, in the last figure if axes and curves are the same."""
         axes = [chart.x, chart.y]
         if isinstance(chart, Map):
             axes.append(chart.scale)
@@ -176,7 +176,7 @@ def _divided(runs: Runs | None, x: float, y: float) -> Runs | None:
 
 
 def _in_unit(axis: PanelAxis, *values: Array) -> tuple[PanelAxis, float]:
-    """An axis in the unit in which values in SI, (n,), are read, and that unit's size."""
+    """An axis in the unit of values in SI, (n,) each, and the size of that unit."""
     sizes = np.abs(np.concatenate([[0.0], *values]))
     unit = unit_for(float(sizes[np.isfinite(sizes)].max()), axis.unit)
     limits = None
@@ -309,7 +309,7 @@ def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
 
 
 def _of_map(chart: Map) -> Iterator[hv.Element]:
-    """Coloured cells, contour lines with labels, and cells of the runs for their words."""
+    """Coloured cells, contour lines with labels, and cells with words on runs."""
     rows, columns = np.nonzero(np.isfinite(chart.z))
     known = pd.DataFrame(
         {

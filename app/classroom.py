@@ -1,4 +1,4 @@
-"""Classes: a page leads, and pages that follow show its frames, which are computed once.
+"""Classes: a page leads, and others show its frames, which are computed once.
 
 Pages have no names, and nothing is left of a class that has ended. A class whose leader
 is gone waits some minutes: a page that is loaded again is gone for a moment.
@@ -62,7 +62,7 @@ class Classroom:
 
     @property
     def is_over(self) -> bool:
-        """Check whether the class was ended, or its leader has not come back in time."""
+        """Check whether the class was ended, or its leader stayed away."""
         return self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
 
     def lead(self, member: ClassMember) -> None:
@@ -257,7 +257,7 @@ class ClassMember(param.Parameterized):
         forget()
 
     def notify(self) -> None:
-        """Show the present state on the page's own next tick, once for several calls."""
+        """Show the present state on the page's next tick, once for several calls."""
         if not self._is_due:
             self._is_due = True
             # Else the tick would take the page that told it for its own.

@@ -197,7 +197,7 @@ class SettingControl:
             slider.param.update(value=position, value_throttled=position)
 
     def _explain(self, refusal: str) -> None:
-        """Write below the field why a value is refused, or what the chosen preset is."""
+        """Write below the field why a value is refused, or the help of a preset."""
         value = getattr(self._state.settings, self.name)
         text = refusal
         if not refusal and isinstance(value, str):

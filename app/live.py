@@ -1,4 +1,4 @@
-"""The live run: buttons and words, the scene, its time line, and four cards of plots."""
+"""The live run: buttons and words, the scene, its time line, and cards of plots."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ class Live:
 
     @property
     def _shape(self) -> list[str]:
-        """CSS classes: plots stand beside a high picture, unless a text stands there."""
+        """CSS classes: plots stand beside a high picture, unless a text does."""
         state = self.state
         classes = ["live", state.view]
         has_text = bool(state.lesson or state.case)
@@ -194,7 +194,7 @@ class Card:
         )
 
     def fit(self) -> None:
-        """Offer the views that apply to the settings, with the one that the state names."""
+        """Offer the views that apply to the settings; show the one in the state."""
         state = self._state
         offered = [view for view in self.views if view.applies(state.settings)]
         named = [view for view in offered if view.name in state.plots]

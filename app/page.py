@@ -214,7 +214,7 @@ class Page:
         self._main.css_classes = roles
 
     def _dress(self) -> None:
-        """Arrange the plots of the lesson or of the view, and show or hide the controls.
+        """Arrange the plots of the lesson or view, and show or hide the controls.
 
         A lesson has the plots that it speaks of; the view for a projector shows a run
         alone.

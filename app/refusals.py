@@ -70,7 +70,7 @@ def _in_unit(text: str, si: str, unit: Unit) -> str:
 
 
 def amounts_in_titles(settings: Settings, text: str) -> str:
-    """A text whose settings with amounts, as traction = 2e5 Pa, are in the units of fields."""
+    """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields."""
     definitions = settings.definitions()
 
     def said(match: re.Match[str]) -> str:
@@ -85,7 +85,7 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
 
 
 def _in_titles(settings: Settings, text: str) -> str:
-    """A text with titles for names of settings, and with numbers as the page prints them."""
+    """A text with titles for names of settings, and numbers as on the page."""
     definitions = settings.definitions()
     text = amounts_in_titles(settings, text)
 

@@ -60,7 +60,7 @@ PAGES = Pages()
 
 
 def most_pages() -> int:
-    """The most pages that may be open, as set, or as the machine's or container's memory allows."""
+    """Largest number of open pages, as set, or as memory allows."""
     if text := os.environ.get("SLIPFRONT_PAGES"):
         return max(int(text), 1)
     memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
@@ -80,7 +80,7 @@ def address_for_others() -> str:
 
 
 def how_to_open() -> str:
-    """Advice to a person who serves a page as localhost, so that others reach it (HTML)."""
+    """Advice to a person who serves a page as localhost, for others to reach it (HTML)."""
     name = f"NAME:{_address().port or 80}"
     return (
         "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start "
@@ -150,7 +150,7 @@ class Refused(Matcher):
 
 
 def is_of_an_open_page(record: logging.LogRecord) -> bool:
-    """Check whether a record is not of a message to a page that was closed meanwhile."""
+    """Check whether a record is of anything but a message to a closed page."""
     return not (
         record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError)
     )

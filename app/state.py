@@ -322,7 +322,7 @@ class PageState(param.Parameterized):
     def _start(
         self, settings: Settings, pace: float | None = None, **options: Any
     ) -> None:
-        """Order a run with options of `Start`, at the pace of the page or another one."""
+        """Order a run with options of `Start`, by default at the page's pace."""
         self.number = next(RUNS)
         self.param.update(
             is_costly=False,

@@ -145,7 +145,7 @@ class Transport:
             self._state.go_on()
 
     def play(self, until: float = 1.0) -> None:
-        """Play from the selected instant to a share of the interval, over again, or stop.
+        """Play from the selected instant to a share of the interval and again, or stop.
 
         Playing ends, too, once another instant is selected.
         """
@@ -186,7 +186,7 @@ class Transport:
         return bool(self._state.lesson or self._state.case or self._state.room)
 
     def _enliven(self) -> None:
-        """Play the result of the first search of a scene, until a person does something.
+        """Play the result of a scene's first search, until a person does something.
 
         A run that has the answer at once is not played.
         """
@@ -271,7 +271,7 @@ class Transport:
             self._finish.value = state.settings.finish
 
     def _follow(self) -> None:
-        """Set the slider to the iterate that is shown, unless a hand has just moved it."""
+        """Set the slider to the iterate that is shown, unless it was just moved by hand."""
         frame = self._state.frame
         slider = self._iteration
         if self._state.is_over and not self._is_touched:

@@ -115,7 +115,7 @@ def typed(text: str, unit: Unit, si: str) -> float:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number, with a power of ten where it is very large or small, and a printed minus."""
+    """A number with a printed minus, and with a power of ten where it needs one."""
     near = float(f"{value:.{digits}g}")
     if near != 0.0 and math.isfinite(near) and not 1e-3 <= abs(near) < 1e6:
         digit, exponent = f"{value:.{digits - 1}e}".split("e")

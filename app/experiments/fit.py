@@ -44,7 +44,7 @@ class FitTab(CommandTab):
 
     @property
     def measured(self) -> MeasuredLoop | None:
-        """The measured loop that was opened, if its quantities are those of the scene."""
+        """The measured loop that was opened, if it has the quantities of the scene."""
         brought = self.state.brought
         if not isinstance(brought, MeasuredLoop):
             return None

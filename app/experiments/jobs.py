@@ -135,7 +135,7 @@ class Job:
 
 
 def share_of(named: str, users: int) -> str:
-    """Executor of one of several sweeps: a share of local processes, or a whole cluster.
+    """Executor of one of several sweeps: some local processes, or a whole cluster.
 
     A cluster has a queue. One queue for all local sweeps would have everybody wait for
     the longest run of anybody.

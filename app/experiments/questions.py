@@ -157,7 +157,7 @@ def proposed(settings: Settings, name: str) -> str:
 
 
 def _range(name: str, low: float, high: float, count: int, *, is_log: bool) -> str:
-    """Values of a setting between two ends, in even steps or ratios, as `Question` has them."""
+    """Values of a setting between two ends, in even steps or ratios (text)."""
     text = f"{name}={low:g}:{high:g}:{count}"
     if is_log:
         text += LOG
@@ -194,7 +194,7 @@ def _bricks(settings: Settings) -> Question | None:
 
 
 def _energy(settings: Settings, count: int, *others: str) -> Question | None:
-    """Energy over the load and other settings, from a tenth of the ends of their sliders.
+    """Energy over the load and other settings, from a tenth of their sliders' ends.
 
     None where no number sets the size of the load, or another setting does nothing.
     The values of a load alone that is positive have even ratios.

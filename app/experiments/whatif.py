@@ -141,7 +141,7 @@ class WhatIf:
         return chart_of(plan, rows, 0, _amount, logarithmic=is_log)
 
     def _show(self) -> None:
-        """Show the question, or a ready one where the scene does not have it, and run it.
+        """Show and run the question, or a ready one where the scene lacks it.
 
         A question that was put together in the fields waits for the button.
         """

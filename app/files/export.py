@@ -83,7 +83,7 @@ def history_table(frame: Frame) -> str:
 
 
 def plot_table(view: View, frame: Frame) -> str:
-    """Points of the curves of a plot, a line each (CSV, with comments that begin with #).
+    """Points of a plot's curves, a line each (CSV, with comments that begin with #).
 
     Columns are those of the plot's sources, in the units of its axes; paths are
     numbered, and a curve has the name of its source.
@@ -210,7 +210,7 @@ def _copies(views: Sequence[View]) -> list[View]:
 
 
 def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS:
-    """A script that shows one of several pictures from the values that differ in them."""
+    """A script that shows one of several pictures, from the values that differ."""
     changes: dict[tuple[Model, str], list[Any]] = {}
     page.on_change(lambda event: changes.setdefault((event.model, event.attr), []))
     # The first round finds the properties that change, the second one their values.

@@ -216,7 +216,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
 
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
-    """Settings from which an address differs, and the lesson or case that they are of."""
+    """Settings from which an address differs, and the lesson or case of them."""
     scene = pairs.pop("scene", "")
     names = {kind: pairs.pop(kind, "") for kind in KNOWN}
     for kind, name in names.items():

@@ -72,7 +72,7 @@ def files_panel(state: PageState, width: int) -> pn.Column:
 
 
 class TableOpener:
-    """A button that opens a file, a message on its content, and a dialog of its columns.
+    """A button that opens a file, a message on it, and a dialog of its columns.
 
     In the dialog `use` is what the table is used as, and `heads` are the names and
     units of its columns. What is chosen holds at once.

@@ -96,7 +96,7 @@ def paths_of(settings: Settings) -> dict[str, CurveParameter]:
 
 
 def path_of(table: Table, settings: Settings) -> str:
-    """Name of the path that the head of a table names, else the only one, or the load's."""
+    """Name of the path in the head of a table, else the only one, or the load's."""
     paths = paths_of(settings)
     named = paths.keys() & {column.key for column in table.columns}
     loads = [

@@ -77,7 +77,7 @@ def readings_of(lesson: Lesson) -> list[str]:
 
 
 def parts_of(paragraph: str) -> list[str]:
-    """Markdown with `{value:NAME}` in it, and names of settings with a control, in turn."""
+    """Markdown with `{value:NAME}`, and names of settings with a control, in turn."""
     # A sentence ends with its control: its full stop would stand alone.
     return re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
 

@@ -76,7 +76,7 @@ class Guide:
         state.param.watch(lambda event: self.update(), "frame")
 
     def open(self, kind: str, name: str) -> None:
-        """Begin a lesson or a case, with its scene and settings, in place of another."""
+        """Begin a lesson or a case with its settings, in place of another."""
         self.dialogs[kind].open = False
         opened = {"lesson": "", "case": "", kind: name}
         plots = plots_of(opened["case"])
@@ -153,7 +153,7 @@ class Guide:
             self._look(lesson)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
-        """Have a figure to draw on for the question, and show the measured curve after."""
+        """Make a figure to draw on for the question; in the answer add the measured curve."""
         is_asked = self._state.is_asked
         if is_asked or self._curve is None or self._curve.lesson is not lesson:
             self._curve = None
@@ -177,7 +177,7 @@ class Guide:
         return [*texts, *controls, buttons]
 
     def _look(self, lesson: Lesson) -> None:
-        """Select the instant of the answer's plots, or play the picture of the question."""
+        """Select the instant of the answer, or play the picture of the question."""
         state = self._state
         state.select(interface=lesson.interface)
         if not state.is_asked:
@@ -227,7 +227,7 @@ class Guide:
         )
 
     def _onward(self, lesson: Lesson) -> list[Any]:
-        """Buttons of the handout and, unless a class has a leader, of the next lesson."""
+        """Buttons of the handout and, unless another page leads, of the next lesson."""
         make = partial(handout, self._state, lesson, self._curve)
         on_paper = download("Handout", f"{lesson.name}.html", make, size="small")
         following = dict(pairwise(LESSONS)).get(lesson.name)
@@ -268,7 +268,7 @@ class Guide:
         return control.view
 
     def _choices_of(self, lesson: Lesson, poll: Poll | None) -> list[pmui.Button]:
-        """Buttons of the choices, with the predictions of a class once they are open."""
+        """Buttons of the choices, with the counts of a class once they are open."""
         counts: tuple[int, ...] = ()
         if poll is not None:
             counts = poll.counts

@@ -1,4 +1,4 @@
-"""Drawing of loads on the bodies, as arrows and words, and of their supports, as strokes."""
+"""Drawing of loads, as arrows and words, and of supports, as strokes."""
 
 from __future__ import annotations
 
@@ -124,14 +124,14 @@ class Arrows:
         return self.handles[self._longest]
 
     def scaled(self, present: float, pointer: Array) -> float:
-        """Value of the setting with the handle at a pointer, (2,), from its present value."""
+        """Value of the setting with the handle at a pointer, (2,), px."""
         base = self.base[self._longest]
         along = self.handle - base
         return float(present * ((pointer - base) @ along) / (along @ along))
 
 
 def _bows(lines: Array, lengths: Array, away: Array) -> Array:
-    """Arrows of a curvature, (n, 2, 2), as bows, (n, 9, 2), by their lengths, (n,), px."""
+    """Arrows of a curvature, (n, 2, 2), as bows, (n, 9, 2); lengths (n,), px."""
     along = np.linspace(0.0, 1.0, 9)[:, None]
     height = BOW * lengths[:, None, None] * 4.0 * along * (1.0 - along)
     return lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away

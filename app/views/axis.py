@@ -22,7 +22,7 @@ FLOOR = 1e-15
 
 
 class Axis:
-    """The x or y axis of a figure: its unit is chosen once a run, its limits seldom change.
+    """The x or y axis of a figure: a unit for each run, limits that seldom change.
 
     `title` is without the unit; `unit` is the SI unit of all values that are passed to
     the axis, empty for numbers.

@@ -130,7 +130,7 @@ class ClipErrors(ExtraView):
     )
 
     def make(self) -> None:
-        """Draw a curve for each way to store the friction, and the size of the table."""
+        """Draw a curve for each form of storage, and the size of the table."""
         made = self.begin(
             ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),

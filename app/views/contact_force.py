@@ -42,7 +42,7 @@ class ContactForce(View):
     needs = frozenset({"beside"})
 
     def make(self) -> None:
-        """Draw curves of LATIN, the reference, the bound and what they are compared with."""
+        """Draw curves of LATIN, the reference, the bound and other results."""
         plot = self.begin(("x", "m"), ("force", "N/m"))
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
@@ -107,7 +107,7 @@ class ContactForce(View):
         reference: InterfaceFields | None,
         column: int,
     ) -> None:
-        """Show the forces of the iterate and of the reference, with their difference."""
+        """Show the forces of the iterate and the reference, with their difference."""
         positions = interface.positions
         has_pressure = fields.pressure is not None
         for quantity in ("friction", "pressure"):
@@ -130,7 +130,7 @@ class ContactForce(View):
     def _show_bound(
         self, interface: FrictionInterface, fields: InterfaceFields, column: int
     ) -> None:
-        """Show the largest friction in both directions, given or as µ times the pressure."""
+        """Show the bound of friction in both directions, given or µ times pressure."""
         bound = interface.bound
         if bound is None:
             bound = interface.coefficient * np.maximum(fields.pressure, 0.0)
@@ -190,7 +190,7 @@ def _closed_forms(run: Run, *, has_pressure: bool) -> list[ExactCurve]:
 
 
 def _curves(positions: Floats, fields: InterfaceFields | None, column: int) -> Floats:
-    """Friction and, where it is found, pressure as one curve, m and N/m or Pa, (2, n)."""
+    """Friction and, if found, pressure as one curve, m and N/m or Pa, (2, n)."""
     return joined([(positions, field[:, column]) for field in _given(fields)])
 
 

@@ -46,7 +46,7 @@ class ErrorPlot(View):
         up: str,
         title: str = "",
     ) -> None:
-        """Draw a column of a history over another one where both are finite, the first positive."""
+        """Draw a column of a history over another where it is positive and finite."""
         x, y = (history.get(column, np.zeros(0)) for column in (across, up))
         shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
         self.draw(name, x[shown], y[shown], title)
@@ -109,7 +109,7 @@ class Convergence(ErrorPlot):
 
 
 def _searched(frame: Frame) -> dict[str, Floats]:
-    """The history without the answer, which is no iteration, shape (n_iterations,) each."""
+    """The history without the answer, shape (n_iterations,) each."""
     count = len(frame.history["iteration"]) - (1 if frame.is_answer else 0)
     return {name: values[:count] for name, values in frame.history.items()}
 

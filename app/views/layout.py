@@ -73,7 +73,7 @@ class Layout:
         self._fit()
 
     def _fit(self) -> None:
-        """Fit the bodies and their largest motion into the figure between its margins."""
+        """Fit the bodies and their largest motion between the margins."""
         description = self.description
         top = float(self.size[1])
         left, right, below, above = _margins(
@@ -121,7 +121,7 @@ class Layout:
 
 
 def is_high(geometry: Geometry) -> bool:
-    """Check whether a picture of the bodies has more room beside plots than above them."""
+    """Check whether a picture of bodies has more room beside plots than above."""
     described = geometry.description
     top = float(geometry.nodes[:, 1].max())
     low, high = _extent(described.length, top, described.tilt)

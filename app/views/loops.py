@@ -1,4 +1,4 @@
-"""Loops: force over displacement, by cycles, and the slip of one point over another's."""
+"""Loops: force over displacement, cycles, and slips of two points."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class HysteresisLoop(View):
 def _beside(
     brought: comparison.OtherResults | MeasuredLoop | None, frame: Frame
 ) -> tuple[Array, Array]:
-    """A measured loop, or another program's loop under the run's load, (n,) each, m and N."""
+    """A measured loop, or another program's under the run's load, (n,) each, SI."""
     if isinstance(brought, MeasuredLoop):
         return brought.displacement, brought.force
     if brought is None or brought.quantity != comparison.DISPLACEMENT:
@@ -208,7 +208,7 @@ class SlipPlane(View):
         )  # fmt: skip
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the slips of both points so far, and the lines at which they slip now."""
+        """Show the slips of both points so far, and the present limits of slip."""
         slips = frame.extras.get("slips", {})
         column = frame.run.column(selection.phase)
         self.show("held", slips is None)

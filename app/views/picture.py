@@ -105,7 +105,7 @@ class Picture:
         }
 
     def _image(self, bodies: Array) -> Array:
-        """The bodies turned by half a turn below themselves, if a support is such an image.
+        """The bodies turned by half a turn, if a support is such an image.
 
         Both are outlines with NaN behind each, shape (n, 2), px.
         """
@@ -158,11 +158,11 @@ class Picture:
         return self._line(_drawn(self._geometry.outlines, nodes))
 
     def page(self, local: Array) -> Array:
-        """Px of the figure, of px from the middle of the foot along the bodies, (..., 2)."""
+        """Px of the figure, of local px from the middle of the foot, (..., 2)."""
         return turned(local, self.tilt) + self.layout.origin
 
     def to_local(self, x: float, y: float) -> Array:
-        """Px from the middle of the foot along the bodies, (2,), of a point of the figure."""
+        """Local px, (2,), from the middle of the foot, of a point of the figure."""
         return turned(np.array([x, y]) - self.layout.origin, -self.tilt)
 
     def many(self, lines: Array) -> Columns:
@@ -181,7 +181,7 @@ class Picture:
         return self.layout.local(positions) + magnified
 
     def _follow(self, positions: Array) -> Array:
-        """Positions on the bodies, (n, 2), m, moved as their nearest nodes, as `_moved`."""
+        """Positions on the bodies, (n, 2), m, moved with their nearest nodes, px."""
         away = ((self._geometry.nodes - positions[:, None]) ** 2).sum(axis=-1)
         nearest = away.argmin(axis=1)
         return self._moved(
@@ -213,7 +213,7 @@ class Picture:
         }
 
     def _holds(self) -> Array:
-        """Strokes of the supports, and of the horizontal where bodies tilt, (n, 2), px."""
+        """Strokes of the supports, and a horizontal where bodies tilt, (n, 2), px."""
         layout = self.layout
         length = self._described.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
@@ -225,7 +225,7 @@ class Picture:
         return np.concatenate([np.zeros((0, 2)), *strokes])
 
     def _bands(self) -> Strokes:
-        """Bands of the interfaces in the colours of their status, on a rim in contact."""
+        """Bands of the interfaces in the colours of their status."""
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)

@@ -22,7 +22,7 @@ WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 
 
 class WireSection(ExtraView):
-    """Section of a bent strand: wires are coloured by stress and ringed where they slip.
+    """Section of a bent strand: wires coloured by stress, ringed where they slip.
 
     A tap selects a wire.
     """

@@ -50,7 +50,7 @@ class Scene(View):
     is_bare = False
 
     def make(self) -> None:
-        """Draw all layers of the picture, and follow the pointer and the figure's size."""
+        """Draw all layers of the picture, and react to the pointer and to the size."""
         plot = bare(90, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
         self._figure = plot
         self._draw(plot)
@@ -153,7 +153,7 @@ class Scene(View):
             self._scale_arrows(frame)
 
     def _show_keys(self, frame: Frame, layout: Layout) -> None:
-        """Show the keys of the status, in rows or in a column, with the magnification."""
+        """Show the keys of the status in rows or a column, with the magnification."""
         run = frame.run
         can_open = any(each.bound is None for each in run.interfaces.values())
         self.show("open", can_open)
@@ -217,7 +217,7 @@ class Scene(View):
         return float(f"{clipped:.3g}")
 
     def _select(self, event: Any) -> None:
-        """Select the substructure nearest to a tap, and the interface if it is close."""
+        """Select the substructure nearest to a tap, and an interface that is close."""
         picture = self.picture
         if picture is None:
             return
@@ -287,7 +287,7 @@ class Stress(ExtraScene):
 
 
 class Thrust(ExtraScene):
-    """Resultant forces of joints, as lines from the middle of a body to that of the next.
+    """Resultant forces of joints, as lines from middle to middle of bodies.
 
     The width of a line is in proportion to its force; the largest force of all instants
     has the widest line.

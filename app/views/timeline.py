@@ -93,7 +93,7 @@ class Timeline(View):
 
 
 def paths_of(run: Run) -> list[tuple[str, Array]]:
-    """Title with range, and values, (n_instants,), of each load path, constant ones last."""
+    """Title with range, and values, (n_instants,), of all paths, constant ones last."""
     described = run.geometry.description
     given: list[tuple[str, Array, Unit]] = []
     if described.tilt is not None:

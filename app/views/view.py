@@ -338,7 +338,7 @@ class ExtraView(View):
 def bare(
     least: int, across: tuple[float, float], up: tuple[float, float], **more: Any
 ) -> figure:
-    """A figure without tools, frame and grid, with its least height, px, and its limits."""
+    """A figure without tools, frame and grid, with a least height, px, and limits."""
     plot = figure(
         sizing_mode="stretch_both",
         min_height=least,
@@ -421,7 +421,7 @@ def _equal(old: Any, new: Any) -> bool:
 
 
 def joined(curves: Iterable[ArrayLike]) -> Floats:
-    """Curves, shape (2, n) each, as one curve with NaN between them, shape (2, n_all)."""
+    """Curves, shape (2, n) each, as one with NaN between them, shape (2, n_all)."""
     gap = np.full((2, 1), np.nan)
     pieces: list[Floats] = []
     for curve in curves:

@@ -14,7 +14,7 @@ LOG = "log.txt"
 
 
 def command(arguments: Sequence[str], folder: Path) -> int:
-    """Run a command with its output in the folder's log, which goes if the server is gone."""
+    """Run a command with its output in the folder's log; end if the server is gone."""
     from solver.commands.cli import main
 
     # A process does one command and ends.

@@ -1,4 +1,4 @@
-"""Extras: quantities of an iterate that are computed while a view in sight needs them."""
+"""Extras: quantities of an iterate that only some views need."""
 
 from __future__ import annotations
 

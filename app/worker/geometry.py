@@ -49,7 +49,7 @@ def thinned(size: int, most: int) -> Indices:
 
 
 class Drawn:
-    """Bodies as they are drawn at some instants, and the contact points of all interfaces.
+    """Bodies as they are drawn at some instants, and their contact points.
 
     The mesh is as of `mesh_of`; positions are those of all degrees of freedom, (n_dofs,
     2), m.
@@ -115,7 +115,7 @@ def _dofs_of(problem: Problem, law: Contact, pairs: Indices) -> Indices:
 
 
 class DrawnRods(Drawn):
-    """Rods as rectangles above each other, with interfaces between them or at a support."""
+    """Rods as rectangles above each other, with interfaces below them."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         description = settings.structure().described()
@@ -281,7 +281,7 @@ class DrawnMesh(Drawn):
         return middles
 
     def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of nodes, (n_nodes, 2), m, from degrees of freedom, (n_dofs,), m."""
+        """Displacement of nodes, (n_nodes, 2), m, of all degrees of freedom, (n_dofs,)."""
         moved = self._inside.displacement(displacement[:, None], [0])
         # Displacements that are given are no part of it.
         still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])
@@ -308,7 +308,7 @@ def _kept_lines(grid: Indices, share: float, most: int) -> tuple[Indices, Indice
 
 
 def _quads_of(grid: Indices, up: Indices, across: Indices) -> Indices:
-    """Quadrilateral between kept rows and columns that each element lies in, (n_elements,)."""
+    """Quadrilateral of kept rows and columns about each element, (n_elements,)."""
     n_rows, n_columns = np.subtract(grid.shape, 1)
     row = np.searchsorted(up, np.arange(n_rows), side="right") - 1
     column = np.searchsorted(across, np.arange(n_columns), side="right") - 1
@@ -345,7 +345,7 @@ def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
 
 
 def _is_free(sides: Indices, nodes: Array) -> NDArray[np.bool_]:
-    """Check which sides, (n_sides, 2), of grids are shared with no other grid, (n_sides,).
+    """Check which sides, (n_sides, 2), of grids no other grid has, (n_sides,).
 
     A shared side runs the other way round in the other grid; grids share positions,
     not nodes, (n_nodes, 2), m.

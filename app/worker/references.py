@@ -33,7 +33,7 @@ class ReferenceCache:
     def of(
         self, settings: Settings, problem: Problem, stop: Callable[[], bool]
     ) -> Reference | None:
-        """Reference of a problem, or None without one; a collapse counts as a reference.
+        """Reference of a problem, with a collapse if it has one; None without any.
 
         Raises
         ------

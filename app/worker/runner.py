@@ -74,7 +74,7 @@ class Pacing:
 
 
 class Runner:
-    """A run: its first iteration, the reference, then further iterations as they are due.
+    """A run: its first iteration, the reference, then iterations as they are due.
 
     It is `interrupted` where an order waits that ends it; where one waits that halts it
     a status step is given up until it goes on. The problem is shown by `sampler`; it
@@ -161,7 +161,7 @@ class Runner:
         self.history.append(record(iterate, decision, self._distance))
 
     def _compare(self) -> None:
-        """Find the reference, and the errors of the iterate that was recorded before it."""
+        """Find the reference, and the errors of the iterate recorded before it."""
         problem = self.sampler.problem
         try:
             reference = self._references.of(self.settings, problem, self._interrupted)

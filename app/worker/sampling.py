@@ -186,7 +186,7 @@ class Sampler:
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
-        """Displacement and force of the loop at the shown instants, (2, n_shown), SI."""
+        """Displacement and force of the loop at shown instants, (2, n_shown), SI."""
         return floats(np.stack(self.loop.along(shown))[:, self.columns])
 
 

@@ -105,7 +105,7 @@ class DrawnRope:
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
     def _angle(self, wire: Array, place: Array) -> Array:
-        """Polar angle of outer wires, rad, by their numbers and positions along the strand, m."""
+        """Polar angle of outer wires, rad, by number and position along the strand, m."""
         turned = place * np.tan(self._lay) / self._helix
         return np.asarray(2.0 * np.pi * wire / self._count + turned)
 
@@ -113,7 +113,7 @@ class DrawnRope:
         return np.asarray(self._radius * (1.0 - np.cos(angle)))
 
     def _strips(self) -> Iterator[tuple[int, Indices, Array]]:
-        """Number, steps and grid of nodes of each stretch of a wire that is in front."""
+        """Number, steps and grid of nodes of each stretch of a wire in front."""
         half = np.pi / self._count
         for number in range(self._count):
             middle = self._angle(number, self._z)
@@ -145,7 +145,7 @@ class DrawnRope:
         return wires, *self._points_at(wires, share), sides
 
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
-        """Nearest contact points and their nodes, (n,), at shares of the length of wires, (n,)."""
+        """Nearest contact points and nodes, (n,), at shares of the wires' lengths, (n,)."""
         elements = self._rope.elements
         node = np.clip(
             np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1)
@@ -153,7 +153,7 @@ class DrawnRope:
         return wires * (elements - 1) + node - 1, node
 
     def _lines(self) -> tuple[Indices, Array, Indices, Indices, Bytes]:
-        """Contact points along the wires in front, broken by NaN: their steps, heights and wires.
+        """Contact points along the wires in front: steps, heights with NaN, and wires.
 
         And the point and the sign of slip that each has the status of.
         """
@@ -180,7 +180,7 @@ class DrawnRope:
 
     @cached_property
     def _bent(self) -> tuple[Array, Array]:
-        """Height, m, and slope of the axis from clamp or middle, (n_steps, n_instants) each."""
+        """Height, m, and slope of the axis, (n_steps, n_instants) each."""
         rope = self._rope
         z = self._z
         if rope.is_clamped:
@@ -200,7 +200,7 @@ class DrawnRope:
         return up, slope
 
     def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """Axial force in the selected wire as in rods, with that of a wire that sticks."""
+        """Axial force in the selected wire as in rods, and in a wire that sticks."""
         rope = self._rope
         columns = self._columns
         names = [wire.name for wire in rope.wires]
@@ -218,7 +218,7 @@ class DrawnRope:
         }
 
     def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """All wires in a section at the selected position, or at the clamp; the core first.
+        """All wires in a section at the selected position or the clamp, core first.
 
         "place" along the strand, m; "wires", the interface of each, -1 for the core,
         (n,); "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean
