@@ -1,4 +1,4 @@
-"""What `panel serve app` runs before it answers: the server's own settings, and a warm start."""
+"""Start of the server by `panel serve app`: its settings, and a warm start."""
 
 import gc
 import sys

@@ -1,4 +1,4 @@
-"""What the browser says: a picture is painted, a key pressed, one goes back, a value comes back."""
+"""Events of the browser: pictures painted, keys, window, address, values sent back."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Pulse(DataModel):
 
 
 class Display:
-    """Paints the views in sight: the next picture follows once the browser has painted the last.
+    """Paints the views in sight, each picture once the browser has painted the last.
 
     `views` are those in sight; `also` is called with each picture, inside its hold: for
     what is not a view, as the status line.
@@ -89,14 +89,14 @@ class Display:
         )
 
     def look_at(self, views: list[View]) -> None:
-        """Have other views be in sight."""
+        """Set the views in sight."""
         if views != self.views:
             self.views = views
             self._state.needs = frozenset(need for view in views for need in view.needs)
             self._update()
 
     def catch_up(self) -> None:
-        """Ask again whether the last picture is on the screen, once its answer counts as lost."""
+        """Ask again for the last picture, once its answer counts as lost."""
         if self.pulse.painted == self.pulse.sent or self._is_waiting():
             return
         if self._is_due:
@@ -110,7 +110,7 @@ class Display:
         return is_sent and time.monotonic() < self._sent_at + LOST
 
     def _update(self) -> None:
-        """Paint what there is, now or once the last picture is on the screen."""
+        """Paint the newest frame, now or once the last picture is on the screen."""
         self._is_due = True
         if not self._is_waiting():
             self._paint()
@@ -142,7 +142,10 @@ class Display:
         self.pulse.sent += 1
 
     def _on_painted(self) -> None:
-        """Go on, once each other page could paint as long: they share the server's one thread."""
+        """Go on after a pause in which other pages can paint.
+
+        All share the server's thread.
+        """
         pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
         if pause < SHORTEST:
             self._go_on()
@@ -157,7 +160,7 @@ class Display:
 
 
 class Browser(DataModel):
-    """The window and what is done there.
+    """The window of the browser, and keys that are pressed in it.
 
     The height in pixels, and whether it is narrow; the last key and a count of them;
     the address that one has gone back, or on, to; and the link that is to be copied.
@@ -173,7 +176,7 @@ class Browser(DataModel):
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
     ) -> None:
-        """Have keys do something, by their names in the browser, wherever nothing else takes them.
+        """Call actions of keys, by their names in the browser, unless a field takes them.
 
         The state has the size of the window.
         """
@@ -189,7 +192,7 @@ class Browser(DataModel):
 
 
 class Echoes:
-    """The values that a widget was given lately.
+    """Values that the page gave a widget lately, to tell them from those of a person.
 
     Panel's React wrapper sends a value back after it has shown it. Where the next one
     came meanwhile, that looks like a choice of the last but one
@@ -200,7 +203,7 @@ class Echoes:
         self._given: deque[tuple[float, Any]] = deque(maxlen=64)
 
     def give(self, value: Any, before: Any) -> Any:
-        """Note a value and the one that it takes the place of, and return it for the widget."""
+        """Note a value and the one that it replaces; return the value."""
         now = time.monotonic()
         if value != before:
             # What is empty was never shown.
@@ -208,6 +211,6 @@ class Echoes:
         return value
 
     def has(self, value: Any) -> bool:
-        """Whether a value that the widget reports was given to it just now."""
+        """Check whether a value that the widget reports was given to it just now."""
         since = time.monotonic() - LASTS
         return any(when > since and given == value for when, given in self._given)

@@ -1,4 +1,4 @@
-"""Charts that are made once, as HoloViews draws them: What if, reports, pages of the commands."""
+"""Charts by HoloViews: those of What if, of reports, and of pages of the commands."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ from solver.study.page import (
 hv.extension("bokeh")
 
 COLORS = (REFERENCE, *HUES)
-"""Of curves by their hue."""
+"""Colours of curves by their hue."""
 LEVELS = 8
-"""Lines of equal value on a map, about."""
+"""Number of contour lines on a map, about."""
 HEIGHT = 350
+"""Height of a chart, px."""
 LABEL = 34
 """Characters of a line beside an axis."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
@@ -49,53 +50,60 @@ STYLE = """<style>
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
-    """Charts of a page that needs nothing beside it, the entry point of `solver.study.page`.
+    """Draw charts for a page that loads nothing: entry point of `solver.study.page`.
 
     Returns
     -------
-    What all of them need, and each section (HTML).
+    Styles and scripts of all charts, and each section (HTML).
     """
     draw = hv.renderer("bokeh").get_plot
-    figures = [
-        draw(overlay(in_units(chart))).state for plot in plots for chart in plot.charts
-    ]
-    script, places = components(figures, wrap_script=True)
-    waiting = iter(places)
-    sections = [
-        f'<div role="figure" aria-label="{escape(plot.heading)}">{keys(plot.charts)}'
-        f'<div class="panels">{"".join(next(waiting) for _ in plot.charts)}</div></div>'
-        for plot in plots
-    ]
+    figures = []
+    for plot in plots:
+        for chart in plot.charts:
+            figures.append(draw(overlay(in_units(chart))).state)
+    script, panels = components(figures, wrap_script=True)
+    sections = []
+    first = 0
+    for plot in plots:
+        last = first + len(plot.charts)
+        sections.append(
+            f'<div role="figure" aria-label="{escape(plot.heading)}">{keys(plot.charts)}'
+            f'<div class="panels">{"".join(panels[first:last])}</div></div>'
+        )
+        first = last
     return f"{STYLE}\n{library()}\n{script}", sections
 
 
 def library(*more: str) -> str:
-    """Bokeh itself and more of its parts, for a page that loads nothing (HTML)."""
-    # Not `Resources.render`, which brings what Panel would have a page load.
+    """Scripts of Bokeh and further parts, for a page that loads nothing (HTML)."""
+    # Not `Resources.render`: in it Panel has a page load scripts from the network.
     texts = Resources(mode="inline", components=["bokeh", *more]).js_raw
     return "\n".join(f"<script>{text}</script>" for text in texts)
 
 
 def keys(charts: Sequence[Chart]) -> str:
-    """The legend that charts side by side share (HTML)."""
-    panels = [chart for chart in charts if isinstance(chart, Panel)]
-    curves = {
-        curve.label: curve for panel in panels for curve in panel.curves if curve.label
-    }
-    if curves:
-        return "<div>" + " ".join(map(_key, curves.values())) + "</div>"
-    return ""
+    """The legend that charts side by side share (HTML); "" without labels."""
+    curves: dict[str, PanelCurve] = {}
+    for chart in charts:
+        if isinstance(chart, Panel):
+            curves |= {curve.label: curve for curve in chart.curves if curve.label}
+    if not curves:
+        return ""
+    return "<div>" + " ".join([_key(curve) for curve in curves.values()]) + "</div>"
 
 
 def _key(curve: PanelCurve) -> str:
+    """Entry of a curve in the legend (HTML)."""
     dash = curve.line if curve.line in ("dashed", "dotted") else "solid"
-    style = f"border-top: 3px {dash} {COLORS[curve.hue]}"
-    mark = f'<i style="display: inline-block; width: 1.2rem; vertical-align: middle; {style}"></i>'
+    mark = (
+        '<i style="display: inline-block; width: 1.2rem; vertical-align: middle; '
+        f'border-top: 3px {dash} {COLORS[curve.hue]}"></i>'
+    )
     return f'<span class="key">{mark} {escape(curve.label)}</span>'
 
 
 class LiveChart:
-    """A chart that is drawn anew as it fills; `view` has it below its legend."""
+    """A chart that is drawn anew as its runs end; `view` has it below its legend."""
 
     def __init__(self) -> None:
         self._keys = pn.pane.HTML("", margin=(4, 8))
@@ -106,14 +114,15 @@ class LiveChart:
         self._drawn: list[Any] = []
 
     def show(self, chart: Chart) -> None:
-        """Show a chart, in the figure of the last one if it has the same axes and curves."""
-        axes = chart.x, chart.y, chart.scale if isinstance(chart, Map) else chart.y
+        """Show a chart, in the last figure if axes and curves are the same."""
+        axes = [chart.x, chart.y]
+        if isinstance(chart, Map):
+            axes.append(chart.scale)
         legend = keys([chart])
         data = in_units(chart)
-        drawn = [
-            legend,
-            *((axis.quantity, axis.names, axis.logarithmic) for axis in axes),
-        ]
+        drawn: list[Any] = [legend]
+        for axis in axes:
+            drawn.append((axis.quantity, axis.names, axis.logarithmic))
         if drawn == self._drawn:
             self._pipe.send(data)
             return
@@ -126,61 +135,78 @@ class LiveChart:
 
 
 def in_units(chart: Chart) -> Chart:
-    """A chart in the units that one reads; the engine gives it in SI."""
-    runs = chart.runs
+    """A chart in the units in which it is read; charts of the engine are in SI."""
     if isinstance(chart, Map):
-        x_axis, x = _in_unit(chart.x, chart.x_values)
-        y_axis, y = _in_unit(chart.y, chart.y_values)
-        scale, size = _in_unit(chart.scale, chart.z.ravel())
-        more = {"x_values": chart.x_values / x, "y_values": chart.y_values / y}
-        more |= {"scale": scale, "z": chart.z / size}
-    else:
-        drawn = [*chart.curves, *([] if runs is None else [runs])]
-        x_axis, x = _in_unit(chart.x, *(each.x for each in drawn))
-        y_axis, y = _in_unit(chart.y, *(each.y for each in drawn))
-        curves = [
-            replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves
-        ]
-        more = {"curves": tuple(curves)}
-    if runs is not None:
-        runs = replace(runs, x=runs.x / x, y=runs.y / y)
-    return replace(chart, x=x_axis, y=y_axis, runs=runs, **more)
+        return _map_in_units(chart)
+    return _panel_in_units(chart)
+
+
+def _map_in_units(chart: Map) -> Map:
+    x_axis, x = _in_unit(chart.x, chart.x_values)
+    y_axis, y = _in_unit(chart.y, chart.y_values)
+    scale, size = _in_unit(chart.scale, chart.z.ravel())
+    return replace(
+        chart,
+        x=x_axis,
+        y=y_axis,
+        runs=_divided(chart.runs, x, y),
+        x_values=chart.x_values / x,
+        y_values=chart.y_values / y,
+        scale=scale,
+        z=chart.z / size,
+    )
+
+
+def _panel_in_units(chart: Panel) -> Panel:
+    drawn: list[PanelCurve | Runs] = [*chart.curves]
+    if chart.runs is not None:
+        drawn.append(chart.runs)
+    x_axis, x = _in_unit(chart.x, *[each.x for each in drawn])
+    y_axis, y = _in_unit(chart.y, *[each.y for each in drawn])
+    curves = [replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves]
+    runs = _divided(chart.runs, x, y)
+    return replace(chart, x=x_axis, y=y_axis, runs=runs, curves=tuple(curves))
+
+
+def _divided(runs: Runs | None, x: float, y: float) -> Runs | None:
+    """Runs, if there are any, over the sizes of two units."""
+    if runs is None:
+        return None
+    return replace(runs, x=runs.x / x, y=runs.y / y)
 
 
 def _in_unit(axis: PanelAxis, *values: Array) -> tuple[PanelAxis, float]:
-    """An axis in the unit in which such values are read, and the size of that unit."""
+    """An axis in the unit of values in SI, (n,) each, and the size of that unit."""
     sizes = np.abs(np.concatenate([[0.0], *values]))
     unit = unit_for(float(sizes[np.isfinite(sizes)].max()), axis.unit)
-    limits = axis.limits and (
-        axis.limits[0] / unit.factor,
-        axis.limits[1] / unit.factor,
-    )
+    limits = None
+    if axis.limits is not None:
+        low, high = axis.limits
+        limits = (low / unit.factor, high / unit.factor)
     return replace(axis, unit=unit.name, limits=limits), unit.factor
 
 
 def overlay(chart: Chart) -> hv.Overlay:
-    """A chart as HoloViews' elements."""
+    """A chart as elements of HoloViews."""
     title = chart.title
+    x_limits: Sequence[float | None]
+    y_limits: Sequence[float | None]
     if isinstance(chart, Map):
-        made = _of_map(chart)
+        elements = _of_map(chart)
         xs = chart.x_values
         ys = chart.y_values
         if chart.scale.unit:
             title += f" ({chart.scale.unit})"
-        else:
-            title += ""
         x_limits = edges(xs, chart.x)[[0, -1]]
         y_limits = edges(ys, chart.y)[[0, -1]]
     else:
-        made = _of_panel(chart)
-        xs, ys = (
-            np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy"
-        )
-        x_limits, y_limits = (
-            axis.limits or (None, None) for axis in (chart.x, chart.y)
-        )
+        elements = _of_panel(chart)
+        xs = np.concatenate([[], *[curve.x for curve in chart.curves]])
+        ys = np.concatenate([[], *[curve.y for curve in chart.curves]])
+        x_limits = chart.x.limits or (None, None)
+        y_limits = chart.y.limits or (None, None)
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.
-    return hv.Overlay([element.opts(framewise=True) for element in made]).opts(
+    return hv.Overlay([element.opts(framewise=True) for element in elements]).opts(
         # HoloViews takes braces for places that it fills.
         title=title.replace("{", "{{").replace("}", "}}"),
         logx=chart.x.logarithmic,
@@ -197,25 +223,24 @@ def overlay(chart: Chart) -> hv.Overlay:
         show_legend=False,
         show_grid=isinstance(chart, Panel),
         default_tools=TOOLS,
-        # What scrolls the page must not move what it passes over, until one asks for
-        # it.
+        # A wheel that scrolls the page must not zoom the charts that it passes.
         active_tools=[],
-        # A toolbar that sticks to the axes lies over a title that is as wide as they
-        # are.
+        # A toolbar that sticks to the axes would lie over a title of their width.
         backend_opts={"plot.toolbar.logo": None, "plot.toolbar_sticky": False},
     )
 
 
 def edges(values: Array, axis: PanelAxis) -> Array:
-    """Where cells about n ascending values end, half way between them on their axis, (n + 1,)."""
+    """Ends of cells about n ascending values, half way between them, shape (n + 1,).
+
+    On a logarithmic axis the ratios are halved in place of distances.
+    """
+    at = values
     if axis.logarithmic:
         at = np.log(values)
-    else:
-        at = values
+    half = np.array([0.5])
     if len(at) > 1:
         half = np.diff(at) / 2.0
-    else:
-        half = np.array([0.5])
     ends = np.concatenate([at[:1] - half[:1], at[:-1] + half, at[-1:] + half[-1:]])
     if axis.logarithmic:
         return np.exp(ends)
@@ -226,15 +251,16 @@ def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:
     """Names of an axis, or its few whole numbers; None for round numbers."""
     if axis.names:
         return list(enumerate(axis.names))
-    if axis.whole:
-        whole = sorted({int(value) for value in values})
-    else:
-        whole = []
-    return whole if 0 < len(whole) <= 7 else None
+    if not axis.whole:
+        return None
+    numbers = sorted({int(value) for value in values})
+    if 0 < len(numbers) <= 7:
+        return numbers
+    return None
 
 
 def _table(runs: Runs) -> pd.DataFrame:
-    """Runs as HoloViews takes them."""
+    """Runs as a table for HoloViews: x, y, and the words of each."""
     return pd.DataFrame(
         {"x": runs.x, "y": runs.y, "said": np.array(runs.said, dtype=object)}
     )
@@ -248,7 +274,7 @@ def _of_panel(panel: Panel) -> Iterator[hv.Element]:
     runs = _table(panel.runs)
     known = np.isfinite(panel.runs.y)
     low, high = panel.y.limits or (0.0, 1.0)
-    # What has no value stands at the upper edge.
+    # Runs without a value stand at the upper edge.
     if panel.y.logarithmic:
         top = high * (low / high) ** 0.03
     else:
@@ -265,30 +291,33 @@ def _of_panel(panel: Panel) -> Iterator[hv.Element]:
 
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
+    y = curve.y
     if panel.y.logarithmic:
         y = np.where(curve.y > 0.0, curve.y, np.nan)
+    has_points = curve.line == "points"
+    looks: dict[str, Any] = {"color": COLORS[curve.hue]}
+    if has_points:
+        looks |= {"line_dash": "solid", "line_width": 1.0}
     else:
-        y = curve.y
-    is_thin = curve.line == "points"
-    looks: dict[str, Any] = {
-        "color": COLORS[curve.hue],
-        "line_dash": "solid" if is_thin else curve.line,
-        "line_width": 1.0 if is_thin else 2.2,
-    }
+        looks |= {"line_dash": curve.line, "line_width": 2.2}
     if panel.runs is None:
-        told = [("", curve.label), (panel.x.label, "@x"), (panel.y.label, "@y")]
-        looks |= {"tools": ["hover"], "hover_tooltips": told}
+        tips = [("", curve.label), (panel.x.label, "@x"), (panel.y.label, "@y")]
+        looks |= {"tools": ["hover"], "hover_tooltips": tips}
     yield hv.Curve((curve.x, y), "x", "y").opts(**looks)
-    if is_thin:
+    if has_points:
         yield hv.Points((curve.x, y), ["x", "y"]).opts(color=COLORS[curve.hue], size=6)
 
 
 def _of_map(chart: Map) -> Iterator[hv.Element]:
-    runs = _table(chart.runs)
-    holds = chart.runs.holds
+    """Coloured cells, contour lines with labels, and cells with words on runs."""
     rows, columns = np.nonzero(np.isfinite(chart.z))
-    places = {"x": chart.x_values[columns], "y": chart.y_values[rows]}
-    known = pd.DataFrame({**places, "value": chart.z[rows, columns]})
+    known = pd.DataFrame(
+        {
+            "x": chart.x_values[columns],
+            "y": chart.y_values[rows],
+            "value": chart.z[rows, columns],
+        }
+    )
     yield _cells(chart, known).opts(
         color="value",
         cmap=Viridis256,
@@ -301,30 +330,30 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
     yield hv.Contours(lines, ["x", "y"], "z").opts(
         color="#000", alpha=0.75, line_width=1.2
     )
-    # Not all in the same place, where lines are close.
-    places = [
-        len(line["x"]) * (1 + number % 3) // 4 for number, line in enumerate(lines)
-    ]
-    labels = [
-        (line["x"][i], line["y"][i], f"{line['z']:.4g}")
-        for line, i in zip(lines, places, strict=True)
-    ]
+    labels = []
+    for number, line in enumerate(lines):
+        # At one of three positions along the line: lines may be close.
+        index = len(line["x"]) * (1 + number % 3) // 4
+        labels.append((line["x"][index], line["y"][index], f"{line['z']:.4g}"))
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",
         text_font_size="11px",
         background_fill_color="#fff",
         background_fill_alpha=0.7,
     )
-    # Over each run's cell, for its words; hatched where it is no answer.
-    hatched = runs.assign(hatch=np.where(holds, " ", "right_diagonal_line"))
-    hatch = {"glyph.hatch_pattern": {"field": "hatch"}}
-    hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
+    # Over each run's cell, for its words; hatched where the run gave no answer.
+    pattern = np.where(chart.runs.holds, " ", "right_diagonal_line")
+    hatched = _table(chart.runs).assign(hatch=pattern)
+    hatch = {
+        "glyph.hatch_pattern": {"field": "hatch"},
+        "glyph.hatch_color": {"value": REFERENCE},
+    }
     hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
     yield _cells(chart, hatched).opts(**hollow, **HOVER)
 
 
 def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
-    """Cells about runs."""
+    """Cells of a map about the rows of a table with columns x and y."""
     columns = np.searchsorted(chart.x_values, table["x"])
     rows = np.searchsorted(chart.y_values, table["y"])
     x = edges(chart.x_values, chart.x)
@@ -339,19 +368,22 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
 
 
 def contours(chart: Map) -> list[dict[str, Any]]:
-    """Lines of equal and round values "z" through the places "x" and "y"."""
+    """Contour lines of a map at round values.
+
+    "x" and "y", (n,) each, and the value "z".
+    """
     known = chart.z[np.isfinite(chart.z)]
-    if min(chart.z.shape) == 1 or known.max(initial=-np.inf) <= known.min(
-        initial=np.inf
-    ):
+    low = known.min(initial=np.inf)
+    high = known.max(initial=-np.inf)
+    if min(chart.z.shape) == 1 or high <= low:
         return []
     levels: Any = LEVELS
     if chart.scale.logarithmic:
-        if known.max() < 1e4 * known.min():
+        steps = [1.0]
+        if high < 1e4 * low:
             steps = [1.0, 2.0, 5.0]
-        else:
-            steps = [1.0]
-        powers = np.arange(*np.floor(np.log10([known.min(), 10.0 * known.max()])))
+        first, last = np.floor(np.log10([low, 10.0 * high]))
+        powers = np.arange(first, last)
         levels = np.outer(10.0**powers, steps).ravel()
     values = hv.QuadMesh((chart.x_values, chart.y_values, chart.z))
     return list(hv.operation.contours(values, levels=levels).data)

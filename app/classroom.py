@@ -1,7 +1,7 @@
-"""A class: one page leads, and the pages that follow show its frames, which are computed once.
+"""Classes: a page leads, and others show its frames, which are computed once.
 
-Nobody has a name, and nothing is left of a class that has ended. One whose leader is
-gone waits some minutes, as whoever loads a page again is gone as well.
+Pages have no names, and nothing is left of a class that has ended. A class whose leader
+is gone waits some minutes: a page that is loaded again is gone for a moment.
 """
 
 from __future__ import annotations
@@ -26,22 +26,24 @@ from app.supervisor import Supervisor
 from app.widgets import button, dialog
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
-"""Of a code; none of them is taken for a digit."""
+"""Letters of a code; none of them is taken for a digit."""
 LENGTH = 4
+"""Number of letters of a code."""
 KEPT = 300.0
-"""Seconds for which a class waits for its leader."""
+"""Time for which a class waits for its leader, s."""
 RESUMED = "settings", "selection", "lesson", "case", "plots"
-"""What the next leader has of the last one's state."""
+"""Parts of the state that the next leader takes over from the last one."""
 SHARED = *RESUMED, "frame", "newest", "ghost", "iteration", "running"
-"""What followers have of the leader's state."""
+"""Parts of the leader's state that followers show."""
 
 
 class Classroom:
-    """What the pages of a class have in common.
+    """A class: its leader, its followers, and the state that they share.
 
-    Whoever has `key` may lead: the page that began the class, after it was loaded
-    again. `leader` is None while nobody does; `state` is the leader's, or what the last
-    one left. `members` follow. `opened` is the lesson whose counts all may see.
+    A page with `key` may lead: the page that began the class, after it was loaded
+    again. `leader` is None while no page leads; `state` is the leader's, or a copy of
+    the last leader's. `members` follow. `opened` is the lesson whose counts all may
+    see.
     """
 
     def __init__(self, code: str, leader: ClassMember) -> None:
@@ -55,16 +57,16 @@ class Classroom:
 
     @property
     def is_alone(self) -> bool:
-        """Whether nobody leads it at present."""
+        """Check whether no page leads at present."""
         return self.leader is None
 
     @property
     def is_over(self) -> bool:
-        """Whether it was ended, or its leader has not come back."""
+        """Check whether the class was ended, or its leader stayed away."""
         return self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
 
     def lead(self, member: ClassMember) -> None:
-        """Have a page lead it, in place of the one that did."""
+        """Have a page lead the class, in place of the last leader."""
         self.leader = member
         self._gone_at = None
         self.state = member.state
@@ -79,40 +81,50 @@ class Classroom:
         self.notify()
 
     def end(self) -> None:
-        """End it; followers keep the last picture."""
+        """End the class; followers keep the last picture."""
         self._let_go(-math.inf)
         self.notify()
 
     def _let_go(self, now: float) -> None:
-        """Keep of the leader what followers see: the state itself would keep the whole page."""
+        """Keep a copy of the parts that followers show.
+
+        The state would keep the whole page.
+        """
         self.leader = None
         self._gone_at = now
         last = self.state
-        self.state = PageState(
-            **{name: getattr(last, name) for name in (*SHARED, "prediction")}
-        )
+        kept = {name: getattr(last, name) for name in (*SHARED, "prediction")}
+        self.state = PageState(**kept)
         self.state.history = last.history
         self.state.number = last.number
 
     def poll_for(self, member: ClassMember) -> Poll | None:
-        """What the class predicts, as one of its pages sees it; None without a question."""
+        """Predictions of the class as one of its pages sees them.
+
+        None without a question.
+        """
         leader = self.state
         if leader.lesson not in LESSONS or self.is_over:
             return None
-        states = (follower.state for follower in self.members)
-        votes = [state.prediction for state in states if state.lesson == leader.lesson]
+        votes = []
+        for follower in self.members:
+            if follower.state.lesson == leader.lesson:
+                votes.append(follower.state.prediction)
         choices = range(len(LESSONS[leader.lesson].choices))
-        counts = [votes.count(choice) for choice in choices]
+        counts = tuple([votes.count(choice) for choice in choices])
         return Poll(
             leads=member.leads,
             predicted=sum(counts),
             present=len(self.members),
-            counts=tuple(counts) if self.opened == leader.lesson else (),
+            counts=counts if self.opened == leader.lesson else (),
             is_answered=leader.prediction is not None,
         )
 
     def notify(self) -> None:
-        """Have all pages take what is new; another lesson is predicted anew."""
+        """Have all pages show the present state.
+
+        Counts of another lesson are closed again.
+        """
         if self.opened != self.state.lesson:
             self.opened = ""
         for member in self.members:
@@ -134,14 +146,16 @@ def forget() -> None:
 def find(code: str) -> Classroom | None:
     """The class of a code, unless it has ended."""
     room = CLASSROOMS.get(code.strip().upper())
-    return None if room is None or room.is_over else room
+    if room is None or room.is_over:
+        return None
+    return room
 
 
 class ClassMember(param.Parameterized):
-    """The part of a page in a class: it leads one, follows one, or neither.
+    """The role of a page in classes: leader, follower, or neither.
 
-    Its worker is ended while it follows. `room` is the class that is led or followed,
-    `left` the code of the one that was followed last.
+    The worker of a follower is ended. `room` is the class that is led or followed,
+    `left` the code of the class that was followed last.
     """
 
     message = param.String(doc="What is to be said of the class, in a sentence.")
@@ -154,25 +168,26 @@ class ClassMember(param.Parameterized):
         self.room: Classroom | None = None
         self.left = ""
         self._is_due = False
-        state.param.watch(lambda *events: self.leads and self.room.notify(), SHARED)
-        state.param.watch(lambda event: self.room and self.room.notify(), "prediction")
+        state.param.watch(lambda *events: self._on_shared(), SHARED)
+        state.param.watch(lambda event: self._on_prediction(), "prediction")
         state.param.watch(lambda event: self._on_address(event.new), "room")
 
     @property
     def leads(self) -> bool:
-        """Whether this page leads a class."""
+        """Check whether this page leads a class."""
         room = self.room
         return room is not None and room.leader is self
 
     @property
     def follows(self) -> bool:
-        """Whether this page shows what another one does."""
+        """Check whether this page follows a class."""
         return self.room is not None and self in self.room.members
 
     def enter(self, address: str) -> bool:
-        """Follow the class of an address, or lead it on with its key; whether the page follows.
+        """Follow the class of an address, or lead it on with its key.
 
-        Where there is no such class, `message` says so, and all stays as it is.
+        Return whether the page follows a class. Where there is no such class, `message`
+        says so, and all stays as it is.
         """
         code, _, key = address.partition(".")
         room = find(code)
@@ -193,7 +208,7 @@ class ClassMember(param.Parameterized):
         return room is not None and self.follows
 
     def begin(self) -> None:
-        """Begin a class that sees what this page shows; those that are over are forgotten."""
+        """Begin a class with this page as its leader; forget classes that are over."""
         if self.room is not None:
             return
         forget()
@@ -204,22 +219,23 @@ class ClassMember(param.Parameterized):
         self._lead(CLASSROOMS[code])
 
     def leave(self) -> None:
-        """End the class that this page leads, or go on with a run of its own."""
+        """End the class that this page leads, or stop following and run alone."""
         room = self.room
         state = self.state
-        followed = self.follows
         if room is None:
             return
-        self.room = state.poll = None
-        self.left = room.code if followed else ""
-        state.room = self._address()
-        if followed:
-            self.message = f"You have left class {room.code}."
-        else:
+        has_followed = self.follows
+        self.room = None
+        state.poll = None
+        if not has_followed:
+            self.left = ""
+            state.room = self._address()
             self.message = ""
-        if not followed:
             room.end()
             return
+        self.left = room.code
+        state.room = self._address()
+        self.message = f"You have left class {room.code}."
         room.part(self)
         # The leader's history stays the leader's, and so do its numbers.
         state.history = History()
@@ -229,24 +245,32 @@ class ClassMember(param.Parameterized):
         state.run()
 
     def open_counts(self) -> None:
-        """Have all see how many predicted what."""
+        """Show all pages the number of predictions of each choice."""
         self.room.opened = self.state.lesson
         self.room.notify()
 
     def close(self) -> None:
-        """Leave nothing behind of a page that is closed."""
+        """Part from the class, as the page is closed."""
         if self.room is not None:
             self.room.part(self)
             self.room = None
         forget()
 
     def notify(self) -> None:
-        """Take what is new on the page's own next tick: of several news the last."""
+        """Show the present state on the page's next tick, once for several calls."""
         if not self._is_due:
             self._is_due = True
             # Else the tick would take the page that told it for its own.
             with set_curdoc(self._document):
                 self._document.add_next_tick_callback(self._take)
+
+    def _on_shared(self) -> None:
+        if self.leads:
+            self.room.notify()
+
+    def _on_prediction(self) -> None:
+        if self.room is not None:
+            self.room.notify()
 
     def _lead(self, room: Classroom) -> None:
         self.room = room
@@ -268,7 +292,7 @@ class ClassMember(param.Parameterized):
             self.leave()
 
     def _take(self) -> None:
-        """Show what the leader shows."""
+        """Show the state of the leader, and the predictions."""
         self._is_due = False
         room = self.room
         state = self.state
@@ -280,7 +304,7 @@ class ClassMember(param.Parameterized):
             state.history = leader.history
             state.number = leader.number
             values |= {name: getattr(leader, name) for name in SHARED}
-        # Watchers of what is as it was have nothing to do.
+        # Watchers of values that have not changed have nothing to do.
         changed = {
             name: value
             for name, value in values.items()
@@ -302,7 +326,10 @@ class ClassMember(param.Parameterized):
         return f"You follow class {room.code}. Change anything to go on by yourself."
 
     def _address(self) -> str:
-        """What the page's address has of the class: its code; of one that is led its key, too."""
+        """Part of the page's address.
+
+        The code of the class, and for its leader the key.
+        """
         if self.room is None:
             return ""
         if self.leads:
@@ -310,7 +337,7 @@ class ClassMember(param.Parameterized):
         return self.room.code
 
     def _on_address(self, address: str) -> None:
-        """Follow, or leave, as the browser goes back and on."""
+        """Follow or leave a class, as the browser goes back and forth."""
         if address == self._address() or self.leads:
             return
         if address:
@@ -320,10 +347,10 @@ class ClassMember(param.Parameterized):
 
 
 class ClassDialog:
-    """Begins a class and shows its code, or joins one.
+    """Dialog that begins a class and shows its code, or joins a class.
 
-    `view` is the line that stands on the page while it is in a class, or has left one;
-    `dialog` is what the header's button opens.
+    `view` is the line on the page while it is in a class, or has left one; `dialog` is
+    opened by a button in the header.
     """
 
     def __init__(self, member: ClassMember) -> None:
@@ -332,20 +359,20 @@ class ClassDialog:
         self._again = button(
             "Follow again", lambda: member.enter(member.left), variant="text"
         )
-        look = {
-            "visible": False,
-            "margin": 0,
-            "align": "center",
-            "css_classes": ["class"],
-        }
-        self.view = pn.Row(self._message, self._again, **look)
+        self.view = pn.Row(
+            self._message,
+            self._again,
+            visible=False,
+            margin=0,
+            align="center",
+            css_classes=["class"],
+        )
         self.dialog = dialog("A class", width_option="sm")
         member.param.watch(lambda event: self._show(), "message")
 
     def open(self) -> None:
         """Open the dialog."""
-        # It is filled anew: models that were taken off the page are not put on it
-        # again.
+        # It is filled anew: models that were taken off the page cannot come back.
         if self._member.leads:
             self.dialog[:] = self._led()
         else:
@@ -387,12 +414,11 @@ class ClassDialog:
         code = self._field.value_input or self._field.value
         if self._member.enter(code):
             self.dialog.open = False
-        else:
-            if code:
-                refusal = self._member.message
-            else:
-                refusal = "Write a code."
-            self._field.param.update(error_state=True, helper_text=refusal)
+            return
+        refusal = "Write a code."
+        if code:
+            refusal = self._member.message
+        self._field.param.update(error_state=True, helper_text=refusal)
 
     def _leave(self) -> None:
         self._member.leave()

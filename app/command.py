@@ -1,4 +1,7 @@
-"""The command `slipfront serve`: the page without a clone, as `panel serve app` has it with one."""
+"""The command `slipfront serve`.
+
+The page without a clone, as `panel serve app` has it with one.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,10 @@ APP = Path(__file__).resolve().parent
 
 
 def add_serve(commands: Any) -> None:
-    """Add the command; the entry points of the distribution name this to the engine's."""
+    """Add the command.
+
+    The entry points of the distribution name this to the engine's.
+    """
     serve = commands.add_parser(
         "serve",
         help="serve the page, at /app; options are those of `panel serve`",

@@ -1,4 +1,7 @@
-"""The controls at the side: a stock widget from each setting's definition."""
+"""The controls at the side.
+
+A widget of Panel's for each setting, from its definition.
+"""
 
 from __future__ import annotations
 
@@ -27,31 +30,31 @@ from solver.settings.definitions import (
 
 WIDTH = 286
 STEPS = 80
-"""Steps of a slider at least."""
+"""Least number of steps of a slider."""
 POINTS = "points"
 GROUPS = (
-    *(
-        "Load",
-        "Ends",
-        "Top",
-        "Left",
-        "Right",
-        "Contact",
-        "Bar",
-        "Strand",
-        "Body",
-        "Body force",
-    ),
-    *("Decomposition", "Method", "Stop"),
+    "Load",
+    "Ends",
+    "Top",
+    "Left",
+    "Right",
+    "Contact",
+    "Bar",
+    "Strand",
+    "Body",
+    "Body force",
+    "Decomposition",
+    "Method",
+    "Stop",
 )
-"""Order of the groups: what the scene is, then how it is solved."""
+"""Order of the groups: the scene, then its solution from Decomposition on."""
 
 
 class SettingControl:
-    """The widget of one setting: it shows the state's and changes it.
+    """The widget of one setting: it shows the value of the state and changes it.
 
-    `field` takes the value; of a number it is a text field, which has a `slider`, too.
-    Both stand in `view`.
+    `field` takes the value; for a number it is a text field with a `slider`. Both stand
+    in `view`.
     """
 
     def __init__(self, name: str, state: PageState) -> None:
@@ -60,7 +63,8 @@ class SettingControl:
         self._definition: Parameter = state.settings.definitions()[name]
         self._about = about(self._definition)
         self._unit = unit_of(self._definition)
-        self._is_updating = self._is_dragged = False
+        self._is_updating = False
+        self._is_dragged = False
         self._echoes = Echoes()
         self._dialog: CurveDialog | None = None
         self.slider: pmui.FloatSlider | None = None
@@ -69,7 +73,7 @@ class SettingControl:
         self.update()
 
     def update(self) -> None:
-        """Show the setting as it is."""
+        """Show the value of the setting, and whether it applies."""
         settings = self._state.settings
         self._is_updating = True
         try:
@@ -80,32 +84,32 @@ class SettingControl:
             self._is_updating = False
 
     def _make(self) -> tuple[Any, Any]:
-        """The field and what stands on the page."""
+        """The field of the setting, and the view that stands on the page."""
         definition = self._definition
         more: dict[str, Any] = {
             "description": help_of(definition),
+            "label": self._unit.titled(title_of(definition)),
             "size": "small",
             "width": WIDTH,
-        }
-        more |= {
             "margin": (4, 0),
-            "label": self._unit.titled(title_of(self._definition)),
         }
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            look = {"variant": "text", "margin": (-4, 0, 0, 0)}
             self._edit_button = button(
-                "Edit points", self._edit, icon="show_chart", **look
+                "Edit points",
+                self._edit,
+                icon="show_chart",
+                variant="text",
+                margin=(-4, 0, 0, 0),
             )
             return field, pn.Column(field, self._edit_button, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
         if isinstance(definition, param.Selector):
-            field = pmui.Select(
-                options=list(definition.objects), variant="standard", **more
-            )
+            options = list(definition.objects)
+            field = pmui.Select(options=options, variant="standard", **more)
             return field, field
         more |= {"margin": 0, "variant": "standard", **looks("number")}
         default = self._written(definition.default)
@@ -115,17 +119,19 @@ class SettingControl:
         return field, pn.Column(field, self.slider, margin=(3, 0, 0, 0))
 
     def _make_slider(self) -> pmui.FloatSlider:
-        low, high = (self._to_slider(end) for end in self._definition.softbounds)
-        is_count = (
-            isinstance(self._definition, param.Integer) and not self._is_logarithmic
-        )
+        lowest, highest = self._definition.softbounds
+        low = self._to_slider(lowest)
+        high = self._to_slider(highest)
+        is_whole = isinstance(self._definition, param.Integer)
+        if is_whole and not self._is_logarithmic:
+            step = 1.0
+        else:
+            step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
         slider = pmui.FloatSlider(
             label=title_of(self._definition),
             start=low,
             end=high,
-            step=1
-            if is_count
-            else 10.0 ** math.floor(math.log10((high - low) / STEPS)),
+            step=step,
             value=low,
             show_value=False,
             tooltips=False,
@@ -139,19 +145,25 @@ class SettingControl:
         return slider
 
     def _to_slider(self, value: float) -> float:
+        """Position of a value on the slider.
+
+        In the unit of the field, or its logarithm.
+        """
         if self._is_logarithmic:
             return math.log10(max(value, 1e-300))
         return float(f"{value / self._unit.factor:.10g}")
 
-    def _from_slider(self, place: float) -> float:
-        """The value of a place, as round as a hand can mean it."""
+    def _from_slider(self, position: float) -> float:
+        """Value of a position of the slider, rounded to what a hand can choose."""
         if self._is_logarithmic:
-            value = 10.0**place
+            value = 10.0**position
+            digits = 3
         else:
-            value = place * self._unit.factor
+            value = position * self._unit.factor
+            digits = 10
         if isinstance(self._definition, param.Integer):
             return round(value)
-        return float(f"{value:.{3 if self._is_logarithmic else 10}g}")
+        return float(f"{value:.{digits}g}")
 
     def _written(self, value: float) -> str:
         return f"{value / self._unit.factor:.10g}"
@@ -170,27 +182,27 @@ class SettingControl:
                 self._show_on_slider(value)
 
     def _show_on_slider(self, value: float) -> None:
+        slider = self.slider
         low, high = self._definition.softbounds
-        most = self._state.settings.ends.get(self.name, high)
-        self.slider.end = self._to_slider(
-            max(min(most, high), low + 1) if most < high else high
-        )
-        place = min(max(self._to_slider(value), self.slider.start), self.slider.end)
-        if (self.slider.value, self.slider.value_throttled) == (place, place):
+        # Other settings may allow less than the definition.
+        largest = self._state.settings.ends.get(self.name, high)
+        if largest < high:
+            high = max(largest, low + 1)
+        slider.end = self._to_slider(high)
+        position = min(max(self._to_slider(value), slider.start), slider.end)
+        if (slider.value, slider.value_throttled) == (position, position):
             return
-        # What the browser let go at last is reset, since it sends that only when it is
-        # new.
-        with param.edit_constant(self.slider):
-            self.slider.param.update(value=place, value_throttled=place)
+        # The throttled value is set, too: the browser sends it only when it changes.
+        with param.edit_constant(slider):
+            slider.param.update(value=position, value_throttled=position)
 
     def _explain(self, refusal: str) -> None:
-        """Say below the field why a value is refused, or of a preset that holds what it is."""
+        """Write below the field why a value is refused, or the help of a preset."""
         value = getattr(self._state.settings, self.name)
-        if isinstance(value, str):
+        text = refusal
+        if not refusal and isinstance(value, str):
             line = self._about.presets.get(value, "")
-        else:
-            line = ""
-        text = refusal or line[:1].upper() + line[1:]
+            text = line[:1].upper() + line[1:]
         if getattr(self.field, "helper_text", text) != text:
             self.field.param.update(helper_text=text, error_state=bool(refusal))
 
@@ -208,7 +220,7 @@ class SettingControl:
             self._change(value)
 
     def _take_text(self, text: str) -> None:
-        """Take what is typed; nothing means the default."""
+        """Take a value that was typed; an empty text means the default."""
         try:
             if text:
                 value = typed(text, self._unit, self._about.unit)
@@ -226,13 +238,16 @@ class SettingControl:
             self._refuse(self._state.refusal)
 
     def _refuse(self, refusal: str) -> None:
-        """Show the value that holds again, and why the other does not."""
+        """Show the present value again, and why another value was refused."""
         self._state.refusal = refusal
         self.update()
         self._explain(refusal)
 
     def _move(self, *events: Any) -> None:
-        """Follow the slider; run where it is let go, by a key at once, or what held before."""
+        """Run the value of the slider while it is dragged, and once it is released.
+
+        A key releases at once; a refused value leaves the one before.
+        """
         if self._is_updating:
             return
         value = self._from_slider(events[-1].new)
@@ -291,7 +306,10 @@ class Controls:
         self.update()
 
     def update(self) -> None:
-        """Show the settings as they are, those of another scene in place of the present ones."""
+        """Show the present values.
+
+        With another scene build the controls of that scene.
+        """
         settings = self._state.settings
         with pn.io.hold():
             if settings.scene != self._built:
@@ -307,8 +325,7 @@ class Controls:
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
         self._groups.active = []
-        # What is opened takes the place of a spacer, which costs a page less than a
-        # column.
+        # Each group is a spacer until it is opened: it costs a page less than a column.
         self._closed = dict(enumerate([*groups.items(), ("Files", [])]))
         self._groups[:] = [
             (title, pn.Spacer(height=0)) for title, _ in self._closed.values()
@@ -316,20 +333,19 @@ class Controls:
 
     def _open(self) -> None:
         """Fill the groups that are opened for the first time."""
-        for place in self._closed.keys() & {*self._groups.active}:
-            title, names = self._closed.pop(place)
-            controls = [SettingControl(name, self._state) for name in names]
-            self._controls += controls
-            settings = pn.Column(*(control.view for control in controls), margin=0)
+        for number in self._closed.keys() & set(self._groups.active):
+            title, names = self._closed.pop(number)
             if names:
-                view = settings
+                controls = [SettingControl(name, self._state) for name in names]
+                self._controls += controls
+                view = pn.Column(*[control.view for control in controls], margin=0)
             else:
                 view = files_panel(self._state, WIDTH)
-            self._groups[place] = (title, view)
+            self._groups[number] = (title, view)
 
 
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
-    """The chief settings of a scene, and all others by group; without those of a single value."""
+    """The chief settings of a scene, and all others with several values, by group."""
     definitions = kind.definitions()
     chief = [name for name in (*kind.CHIEF, *kind.ALSO_CHIEF) if name in definitions]
     groups: dict[str, list[str]] = {group: [] for group in GROUPS}

@@ -1,4 +1,4 @@
-"""What the page knows of a run: `Run` is alike for all its iterates, a `Frame` is one iterate.
+"""Data of a run on the page: `Run` is common to its iterates, a `Frame` is one iterate.
 
 All arrays are in SI, float32, space first and time last, thinned to what a screen
 shows.
@@ -27,7 +27,7 @@ OPEN = 2
 
 @dataclass(frozen=True, eq=False)
 class FrictionInterface:
-    """What an interface is in every iterate."""
+    """Data of an interface that all iterates share."""
 
     positions: Floats
     """Of its points along the bodies, shape (n_points,), m."""
@@ -82,7 +82,7 @@ class Geometry:
 
 @dataclass(frozen=True, eq=False)
 class DeformedGeometry:
-    """How the bodies have moved, at every instant."""
+    """Displacements of the drawn bodies at all instants."""
 
     nodes: Floats
     """Displacement of the nodes, shape (n_nodes, 2, n_instants), m."""
@@ -94,7 +94,7 @@ class DeformedGeometry:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What all frames of a run share."""
+    """Data that all frames of a run share."""
 
     number: int
     """Counts the runs of a page, from 1."""
@@ -128,7 +128,10 @@ class Run:
     """Whether nothing acts, so that nothing moves."""
 
     def interface(self, name: str) -> str:
-        """The interface of a name; without one the first, of wires the last: outside slips most."""
+        """The interface of a name.
+
+        By default the first, of wires the last: it slips most.
+        """
         if name in self.interfaces:
             return name
         return list(self.interfaces)[-1 if self.settings.kind == "helices" else 0]
@@ -145,7 +148,7 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One iterate of a run."""
+    """An iterate of a run, as views show it."""
 
     run: Run
     iteration: int
@@ -177,7 +180,7 @@ class Frame:
 
     @cached_property
     def nbytes(self) -> int:
-        """Bytes of its arrays."""
+        """Memory of the arrays, bytes."""
         fields = [
             a for c in self.contact.values() for a in (c.friction, c.pressure, c.status)
         ]
@@ -187,7 +190,10 @@ class Frame:
 
     @property
     def stage(self) -> tuple[int, bool, bool]:
-        """Run, whether its reference is known, and whether it is over; axes are chosen for each."""
+        """Number of the run, and whether it is compared and over.
+
+        Axes change with it.
+        """
         return self.run.number, bool(self.run.reference), self.status is not None
 
     def last(self, name: str) -> float:
@@ -199,7 +205,10 @@ class Frame:
 
     @property
     def error(self) -> float:
-        """Relative error of the contact force; estimated where there is no reference."""
+        """Relative error of the contact force.
+
+        Estimated where there is no reference.
+        """
         measured = self.last("error_force")
         if np.isfinite(measured):
             return measured
@@ -208,7 +217,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Selection:
-    """What is looked at."""
+    """The selection: instant, interface, substructure and position that views show."""
 
     phase: float = 0.75
     """The instant, as a share of the interval."""

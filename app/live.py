@@ -1,4 +1,4 @@
-"""The live run: buttons and words, the scene, its load path as time line, and four plots."""
+"""The live run: buttons and words, the scene, its time line, and cards of plots."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from app.widgets import looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026
-"""Size of the type of plots on a projector, a share of the window's height."""
+"""Type size of plots on a projector over the window's height."""
 LOW = 56
 HIGH = 0.13
-"""Pixels of the time line on the page, and its share of the height on a projector."""
+"""Height of the time line: px on the page, share of the window's on a projector."""
 LOOK = 1000
 """Milliseconds between two looks for a picture that got lost."""
 PRESENTED = 2
-"""Plots that a projector has room for beside the scene."""
+"""Number of plots beside the scene on a projector."""
 
 
 class Live:
@@ -71,30 +71,32 @@ class Live:
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
-        """Make the figures."""
+        """Make the figures in sight."""
         for card in self._cards:
             card.fit()
         for view in self._in_sight():
             view.figure  # noqa: B018  # it is made when it is first asked for
 
     def open(self, kinds: tuple[type[View], ...] | None) -> None:
-        """Show the figures, and what there is of a run, now that a browser has all else.
+        """Show the figures once the browser has all other widgets.
 
         It would lay them out anew for each widget that follows.
         """
         self._is_open = True
         self.arrange(kinds)
-        for place, view in zip((self._scene, self._timeline), self._views, strict=True):
-            place.append(
-                pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both")
-            )
+        boxes = (self._scene, self._timeline)
+        for box, view in zip(boxes, self._views, strict=True):
+            box.append(pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both"))
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._timeline, self._plots])
 
     # What changes within a hold is sent at once, and in this order.
     @pn.io.hold()
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
-        """Show the cards, or the plots of a lesson; what gives its answer away waits."""
+        """Show the cards, or the plots of a lesson.
+
+        Hide texts that give its answer away.
+        """
         state = self.state
         self._cards = self._all
         if kinds is not None:
@@ -108,8 +110,8 @@ class Live:
             self._plots.css_classes = ["plots"]
         else:
             self._plots.css_classes = []
-        # What they hold first: of tabs that change while they are being shown some are
-        # lost.
+        # The tabs of the cards first: of tabs that change while they are being shown
+        # some are lost.
         self._fit()
         if self._is_open:
             self._plots[:] = [card.view for card in self._cards]
@@ -119,34 +121,41 @@ class Live:
         if state.view == "present":
             size = f"{LARGE * state.height:.0f}px"
             self._timeline.height = int(HIGH * state.height)
-        for view in (
-            *self._views,
-            *(view for card in self._cards for view in card.views),
-        ):
-            view.magnify(size)
+        self._magnify(size)
         self._reshape()
+
+    def _magnify(self, size: str) -> None:
+        """Set the type size of all views, as CSS has it."""
+        for view in self._views:
+            view.magnify(size)
+        for card in self._cards:
+            for view in card.views:
+                view.magnify(size)
 
     @property
     def _shape(self) -> list[str]:
-        """CSS classes: plots stand beside a picture that is high, where nothing else does."""
+        """CSS classes: plots stand beside a high picture, unless a text does."""
         state = self.state
-        frame = self.state.frame
-        is_alone = not (state.lesson or state.case)
-        shape = ["high"] * (
-            is_alone and frame is not None and is_high(frame.run.geometry)
-        )
-        return ["live", state.view, *shape]
+        classes = ["live", state.view]
+        has_text = bool(state.lesson or state.case)
+        if not has_text and state.frame is not None:
+            if is_high(state.frame.run.geometry):
+                classes.append("high")
+        return classes
 
     def _reshape(self) -> None:
         self.view.css_classes = self._shape
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
-        is_seen = self._is_open and self.state.tab == TABS[0]
-        self.display.look_at(self._in_sight() if is_seen else [])
+        if self._is_open and self.state.tab == TABS[0]:
+            self.display.look_at(self._in_sight())
+        else:
+            self.display.look_at([])
 
     def _in_sight(self) -> list[View]:
-        return [*self._views, *(view for card in self._cards if (view := card.seen))]
+        seen = [card.seen for card in self._cards if card.seen is not None]
+        return self._views + seen
 
     def _fit(self) -> None:
         if self._is_open:
@@ -156,20 +165,20 @@ class Live:
             self.look()
 
     def _write(self) -> None:
-        """Bring the words up to the frame."""
+        """Set the status, the key figures and the sentence to those of the frame."""
         frame = self.state.frame
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
             self._sentence.object = escape(frame.run.sentence)
             if self._shape != self.view.css_classes:
-                # Beside data that are new the browser would paint what it has made of
-                # the old.
+                # In one step with new data the browser would paint the old ones in the
+                # new shape.
                 self._document.add_next_tick_callback(self._reshape)
 
 
 class Card:
-    """Views that share a place as tabs, of which the one that the state names is in sight."""
+    """Views that share a place as tabs; `seen` is the one in sight."""
 
     def __init__(self, kinds: tuple[type[View], ...], state: PageState) -> None:
         self._state = state
@@ -185,26 +194,21 @@ class Card:
         )
 
     def fit(self) -> None:
-        """Offer the views that say anything here; the one that the state names is in sight."""
+        """Offer the views that apply to the settings; show the one in the state."""
         state = self._state
-        names = self._state.plots
         offered = [view for view in self.views if view.applies(state.settings)]
-        if offered:
-            first = offered[0]
-        else:
-            first = None
-        seen = next((view for view in offered if view.name in names), first)
-        if (offered, seen) == (self._offered, self.seen):
+        named = [view for view in offered if view.name in state.plots]
+        seen = next(iter(named or offered), None)
+        if offered == self._offered and seen == self.seen:
             return
         is_turned = seen is not self.seen
         self._offered = offered
         self.seen = seen
         self.view.visible = bool(offered)
-        if offered:
+        active = 0
+        if seen is not None:
             active = offered.index(seen)
-        else:
-            active = 0
-        # Its bounds follow the items only after the place among them was checked.
+        # The bounds of `active` follow the items only after its value was checked.
         self.tabs.param.active.bounds = (0, max(len(offered) - 1, 0))
         self.tabs.param.update(items=[view.name for view in offered], active=active)
         if is_turned:
@@ -213,19 +217,19 @@ class Card:
             else:
                 self.view[:] = [self.tabs]
 
-    def _choose(self, place: int) -> None:
-        """Have the state name the view of a tab; the first that is offered needs no name."""
-        view = self._offered[place]
-        if view is not self.seen:
-            mine = {view.name for view in self.views}
-            names = [name for name in self._state.plots if name not in mine]
-            if place:
-                self._state.plots = [*names, view.name]
-            else:
-                self._state.plots = names
+    def _choose(self, number: int) -> None:
+        """Name the view of a tab in the state; the first tab needs no name."""
+        view = self._offered[number]
+        if view is self.seen:
+            return
+        mine = {other.name for other in self.views}
+        names = [name for name in self._state.plots if name not in mine]
+        if number > 0:
+            names.append(view.name)
+        self._state.plots = names
 
     def _pane(self, view: View) -> pn.pane.Bokeh:
-        """The figure of a view with the frame; it is made when it is first seen."""
+        """The figure of a view with the frame; the figure is made when first seen."""
         state = self._state
         if view not in self._panes:
             self._panes[view] = pn.pane.Bokeh(

@@ -1,4 +1,4 @@
-"""What `panel serve app` runs for every page that is opened."""
+"""The script that `panel serve app` runs for every page that is opened."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the page and its worker process send each other."""
+"""Messages between the page and its worker process."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WHOLE = -1.0
 
 @dataclass(frozen=True)
 class Start:
-    """Start a run at a pace, in iterations a second: 0 waits, infinity is as fast as it can.
+    """Start a run at a pace, in iterations a second: 0 waits, infinity has no pause.
 
     One that waits does some steps first, at least one. One that is dragged hurries to
     its end before it is shown; one that is agreed to may take long or much memory.
@@ -43,7 +43,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Needs:
-    """What frames shall carry: extras of views in sight, and quantities; for what is selected."""
+    """Extras and quantities that frames shall carry, and the selection."""
 
     extras: frozenset[str] = frozenset()
     interface: str = ""

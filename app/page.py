@@ -37,9 +37,9 @@ BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 
 
 class Page:
-    """One page: its state, its worker, its widgets and views; `template` is what is served.
+    """A page of one session: state, worker, widgets and views; `template` is served.
 
-    The first run waits at `iteration`; 0 has it go on.
+    The first run waits at `iteration`; with 0 it goes on.
     """
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
@@ -59,7 +59,8 @@ class Page:
         open_counts = self._member.open_counts
         self._guide = Guide(state, transport, self._dress, open_counts)
         self._class = ClassDialog(self._member)
-        self._guide.view.stylesheets = self._class.view.stylesheets = [STYLE]
+        self._guide.view.stylesheets = [STYLE]
+        self._class.view.stylesheets = [STYLE]
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
@@ -67,13 +68,13 @@ class Page:
         self._words = dialog(
             "Keys and words", pn.pane.Markdown(WORDS), width_option="md"
         )
-        dialogs = (
+        # Dialogs are put on the page when they are first opened.
+        for each in (
             *self._guide.dialogs.values(),
             self._class.dialog,
             self._away,
             self._words,
-        )
-        for each in dialogs:
+        ):
             each.param.watch(self._put, "open")
         self.template = pmui.Page(
             title="Slipfront",
@@ -88,21 +89,21 @@ class Page:
             sx=COMPACT,
         )
         follow_itself(self.template)
-        browser.listen(
-            state, document, {**transport.keys(), "p": self._present, "?": self._help}
-        )
+        keys = transport.keys() | {"p": self._present, "?": self._help}
+        browser.listen(state, document, keys)
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda event: self._show_controls(), "is_narrow")
-        state.param.watch(
-            lambda event: state.view == "present" and self._dress(), "height"
-        )
+        state.param.watch(lambda event: self._on_height(), "height")
         self._turn(state.tab)
         self._guide.show()
 
     def loaded(self) -> None:
-        """Show the figures, and let the first run go on or follow a class: a browser is there."""
+        """Show the figures once a browser is there.
+
+        Go on with the run, or follow a class.
+        """
         self._supervisor.open()
         self._live.open(self._guide.kinds)
         if not self.state.room:
@@ -112,17 +113,16 @@ class Page:
             self.state.run()
 
     def _go_on(self, name: str, old: int, new: int) -> None:
-        """Go on once the first picture is on the screen: a search is seen from its beginning.
+        """Go on once the first picture is painted: a search is seen from its beginning.
 
-        What changes while the browser still mounts the widgets some of them would not
-        show.
+        While the browser still mounts widgets, some of them would not show changes.
         """
         self._live.display.pulse.remove_on_change("painted", self._go_on)
         if self.state.running:
             self.state.param.trigger("pace")
 
     def end(self, _context: Any) -> None:
-        """Leave nothing behind."""
+        """Leave the class, and end the worker of a page that was closed."""
         self._member.close()
         self._supervisor.end()
         PAGES.leave()
@@ -154,8 +154,12 @@ class Page:
         )
 
     def _present(self) -> None:
-        """Show the page as a projector needs it, or as before."""
+        """Turn between the view for a projector and that of the page."""
         self.state.view = "present" if self.state.view == "page" else "page"
+
+    def _on_height(self) -> None:
+        if self.state.view == "present":
+            self._dress()
 
     def _put(self, event: Any) -> None:
         """Put a dialog on the page when it is first opened."""
@@ -163,7 +167,7 @@ class Page:
             self.template.main = [*self.template.main, event.obj]
 
     def _take_away(self) -> None:
-        """Offer to save what is seen."""
+        """Offer a link to the page, and files of what is seen."""
         copied = PlainText(margin=(0, 8))
 
         def copy() -> None:
@@ -189,24 +193,30 @@ class Page:
         self._live.look()
 
     def _place(self) -> None:
-        """Have on the page what is seen: beside what is hidden figures are not painted."""
-        # What comes in front is appended, and put there by the style sheet: a column
-        # whose children change their order loses some of them.
-        text = self._guide.view
-        line = self._class.view
-        views = (
-            (self._beside, [self._live.view] + [text] * text.visible),
-            (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),
-        )
-        for place, objects in views:
-            if list(place) != objects:
-                place[:] = objects
-        self._main.css_classes = ["main"] + ["with-line"] * line.visible
+        """Put visible parts alone on the page.
+
+        Beside hidden ones figures are not painted.
+        """
+        # The text and the line of the class are appended, and put in front by the style
+        # sheet: a column whose children change their order loses some of them.
+        beside = [self._live.view]
+        if self._guide.view.visible:
+            beside.append(self._guide.view)
+        main = [self._tabs[self.state.tab]]
+        roles = ["main"]
+        if self._class.view.visible:
+            main.append(self._class.view)
+            roles.append("with-line")
+        if list(self._beside) != beside:
+            self._beside[:] = beside
+        if list(self._main) != main:
+            self._main[:] = main
+        self._main.css_classes = roles
 
     def _dress(self) -> None:
-        """Have the plots that belong here, and the controls where there is room for them.
+        """Arrange the plots of the lesson or view, and show or hide the controls.
 
-        A lesson has those that it speaks of; the view for a projector shows a run
+        A lesson has the plots that it speaks of; the view for a projector shows a run
         alone.
         """
         self._place()
@@ -233,7 +243,7 @@ def follow_itself(template: pmui.Page) -> None:
 
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
-    # Each page's notifications would stay in Panel's table of views once it is closed.
+    # Without notifications: each page's would stay in Panel's table of views for good.
     pn.extension(reconnect=True, respect_explicit_sizing=True)
     if not PAGES.enter():
         full = pmui.Page(
@@ -241,13 +251,15 @@ def open_page() -> pmui.Page:
         )
         follow_itself(full)
         return full
-    location = pn.state.location
-    place, refusal = read(location.search if location is not None else "")
+    query = ""
+    if pn.state.location is not None:
+        query = pn.state.location.search
+    shown, refusal = read(query)
     # As long as the browser has not told how wide its window is.
     is_phone = "Mobi" in pn.state.headers.get("User-Agent", "")
-    state = PageState(place["settings"], refusal=refusal, is_narrow=is_phone)
-    iteration = place.pop("iteration", 0)
-    show(state, place)
+    state = PageState(shown["settings"], refusal=refusal, is_narrow=is_phone)
+    iteration = shown.pop("iteration", 0)
+    show(state, shown)
     page = Page(state, iteration)
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)

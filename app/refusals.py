@@ -1,4 +1,7 @@
-"""Refusals in the words of the page: titles in place of names, values in the units of fields."""
+"""Refusals in the words of the page.
+
+Titles in place of names, values in the units of fields.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 def message_of(
     refusal: RefusedError, settings: Settings, name: str = "", value: Any = None
 ) -> str:
-    """What was refused, why, and what is allowed, in a sentence.
+    """A sentence on a refusal: the setting, the value, the reason, the allowed values.
 
     Where the setting `name` was to change to `value`, another one may be refused.
     """
@@ -67,7 +70,7 @@ def _in_unit(text: str, si: str, unit: Unit) -> str:
 
 
 def amounts_in_titles(settings: Settings, text: str) -> str:
-    """A text whose settings with an amount, as in traction = 2e5 Pa, are as their fields say it."""
+    """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields."""
     definitions = settings.definitions()
 
     def said(match: re.Match[str]) -> str:
@@ -82,7 +85,7 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
 
 
 def _in_titles(settings: Settings, text: str) -> str:
-    """A text with titles for names of settings, and with numbers as the page prints them."""
+    """A text with titles for names of settings, and numbers as on the page."""
     definitions = settings.definitions()
     text = amounts_in_titles(settings, text)
 
@@ -102,7 +105,7 @@ def _in_titles(settings: Settings, text: str) -> str:
 
 
 def _written(value: object, unit: Unit | None = None) -> str:
-    """A value as one would say it, a number in a unit."""
+    """A value as text; a number in a unit."""
     if isinstance(value, bool):
         return "on" if value else "off"
     if isinstance(value, list | tuple):

@@ -1,4 +1,7 @@
-"""The server that pages come from: their number and address, compressed files, and the log."""
+"""The server that pages come from.
+
+Their number and address, compressed files, and the log.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +60,7 @@ PAGES = Pages()
 
 
 def most_pages() -> int:
-    """The most pages that may be open, as set, or as the machine's or container's memory allows."""
+    """Largest number of open pages, as set, or as memory allows."""
     if text := os.environ.get("SLIPFRONT_PAGES"):
         return max(int(text), 1)
     memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
@@ -77,7 +80,7 @@ def address_for_others() -> str:
 
 
 def how_to_open() -> str:
-    """What whoever serves a page as localhost has to do that others reach it (HTML)."""
+    """Advice to a person who serves a page as localhost, for others to reach it (HTML)."""
     name = f"NAME:{_address().port or 80}"
     return (
         "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start "
@@ -92,7 +95,7 @@ def _address() -> SplitResult:
 
 
 def configure() -> None:
-    """Have Tornado, on which Panel serves, make its server of this kind."""
+    """Have Tornado, on which Panel serves, use this kind of server."""
     HTTPServer.configure(PageServer)
     for name in (
         "bokeh.server.views.ws",
@@ -104,7 +107,7 @@ def configure() -> None:
 
 
 class PageServer(HTTPServer):
-    """Compresses what it sends: 1.6 MB for a first visit instead of 4.7."""
+    """Compresses answers: 1.6 MB for a first visit instead of 4.7."""
 
     def initialize(self, request_callback: Any, **options: Any) -> None:  # type: ignore[override]
         """Set the application up, as `HTTPServer.initialize` does."""
@@ -124,7 +127,7 @@ class Compressed(GZipContentEncoding):
 
 
 class Guarded(OutputTransform):
-    """Tells browsers what no page of this server contains."""
+    """Sends browsers a policy on contents that no page of this server has."""
 
     def transform_first_chunk(
         self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
@@ -138,7 +141,7 @@ class Refused(Matcher):
     """Addresses that are too long (414), and paths that no file can have (404)."""
 
     def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
-        """With which status an address is refused, if it is."""
+        """Status with which an address is refused; None if it is not."""
         if len(request.uri or "") > LONGEST:
             return {"target_kwargs": {"status_code": 414}}
         if "%00" in request.path:
@@ -147,19 +150,19 @@ class Refused(Matcher):
 
 
 def is_of_an_open_page(record: logging.LogRecord) -> bool:
-    """Whether a record is of anything but a message to a page that was closed meanwhile."""
+    """Check whether a record is of anything but a message to a closed page."""
     return not (
         record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError)
     )
 
 
 class OneLine(logging.Filter):
-    """Log a message that is none of Bokeh's in one line, and seldom."""
+    """Log messages that are not of Bokeh in one line, and seldom."""
 
     _last = -QUIET
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Whether a record is logged; its traceback is not."""
+        """Check whether a record is logged; drop its traceback."""
         if record.exc_info is None or record.levelno < logging.ERROR:
             return True
         record.exc_info = record.exc_text = None

@@ -1,4 +1,7 @@
-"""What a page shows: its settings, the frame on the screen, what is selected, how the run goes."""
+"""The state of a page.
+
+Its settings, frames and selection, and the orders to its worker.
+"""
 
 from __future__ import annotations
 
@@ -22,13 +25,14 @@ from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
 
 LIMIT = 24_000_000
-"""Bytes that the frames of a run may take; beyond, every other one is dropped."""
+"""Largest memory of the frames of a run, bytes; beyond, every other frame is
+dropped."""
 SEARCH = {"start": "zero", "finish": "accuracy"}
-"""Settings with which one sees the search from nothing, as a page begins."""
+"""Settings that show the search from its start, as a page begins."""
 ANSWER = {"start": "nested", "finish": "at-once"}
-"""Settings with which the answer is there at once."""
+"""Settings that show the answer at once."""
 RUNS = count(1)
-"""Numbers of the runs of all pages: one that joins a class, or leaves it, meets none
+"""Numbers of the runs of all pages: a page that joins or leaves a class meets no number
 twice."""
 PACES = {
     "whole in 3 s": messages.WHOLE,
@@ -39,14 +43,14 @@ PACES = {
 }
 TABS = ["Live", "What if", "Fit", "Reports"]
 VIEWS = ["page", "present"]
-"""With controls, for a projector."""
+"""The page with its controls, and the view for a projector."""
 
 
 @dataclass(frozen=True)
 class Poll:
-    """The predictions of a class as one of its pages sees them; nobody is named.
+    """Predictions of a class as a page sees them: numbers without names.
 
-    `counts`, of each choice, are empty until the leader opens them.
+    `counts` of each choice are empty until the leader opens them.
     """
 
     leads: bool
@@ -57,44 +61,50 @@ class Poll:
 
 
 class History:
-    """The frames of a run that were shown, by iteration, thinned under a memory limit."""
+    """Frames of a run that were shown, by iteration, thinned under a memory limit."""
 
     def __init__(self) -> None:
         self._frames: list[Frame] = []
 
     @property
     def newest(self) -> Frame | None:
-        """The last frame, the answer where the run has one."""
+        """The last frame; of a run that has ended, its answer."""
         if self._frames:
             return self._frames[-1]
         return None
 
     def add(self, frame: Frame) -> None:
-        """Keep a frame; another one of the same iterate takes its place."""
+        """Keep a frame, in place of an earlier frame of the same iterate."""
         last = self.newest
-        place = (frame.iteration, frame.is_answer)
-        if last is not None and (last.iteration, last.is_answer) == place:
-            self._frames.pop()
+        if last is not None:
+            is_same_number = last.iteration == frame.iteration
+            if is_same_number and last.is_answer == frame.is_answer:
+                self._frames.pop()
         self._frames.append(frame)
-        while (
-            sum(kept.nbytes for kept in self._frames) > LIMIT and len(self._frames) > 2
-        ):
+        while len(self._frames) > 2 and self._nbytes() > LIMIT:
             self._frames = [*self._frames[:-1:2], self._frames[-1]]
 
     def at(self, iteration: int) -> Frame:
-        """The last kept frame of the search up to an iteration, or the first one."""
+        """The last kept frame of the search up to an iteration, or the first frame."""
         return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
 
     def after(self, iteration: int) -> int:
-        """Number of the next iterate of the search that is kept; behind the last, of the answer."""
+        """Number of the next kept iterate of the search.
+
+        After the last, of the answer.
+        """
         numbers = self._search()
-        place = bisect_right(numbers, iteration)
-        if place < len(numbers):
-            return numbers[place]
+        index = bisect_right(numbers, iteration)
+        if index < len(numbers):
+            return numbers[index]
         return self._frames[-1].iteration + 1
 
     def _search(self) -> list[int]:
+        """Numbers of the kept iterates but for the answer, ascending."""
         return [kept.iteration for kept in self._frames if not kept.is_answer]
+
+    def _nbytes(self) -> int:
+        return sum(kept.nbytes for kept in self._frames)
 
 
 def default_settings(scene: str) -> Settings:
@@ -103,7 +113,10 @@ def default_settings(scene: str) -> Settings:
 
 
 class PageState(param.Parameterized):
-    """The state of a page: widgets set it, views watch it; `send` hands orders to the worker."""
+    """The state of a page, set by widgets, watched by views.
+
+    `send` passes orders on.
+    """
 
     settings = param.ClassSelector(
         class_=Settings, allow_None=False, doc="Of the run, checked."
@@ -180,7 +193,10 @@ class PageState(param.Parameterized):
         self.param.watch(lambda event: self.send(Pace(PACES[event.new])), "pace")
 
     def change(self, **values: object) -> bool:
-        """Change settings and run; one that is refused is told, and nothing changes."""
+        """Change settings and run them.
+
+        A refused value sets `refusal` and nothing else.
+        """
         settings = self.settings
         for name, value in values.items():
             try:
@@ -192,7 +208,10 @@ class PageState(param.Parameterized):
         return True
 
     def drag(self, name: str, value: float) -> None:
-        """Follow a slider where that is allowed; the answer alone is shown until it is let go."""
+        """Run the value of a dragged slider if it is allowed.
+
+        Only the answer is shown.
+        """
         try:
             settings = self.settings.with_change(name, value)
         except RefusedError:
@@ -202,7 +221,10 @@ class PageState(param.Parameterized):
         self.param.update(refusal="", settings=settings)
 
     def release(self, name: str, value: float) -> None:
-        """Run what a slider or an arrow is let go at; where that is refused, the last before."""
+        """Run the value at which a slider is released.
+
+        If refused, the last allowed one.
+        """
         self.change(**{name: value})
         if self.is_dragged:
             self.run()
@@ -214,7 +236,7 @@ class PageState(param.Parameterized):
         self.run()
 
     def choose_scene(self, scene: str) -> None:
-        """Go to another scene, as it was left."""
+        """Go to another scene with the settings it was left with."""
         if scene != self.settings.scene:
             self.adopt(self._left.get(scene) or default_settings(scene))
 
@@ -225,28 +247,31 @@ class PageState(param.Parameterized):
 
     @property
     def is_over(self) -> bool:
-        """Whether the run that was ordered last has ended."""
+        """Check whether the run that was ordered last has ended."""
         newest = self.newest
-        return (
-            newest is not None
-            and newest.run.number == self.number
-            and newest.status is not None
-        )
+        if newest is None or newest.run.number != self.number:
+            return False
+        return newest.status is not None
 
     @property
     def is_fleeting(self) -> bool:
-        """Whether the frame lacks what the next one has, as the last run of the scene had it."""
+        """Check whether the frame lacks a reference only until the next frame comes.
+
+        The last run of the scene had one; entries of legends that vanish and come back
+        at once would flicker.
+        """
         has_last = self.ghost is not None and self.iteration is None
         return has_last and not self.frame.run.is_compared
 
     @property
     def is_asked(self) -> bool:
-        """Whether a lesson's question is open: in a class until its leader goes on."""
-        poll = self.poll
-        if poll is not None:
-            is_answered = poll.is_answered
-        else:
-            is_answered = self.prediction is not None
+        """Check whether a lesson's question is open.
+
+        In a class until its leader goes on.
+        """
+        is_answered = self.prediction is not None
+        if self.poll is not None:
+            is_answered = self.poll.is_answered
         return bool(self.lesson) and not is_answered
 
     def pause(self) -> None:
@@ -255,7 +280,7 @@ class PageState(param.Parameterized):
         self.send(Pace(0.0))
 
     def go_on(self) -> None:
-        """Have the run go on; one that has ended begins anew."""
+        """Have the run go on, or begin anew if it has ended."""
         if self.is_over or self.is_costly:
             self.run(is_agreed=self.is_costly)
             return
@@ -263,7 +288,10 @@ class PageState(param.Parameterized):
         self.send(Pace(PACES[self.pace]))
 
     def step(self) -> None:
-        """Do one iteration and wait; of a run that has ended, show the next."""
+        """Do one iteration and wait.
+
+        If an earlier iterate is shown, show the next one.
+        """
         shown = self.frame
         newest = self.newest
         if shown is not None and newest is not None and shown is not newest:
@@ -282,41 +310,38 @@ class PageState(param.Parameterized):
         newest = self.newest
         if newest is None:
             return
+        frame = newest
+        shown = None
         # The answer has the number of the last iterate before it.
-        is_newest = (
-            iteration is None or iteration >= newest.iteration + newest.is_answer
-        )
-        if is_newest:
-            frame = newest
-        else:
+        last = newest.iteration + newest.is_answer
+        if iteration is not None and iteration < last:
             frame = self.history.at(iteration)
-        if is_newest:
-            place = None
-        else:
-            place = frame.iteration
-        self.param.update(iteration=place, frame=frame, ghost=self._ghost_at(frame))
+            shown = frame.iteration
+        self.param.update(iteration=shown, frame=frame, ghost=self._ghost_at(frame))
 
-    def _start(self, settings: Settings, pace: float | None = None, **how: Any) -> None:
-        """Order a run; `how` is that of `Start`."""
+    def _start(
+        self, settings: Settings, pace: float | None = None, **options: Any
+    ) -> None:
+        """Order a run with options of `Start`, by default at the page's pace."""
         self.number = next(RUNS)
-        is_dragged = how.get("is_dragged", False)
         self.param.update(
-            is_costly=False, message="", iteration=None, is_dragged=is_dragged
+            is_costly=False,
+            message="",
+            iteration=None,
+            is_dragged=options.get("is_dragged", False),
         )
-        self.send(
-            Start(
-                self.number, settings, PACES[self.pace] if pace is None else pace, **how
-            )
-        )
+        if pace is None:
+            pace = PACES[self.pace]
+        self.send(Start(self.number, settings, pace, **options))
 
     def pin(self) -> None:
-        """Keep the present run beside what follows; or let it go."""
+        """Keep the present run to compare later ones with, or let the kept run go."""
         if self.frame is not None:
             self.pinned = None if self.pinned is not None else self.history
             self.ghost = self._ghost_at(self.frame)
 
     def _ghost_at(self, frame: Frame) -> Frame | None:
-        """The frame that a frame is compared with, of the pinned or the last run of the scene."""
+        """The frame to compare a frame with, of the pinned or last run of the scene."""
         ghost = self._last_run
         pinned = self.pinned
         if pinned is not None and pinned is not self.history:
@@ -324,13 +349,12 @@ class PageState(param.Parameterized):
                 ghost = pinned.newest
             else:
                 ghost = pinned.at(frame.iteration)
-        is_of_scene = (
-            ghost is not None and ghost.run.settings.scene == frame.run.settings.scene
-        )
-        return ghost if is_of_scene else None
+        if ghost is None or ghost.run.settings.scene != frame.run.settings.scene:
+            return None
+        return ghost
 
     def take(self, report: Report) -> None:
-        """Take what the worker reports."""
+        """Take a report of the worker."""
         match report:
             case messages.Began(number):
                 self.began = number
@@ -349,9 +373,10 @@ class PageState(param.Parameterized):
         if frame.run.number != self.number:
             self.send(Ready())
             return
-        if self.history.newest is None or self.history.newest.run.number != self.number:
+        last = self.history.newest
+        if last is None or last.run.number != self.number:
             if self.pinned is not self.history:
-                self._last_run = self.history.newest
+                self._last_run = last
             self.history = History()
         self.history.add(frame)
         with param.parameterized.batch_call_watchers(self):
@@ -363,28 +388,37 @@ class PageState(param.Parameterized):
                 self.send(Ready())
 
     def send_needs(self, *, is_news: bool = True) -> None:
-        """Have frames carry what is seen; a worker that is new is told in any case."""
-        seen = self.selection
-        looked_at = seen.interface, seen.substructure, seen.place
-        needs = Needs(self.needs, *looked_at, tuple(self.readings), self.brought)
+        """Order the extras and quantities in sight, if they differ from the last order.
+
+        A new worker is sent them in any case (`is_news`).
+        """
+        selection = self.selection
+        needs = Needs(
+            self.needs,
+            selection.interface,
+            selection.substructure,
+            selection.place,
+            tuple(self.readings),
+            self.brought,
+        )
         if is_news or needs != self._sent:
             self._sent = needs
             self.send(needs)
 
     def select(self, **values: Any) -> None:
-        """Look at something else."""
+        """Change the selection."""
         self.selection = replace(self.selection, **values)
 
 
 def answer(settings: Settings) -> Settings:
-    """Settings with which the answer is there at once, of a search that would show itself."""
+    """Settings with the answer at once in place of a search that is watched."""
     if settings.finish != SEARCH["finish"]:
         return settings
     return settings.replace(**known(settings, ANSWER))
 
 
 def known(settings: Settings, values: Mapping[str, str]) -> dict[str, str]:
-    """Values of choices, as far as the scene has them."""
+    """Values of choices that the scene has."""
     definitions = settings.definitions()
     return {
         name: value

@@ -1,4 +1,4 @@
-"""What the page says of a run: the line of the status, and the key figures at an instant."""
+"""Texts on a run: the line of its status, and key figures at an instant."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LOST = "no figures are told, as no solution is found at some instants"
 
 
 def status_line(state: PageState) -> str:
-    """How far the run is, or how it ended, with the method's own words behind *details* (HTML).
+    """Progress or end of the run, with the method's message behind *details* (HTML).
 
     What the page says beside is one line, and whole in the details.
     """
@@ -70,7 +70,7 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
 
 
 def _details(frame: Frame, said: list[str]) -> str:
-    """What the method says of itself."""
+    """Message of the method on its end."""
     settings = frame.run.settings
     parts = settings.n_substructures
     kind = "multiscale" if settings.multiscale else "monoscale"
@@ -106,7 +106,7 @@ def _said(state: PageState) -> list[str]:
 
 
 def figures_line(frame: Frame, selection: Selection) -> str:
-    """What became of the thing at the selected instant, as key figures in a line (HTML).
+    """Key figures of the structure at the selected instant, in a line (HTML).
 
     Its largest and last values appear over each of them. Nothing is told of a run some
     of whose instants are known to have no solution.
@@ -139,7 +139,7 @@ def figures_line(frame: Frame, selection: Selection) -> str:
 
 
 def _is_lost(frame: Frame) -> bool:
-    """Whether some instants of a run are known to have no solution."""
+    """Check whether some instants of a run are known to have no solution."""
     return frame.status is not None and frame.status.lost_from is not None
 
 
@@ -149,7 +149,7 @@ def _of_loop(frame: Frame) -> list[KeyFigure]:
 
 
 def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
-    """Unit in which a key figure is read, chosen once for the run; a share is in per cent."""
+    """Unit of a key figure, chosen once for the run; shares are in per cent."""
     if not figure.unit:
         return percent
     return unit_for(abs(figure.largest), figure.unit)

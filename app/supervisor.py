@@ -1,4 +1,7 @@
-"""Keeps a worker at the page's side: started when needed, anew when it ends, hangs or is stuck."""
+"""The supervisor of a page's worker.
+
+Starts it, and again when it ends, hangs or sticks.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,7 @@ class Supervisor:
         self._state.send_needs()
 
     def open(self) -> None:
-        """Take reports as they come, now that a browser is there to see them."""
+        """Take reports from now on, as a browser is there."""
         self._is_open = True
         self._asked = time.monotonic()
         self.take()
@@ -55,7 +58,7 @@ class Supervisor:
             self._worker = None
 
     def take(self) -> None:
-        """Take what has been reported."""
+        """Take the reports that have come."""
         while self._reports:
             worker, report = self._reports.popleft()
             if worker is not self._worker:
@@ -80,7 +83,7 @@ class Supervisor:
                 self._document.add_next_tick_callback(self.take)
 
     def _look(self) -> None:
-        """Start a worker anew that hangs, or that is too busy with a run to begin the next one."""
+        """Replace a worker that hangs, or does not begin the next run in time."""
         if self._worker is None or not self._is_open:
             return
         is_stuck = self._state.began != self._state.number
@@ -90,7 +93,7 @@ class Supervisor:
             self._restart("")
 
     def _restart(self, message: str) -> None:
-        """Run the settings in a new process, unless that has failed before."""
+        """Run the settings in a new process, unless that has failed twice."""
         state = self._state
         self.end()
         if message and state.number == self._failed_in:

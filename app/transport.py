@@ -1,4 +1,7 @@
-"""Run, step, reset; pace; going back to an iterate; playing through time."""
+"""Buttons and sliders of a run: start, pause, step.
+
+Pace; iterate; play through time.
+"""
 
 from __future__ import annotations
 
@@ -16,31 +19,29 @@ from app.state import ANSWER, PACES, SEARCH, PageState, known
 from app.widgets import button, looks, wrapped
 
 PLAYED_IN = 6.0
-"""Seconds in which one plays through the interval."""
+"""Time to play through the interval, s."""
 LIVELY = 60.0
-"""Seconds for which a page plays by itself; several share them, as they do the server's
+"""Time for which a page plays by itself, s; pages share it as they share the server's
 thread."""
 TOUCHED = [
-    *(
-        "settings",
-        "is_dragged",
-        "iteration",
-        "running",
-        "pinned",
-        "tab",
-        "lesson",
-        "case",
-        "room",
-    ),
+    "settings",
+    "is_dragged",
+    "iteration",
+    "running",
+    "pinned",
+    "tab",
+    "lesson",
+    "case",
+    "room",
 ]
-"""What changes when somebody does something."""
+"""Parts of the state that change when a person does something."""
 TICK = 50
-"""Milliseconds between two instants that are shown, at least."""
+"""Least time between two instants that are shown, ms."""
 FOLLOWS = 400
-"""Milliseconds between two moves of the iteration's slider by itself: of values that
+"""Time between two moves of the iteration's slider by the page, ms: of values that
 follow each other more quickly the browser sends the older one back (see `Echoes`)."""
 HELD = 1.0
-"""Seconds after a move of it for which it stays where the hand has left it."""
+"""Time for which that slider rests after a move by hand, s."""
 PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
@@ -85,8 +86,8 @@ class Transport:
         self._show()
 
     def _choices(self) -> list[Any]:
-        """What is watched, how fast, and which iteration."""
-        self._way = pmui.RadioButtonGroup(
+        """Widgets to choose search or answer, the pace, and the iteration."""
+        self._finish = pmui.RadioButtonGroup(
             options=WATCH,
             value="accuracy",
             size="small",
@@ -94,7 +95,7 @@ class Transport:
             description="Watch the search from nothing, or have the answer at once.",
             **looks("words"),
         )
-        self._way.param.watch(lambda event: self._choose_way(event.new), "value")
+        self._finish.param.watch(lambda event: self._choose_finish(event.new), "value")
         pace = pmui.Select.from_param(
             self._state.param.pace,
             options=list(PACES),
@@ -102,7 +103,7 @@ class Transport:
             width=136,
             margin=(6, 4),
         )
-        # Counted from the newest: so its value rests while a run goes on.
+        # Counted from the newest iterate: so its value rests while a run goes on.
         self._iteration = pmui.IntSlider(
             label="Iterations back",
             start=-1,
@@ -115,10 +116,10 @@ class Transport:
             **looks("small-label"),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
-        return [self._way, pace, self._iteration]
+        return [self._finish, pace, self._iteration]
 
     def keys(self) -> dict[str, Any]:
-        """What keys do, by their names."""
+        """Actions of the keys, by their names in the browser."""
         return {
             " ": self._toggle,
             "s": self._state.step,
@@ -132,21 +133,21 @@ class Transport:
 
     @property
     def _goes_on(self) -> bool:
-        """Whether the run goes on until it is paused."""
+        """Check whether the run goes on until it is paused."""
         state = self._state
         return state.running and not state.is_over and not state.is_costly
 
     def _toggle(self) -> None:
-        """Run, pause, or run anew what has ended."""
+        """Run or pause; begin a run anew that has ended."""
         if self._goes_on:
             self._state.pause()
         else:
             self._state.go_on()
 
     def play(self, until: float = 1.0) -> None:
-        """Go through time from the selected instant, up to a share of the interval, or stop.
+        """Play from the selected instant to a share of the interval and again, or stop.
 
-        It stops as well once another instant is selected.
+        Playing ends, too, once another instant is selected.
         """
         if self._playing is not None:
             self.stop()
@@ -172,7 +173,7 @@ class Transport:
         self.play_button.icon = "pause_circle"
 
     def stop(self) -> None:
-        """Go through time no more."""
+        """Stop playing."""
         if self._playing is not None:
             self._document.remove_periodic_callback(self._playing)
             self._playing = None
@@ -181,13 +182,13 @@ class Transport:
 
     @property
     def _is_guided(self) -> bool:
-        """Whether a lesson, a case or a class says what is seen."""
+        """Check whether a lesson, a case or a class decides what is shown."""
         return bool(self._state.lesson or self._state.case or self._state.room)
 
     def _enliven(self) -> None:
-        """Play by itself what the first search of a scene has found, until somebody does something.
+        """Play the result of a scene's first search, until a person does something.
 
-        Whoever has the answer at once goes on from it.
+        A run that has the answer at once is not played.
         """
         frame = self._state.frame
         self._is_touched = True
@@ -196,10 +197,10 @@ class Transport:
             self._is_lively = True
 
     def _touch(self, *events: Any) -> None:
-        """Stop what plays by itself; another scene does so anew.
+        """Stop a page that plays by itself; with another scene it may play again.
 
-        Other settings are seen at the instant of the page's beginning, an arrow where
-        it is held.
+        Changed settings are shown at the initial instant; an arrow that is dragged at
+        the instant where it was taken hold of.
         """
         changed = {event.name: event for event in events}
         settings = changed.get("settings")
@@ -211,7 +212,7 @@ class Transport:
                 self._state.select(phase=Selection.phase)
 
     def _move(self, instants: int) -> None:
-        """Select an instant so many later."""
+        """Select the instant that is a number of instants later."""
         self.stop()
         frame = self._state.frame
         if frame is not None:
@@ -220,42 +221,57 @@ class Transport:
             column = min(max(column, 0), len(times) - 1)
             self._state.select(phase=float(times[column] / times[-1]))
 
-    def _move_iteration(self, way: int) -> None:
-        """Show the kept iterate before the one that is shown, or after it."""
+    def _move_iteration(self, step: int) -> None:
+        """Show the kept iterate before the present one (step -1), or after it (1)."""
         state = self._state
-        if state.frame is not None:
-            shown = state.frame.iteration
-            state.seek(state.history.after(shown) if way > 0 else shown - 1)
+        if state.frame is None:
+            return
+        shown = state.frame.iteration
+        if step > 0:
+            state.seek(state.history.after(shown))
+        else:
+            state.seek(shown - 1)
 
     def _seek(self, back: int) -> None:
-        """Show the iteration to which the slider was moved."""
-        if not self._echoes.has(back):
-            self._moved_at = time.monotonic()
-            self._state.seek(self._last + back if back < 0 else None)
+        """Show the iterate to which a person moved the slider, from the newest back."""
+        if self._echoes.has(back):
+            return
+        self._moved_at = time.monotonic()
+        iteration = None
+        if back < 0:
+            iteration = self._last + back
+        self._state.seek(iteration)
 
-    def _choose_way(self, finish: str) -> None:
-        if finish != self._state.settings.finish:
-            values = SEARCH if finish == SEARCH["finish"] else ANSWER
-            self._state.change(**known(self._state.settings, values))
+    def _choose_finish(self, finish: str) -> None:
+        if finish == self._state.settings.finish:
+            return
+        values = ANSWER
+        if finish == SEARCH["finish"]:
+            values = SEARCH
+        self._state.change(**known(self._state.settings, values))
 
     def _show(self) -> None:
-        """Show how the run goes; the next move of a hand is sooner there than the button."""
+        """Show the state of the run, but not while a slider is dragged.
+
+        It changes at once.
+        """
         state = self._state
         if state.is_dragged:
             return
-        if state.is_costly:
-            waiting = "warning"
+        if self._goes_on:
+            self._run.icon = "pause"
+        elif state.is_costly:
+            self._run.icon = "warning"
         elif state.is_over:
-            waiting = "replay"
+            self._run.icon = "replay"
         else:
-            waiting = "play_arrow"
-        self._run.icon = "pause" if self._goes_on else waiting
+            self._run.icon = "play_arrow"
         self._pin.color = "default" if state.pinned is None else "primary"
         if state.settings.finish in WATCH.values():
-            self._way.value = state.settings.finish
+            self._finish.value = state.settings.finish
 
     def _follow(self) -> None:
-        """Show which iteration is shown."""
+        """Set the slider to the iterate that is shown, unless it was just moved by hand."""
         frame = self._state.frame
         slider = self._iteration
         if self._state.is_over and not self._is_touched:
@@ -263,22 +279,24 @@ class Transport:
         if frame is None or time.monotonic() < self._moved_at + HELD:
             return
         is_newest = frame is self._state.newest
-        if is_newest:
-            back = 0
-        else:
+        back = 0
+        if not is_newest:
             back = min(frame.iteration - self._last, -1)
         start = min(1 - self._last, -1)
-        # As each change is a message, it may end half-way while a run is followed.
+        # As each change is a message, its start may lag behind while a run is followed,
+        # down to half its length.
         if is_newest and not self._state.is_over and start <= slider.start <= start / 2:
             start = slider.start
         if (start, back) != (slider.start, slider.value):
-            slider.param.update(
-                start=start, value=self._echoes.give(back, slider.value)
-            )
+            value = self._echoes.give(back, slider.value)
+            slider.param.update(start=start, value=value)
 
     @property
     def _last(self) -> int:
-        """Number of the newest iterate; an answer comes after the last one of the search."""
+        """Number of the newest iterate.
+
+        An answer follows the last iterate of the search.
+        """
         newest = self._state.newest
         if newest is None:
             return 0
@@ -286,7 +304,7 @@ class Transport:
 
 
 def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button:
-    """A button with an icon alone; an IconButton would keep its first one."""
+    """A button with an icon alone; an `IconButton` would keep its first icon."""
     return button(
         "",
         act,

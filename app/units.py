@@ -1,4 +1,7 @@
-"""Units that values are read in: each setting, axis and figure keeps one, chosen once."""
+"""Units that values are read in.
+
+Each setting, axis and figure keeps one, chosen once.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +52,7 @@ class Unit:
 
 
 def sizes_of(unit: str) -> dict[str, float]:
-    """The units, smallest first, that are multiples of an SI unit, and their sizes in it."""
+    """Multiples of an SI unit and their sizes in it, smallest first."""
     name = unit.replace("^2", "²").replace("^3", "³")
     if unit == "s":
         return TIMES
@@ -59,7 +62,7 @@ def sizes_of(unit: str) -> dict[str, float]:
 
 
 def unit_for(size: float, unit: str) -> Unit:
-    """The unit in which values up to a size, in SI, are read."""
+    """The unit in which values up to a size in SI are read."""
     units = [Unit(name, factor) for name, factor in sizes_of(unit).items()]
     if math.isfinite(size) and size > 0.0:
         size = float(f"{size:.3g}") * (1.0 + 1e-9)
@@ -74,7 +77,7 @@ def unit_for(size: float, unit: str) -> Unit:
 
 
 def unit_of(definition: Parameter) -> Unit:
-    """The unit of a setting, by its default or else its range."""
+    """The unit of a setting, by its default value or else its range."""
     unit = about(definition).unit
     if not isinstance(definition, param.Number):
         return Unit(unit)
@@ -97,7 +100,7 @@ def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit
 
 
 def typed(text: str, unit: Unit, si: str) -> float:
-    """The value in SI of a number as it is typed: in a unit, or in the one that stands behind it.
+    """Value in SI of a typed number, in a unit or in the unit that is typed behind it.
 
     A ValueError says what to write in place of what is no number, or in another unit.
     """
@@ -112,7 +115,7 @@ def typed(text: str, unit: Unit, si: str) -> float:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number, with a power of ten where it is very large or small, and a printed minus."""
+    """A number with a printed minus, and with a power of ten where it needs one."""
     near = float(f"{value:.{digits}g}")
     if near != 0.0 and math.isfinite(near) and not 1e-3 <= abs(near) < 1e6:
         digit, exponent = f"{value:.{digits - 1}e}".split("e")

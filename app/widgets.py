@@ -1,4 +1,4 @@
-"""Widgets that several parts of the page have alike."""
+"""Widgets that several parts of the page share."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def looks(role: str) -> dict[str, Any]:
 
 
 class PlainText(pn.viewable.Viewer):
-    """Text that is shown as it is, whatever it holds: nothing in it is markup.
+    """Text that is shown literally: nothing in it is markup.
 
     What comes from a file, an address or a class is shown by this: Markdown, HTML and
     `Str` panes, and the `Alert`, `Typography` and `StaticText` of panel-material-ui
@@ -57,7 +57,7 @@ def button(label: str, act: Callable[[], object], **look: Any) -> pmui.Button:
 
 
 def wrapped(*objects: Any, **look: Any) -> pn.Row:
-    """A row that goes on in the next line where there is no room: simpler than a `FlexBox`."""
+    """A row that wraps where there is no room: simpler than a `FlexBox`."""
     return pn.Row(*objects, margin=0, **{"styles": {"flex-wrap": "wrap"}, **look})
 
 
@@ -71,7 +71,7 @@ def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:
 def download(
     label: str, filename: str, make: Callable[[], str | bytes], **look: Any
 ) -> Any:
-    """A button that saves what a function makes once it is pressed."""
+    """A button that, once pressed, saves the text that a function makes."""
 
     def data() -> io.BytesIO:
         content = make()

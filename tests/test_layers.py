@@ -1,11 +1,13 @@
 """The parts know each other in one direction only."""
 
 import ast
+import re
 import subprocess
 import sys
 from collections import defaultdict
 from functools import cache
 from graphlib import TopologicalSorter
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -35,9 +37,25 @@ method stand before all that knows settings and scenes."""
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
 ABOVE = {"method", "iteration", "solve", "slabs"}
 """Files of the method that put its parts to work."""
-FLOORS = [["units", "frame", "messages"], ["worker"], ["refusals", "state"], ["views"]]
-"""Parts of the page; each may import itself, what stands beside it and before it. All
-others are above, and in no worker."""
+
+
+def floors():
+    """Modules and folders of the page, line by line of the list in its README."""
+    text = (ROOT / "app" / "README.md").read_text(encoding="utf-8")
+    section = text.partition("## Where do I change what")[2].partition("\n## ")[0]
+    lines = re.findall(r"^- (.*(?:\n  .*)*)", section, re.MULTILINE)
+    return [
+        [
+            path.removesuffix(".py").rstrip("/").replace("/", ".")
+            for path in re.findall(r"`([\w/]+(?:\.py|/))`", line)
+        ]
+        for line in lines
+    ]
+
+
+FLOORS = floors()
+"""Parts of the page from the top to the bottom; each imports from its own line and from
+those below."""
 
 
 def modules(package):
@@ -90,6 +108,16 @@ def place(module, places):
     return next(found, len(places))
 
 
+def floor(module):
+    """Line of the list in which a module of the page, or else its folder, stands."""
+    name = module.removeprefix("app.")
+    for part in (name, name.partition(".")[0]):
+        for number, parts in enumerate(FLOORS):
+            if part in parts:
+                return number
+    raise AssertionError(f"{module} is not in the list of app/README.md")
+
+
 def graphics_in(some, graphics):
     return [
         one for one in some if {name.split(".")[0] for name in imports(one)} & graphics
@@ -131,9 +159,14 @@ def test_imports_inside_the_page_go_one_way():
     parts = PAGE.keys() - {"app"}
     for module in parts:
         for name in imports(module) & parts:
-            assert place(name, FLOORS) <= place(module, FLOORS), (
-                f"{module} imports {name}"
-            )
+            assert floor(name) >= floor(module), f"{module} imports {name}"
+
+
+def test_the_list_of_the_page_names_files_that_exist():
+    assert FLOORS
+    for name in chain.from_iterable(FLOORS):
+        path = ROOT / "app" / name.replace(".", "/")
+        assert path.is_dir() or path.with_suffix(".py").is_file(), name
 
 
 @pytest.mark.parametrize("package", [SOLVER, PAGE], ids=["solver", "app"])

@@ -1,4 +1,4 @@
-"""The tab Fit: settings under which a run is nearest to a measured loop, and what that tells."""
+"""The tab Fit: settings with which a run is nearest to a measured loop."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
 
 
 class FitTab(CommandTab):
-    """The tab: the state has the measured loop and where the settings begin."""
+    """The tab Fit; the state has the measured loop and the initial settings."""
 
     def __init__(self, state: PageState) -> None:
         opener = TableOpener(state, "Open a measured loop", TABLES, 230)
@@ -44,16 +44,21 @@ class FitTab(CommandTab):
 
     @property
     def measured(self) -> MeasuredLoop | None:
-        """The loop, if one was brought that is of these quantities."""
+        """The measured loop that was opened, if it has the quantities of the scene."""
         brought = self.state.brought
         if not isinstance(brought, MeasuredLoop):
             return None
         units = tuple(unit for _, unit in axes_on(self.state))
-        return brought if brought.units == units else None
+        if brought.units != units:
+            return None
+        return brought
 
     @property
     def command(self) -> Command | None:
-        """The fit of the settings that are ticked to the loop, if there are some, and one."""
+        """The fit of the ticked settings to the loop.
+
+        None without settings or a loop.
+        """
         names = ",".join(self.chosen.value)
         loop = self.measured
         if loop is None or not names:
@@ -63,19 +68,22 @@ class FitTab(CommandTab):
 
     @property
     def words(self) -> str:
-        """What it does, and what is missing."""
+        """Description of the fit, and of what is missing to start it."""
+        missing = ""
         if self.measured is None:
             missing = NO_LOOP
-        elif self.chosen.value:
-            missing = ""
-        else:
+        elif not self.chosen.value:
             missing = NO_SETTING
-        return f"Settings with which the run is as near to a measured loop as can be. {missing}"
+        return (
+            "Settings with which the run is as near to a measured loop as can be. "
+            f"{missing}"
+        )
 
     def show(self) -> None:
         """Offer the settings that can be fitted, and show the last fit."""
         settings = self.state.settings
-        titles = {title_of(settings.definitions()[n]): n for n in fittable(settings)}
+        definitions = settings.definitions()
+        titles = {title_of(definitions[name]): name for name in fittable(settings)}
         kept = [name for name in self.chosen.value if name in titles.values()]
         if self.chosen.options != titles or self.chosen.value != kept:
             self.chosen.param.update(options=titles, value=kept)
@@ -84,43 +92,47 @@ class FitTab(CommandTab):
         self._draw()
 
     def look(self) -> None:
-        """Follow the fit: its nearest loop so far moves onto the measured one."""
+        """Follow the fit, and draw its nearest loop so far."""
         super().look()
         if self.job is not None and self.state.tab == "Fit":
             self._draw()
 
     def _draw(self) -> None:
-        """Draw the measured loop and the nearest so far, until there is the report."""
-        if self.job is not None or not self.written:
+        """Draw the measured and the nearest loop, as long as there is no report."""
+        has_report = self.job is None and bool(self.written)
+        chart = None
+        if not has_report:
             chart = self._panel()
-        else:
-            chart = None
         self._chart.view.visible = chart is not None
         if chart is not None:
             self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
+        """The measured loop, and the nearest run so far.
+
+        None without a measured loop.
+        """
         measured = self.measured
         if measured is None:
             return None
         curves = [
             PanelCurve("measured", measured.displacement, measured.force, 5, "points")
         ]
-        if self.job is None:
-            file = None
-        else:
+        if self.job is not None:
             file = self.job.folder / OUT / LOOP
-        if file is not None and file.exists():
-            _, across, up = pd.read_csv(file).to_numpy().T
-            curves.append(PanelCurve("nearest run", across, up, 1))
-        x, y = (PanelAxis(title, unit) for title, unit in axes_on(self.state))
+            if file.exists():
+                _, across, up = pd.read_csv(file).to_numpy().T
+                curves.append(PanelCurve("nearest run", across, up, 1))
+        across_axis, up_axis = axes_on(self.state)
+        x = PanelAxis(*across_axis)
+        y = PanelAxis(*up_axis)
         return Panel(measured.source, x, y, tuple(curves))
 
     def use(self) -> None:
-        """Run what was found on the live tab, in as many digits as one reads."""
+        """Run the fitted settings on the live tab, rounded to six digits."""
         found = settings_from_toml(self.written[SETTINGS].decode())
-        values = {name: getattr(found, name) for name in fittable(found)}
+        rounded = {
+            name: float(f"{getattr(found, name):.6g}") for name in fittable(found)
+        }
         self.state.tab = TABS[0]
-        self.state.adopt(
-            found.replace(**{n: float(f"{v:.6g}") for n, v in values.items()})
-        )
+        self.state.adopt(found.replace(**rounded))

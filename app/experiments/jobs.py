@@ -1,4 +1,7 @@
-"""Work that pages have a server do: commands, one after the other, and sweeps, side by side."""
+"""Long work of pages.
+
+Commands, one at a time for all pages, and sweeps, side by side.
+"""
 
 from __future__ import annotations
 
@@ -27,17 +30,17 @@ log = logging.getLogger(__name__)
 LOOK = 500
 """Milliseconds between two looks of a page at its work."""
 LIMIT = 60.0
-"""Seconds that a run of a sweep may take: nobody waits longer for a point of a
-chart."""
+"""Largest time of a run of a sweep, s: nobody waits longer for a point of a chart."""
 PROCESSES = "processes"
 VARIABLE = "SLIPFRONT_EXECUTOR"
-"""Of the environment: where sweeps run."""
+"""Variable of the environment that says where sweeps run."""
 SETTINGS = "settings.toml"
 OUT = "out"
+"""File of the settings, and folder of the results, of a command."""
 
 
 def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
-    """Have this page look at its work from time to time, and end it when the page is closed."""
+    """Call `look` from time to time, and `end` when the page is closed."""
     document = pn.state.curdoc
     if document is not None and document.session_context is not None:
         # Not before the browser is there: what changes while it loads may not reach it.
@@ -47,7 +50,7 @@ def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
 
 @cache
 def executor() -> Executor:
-    """What runs the commands of all pages: a process at a time, which write here.
+    """The executor of the commands of all pages: one process at a time on this machine.
 
     Two at a time would spoil each other's measurements, and thirty the server.
     """
@@ -59,17 +62,17 @@ def executor() -> Executor:
 class Job:
     """A command that is waiting, running, or done.
 
-    Its arguments, as after `python -m solver`, may name the folder `OUT`, and files by
-    the names of their texts.
+    Its arguments, as after `python -m solver`, may name the folder `OUT`, and the files
+    of `texts`, whose keys are names and whose values are contents.
     """
 
     def __init__(
         self, arguments: Sequence[str], texts: Mapping[str, str] | None = None
     ) -> None:
-        self._place = TemporaryDirectory(
+        self._directory = TemporaryDirectory(
             prefix="slipfront-", ignore_cleanup_errors=True
         )
-        self.folder = Path(self._place.name)
+        self.folder = Path(self._directory.name)
         for name, text in (texts or {}).items():
             (self.folder / name).write_text(text, encoding="utf-8")
         self._began = time.monotonic()
@@ -78,70 +81,68 @@ class Job:
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more comes."""
+        """Check whether the command is done or cancelled."""
         return self._future.done()
 
     @property
     def lines(self) -> list[str]:
-        """What the command has printed so far, without empty lines."""
+        """Lines that the command has printed so far, without empty ones."""
         file = self.folder / LOG
-        if file.exists():
-            text = file.read_text(encoding="utf-8")
-        else:
-            text = ""
-        return [line.strip() for line in text.splitlines() if line.strip()]
+        if not file.exists():
+            return []
+        lines = file.read_text(encoding="utf-8").splitlines()
+        return [line.strip() for line in lines if line.strip()]
 
     @property
     def files(self) -> dict[str, bytes]:
-        """What the command has written, by name."""
+        """Files that the command has written, by name."""
         out = self.folder / OUT
         return {file.name: file.read_bytes() for file in sorted(out.glob("*"))}
 
     @property
     def progress(self) -> str:
-        """How far it is, or why it came to nothing."""
+        """The command's time and last line, or why it failed; "" once it is done."""
         if not self._future.running() and not self.is_over:
             return "Waiting: another report is made first."
         if self.is_over:
             return self.failure
-        return (
-            f"{time.monotonic() - self._began:.0f} s: {(self.lines or ['Working'])[-1]}"
-        )
+        last = "Working"
+        if lines := self.lines:
+            last = lines[-1]
+        return f"{time.monotonic() - self._began:.0f} s: {last}"
 
     @property
     def failure(self) -> str:
-        """Why it came to nothing in the end, or nothing."""
+        """Reason why the command failed, or ""."""
         if self._is_cancelled:
             return "Cancelled."
         if self._future.exception() is not None:
             return "Its process stopped unexpectedly; start it again."
-        has_failed = self._future.result() not in (0, 1) or not (
-            self.files or self.lines
-        )
-        if has_failed:
+        has_output = bool(self.files or self.lines)
+        if self._future.result() not in (0, 1) or not has_output:
             return "\n".join(self.lines[-3:])
         return ""
 
     def cancel(self) -> None:
-        """End it; a process at work is ended at once."""
+        """End the command; a process at work is ended at once."""
         self._is_cancelled = self._is_cancelled or not self.is_over
         self._future.cancel()
 
     def close(self) -> None:
-        """End it and leave nothing behind."""
+        """End the command and remove its folder."""
         self.cancel()
-        self._place.cleanup()
+        self._directory.cleanup()
 
 
 def share_of(named: str, users: int) -> str:
-    """What each of so many sweeps has of an executor: of a cluster, which has a queue, all.
+    """Executor of one of several sweeps: some local processes, or a whole cluster.
 
-    A queue for all would have everybody wait for the longest run of anybody.
+    A cluster has a queue. One queue for all local sweeps would have everybody wait for
+    the longest run of anybody.
     """
     kind, _, named_count = named.partition(":")
     count = named_count or str(processors())
-    is_local = kind == PROCESSES and count.isdecimal()
-    if is_local:
+    if kind == PROCESSES and count.isdecimal():
         return f"{PROCESSES}:{max(1, int(count) // users)}"
     return named
 
@@ -149,7 +150,7 @@ def share_of(named: str, users: int) -> str:
 class Sweep:
     """Runs of a plan, on a thread of its own.
 
-    `rows` are those that have come; `message` says why it came to nothing, or is empty.
+    `rows` are the finished runs; `message` says why the sweep ended early, or is empty.
     """
 
     _under_way: ClassVar[set[Sweep]] = set()
@@ -164,31 +165,27 @@ class Sweep:
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more comes."""
+        """Check whether the sweep has ended."""
         return not self.thread.is_alive()
 
     @property
     def progress(self) -> str:
-        """How many runs have come."""
+        """Number of finished runs."""
         return f"{len(self.rows)} of {self.plan.size} runs"
 
     def cancel(self) -> None:
-        """End it; what has come so far stays."""
+        """End the sweep; finished runs stay."""
         self._is_cancelled.set()
 
     def _go(self) -> None:
         self._under_way.add(self)
-        on = share_of(os.environ.get(VARIABLE) or PROCESSES, len(self._under_way))
+        named = os.environ.get(VARIABLE) or PROCESSES
+        share = share_of(named, len(self._under_way))
         try:
-            with opened(on, patience(LIMIT)) as where:
-                self.rows.extend(
-                    sweep(
-                        self.plan,
-                        where,
-                        limit=LIMIT,
-                        cancelled=self._is_cancelled.is_set,
-                    )
-                )
+            with opened(share, patience(LIMIT)) as where:
+                is_cancelled = self._is_cancelled.is_set
+                rows = sweep(self.plan, where, limit=LIMIT, cancelled=is_cancelled)
+                self.rows.extend(rows)
         except RefusedError as refusal:
             self.message = str(refusal)
         except Exception as trouble:

@@ -1,4 +1,7 @@
-"""What the tab What if asks: a quantity over one or two settings, and the fields of a setting."""
+"""Questions of the tab What if.
+
+A quantity over one or two settings, and their fields.
+"""
 
 from __future__ import annotations
 
@@ -38,16 +41,16 @@ GRAMMAR = (
 )
 VALUES = 13
 COARSE = 10
-"""Values of a range, and along each side of a map."""
+"""Numbers of values of a range, and along each side of a map."""
 TENTH = 0.1
 HUNDREDTH = 0.01
 COURSES = (4, 6, 8, 10)
-"""Courses of bricks that are compared: all runs take less than a minute."""
+"""Numbers of courses of bricks that are compared: all runs take less than a minute."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """One or two settings over their values, and a quantity."""
+    """A quantity over the values of one or two settings."""
 
     vary: tuple[str, ...]
     """`NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`; in SI."""
@@ -58,7 +61,13 @@ class Question:
         return " ".join((*self.vary, self.of))
 
     def plan(self, settings: Settings) -> Plan:
-        """The runs that answer it, everything else as in some settings; they may be refused."""
+        """Runs that answer the question, all else as in some settings.
+
+        Raises
+        ------
+        RefusedError
+            If the runs cannot be done, or a setting does nothing in them.
+        """
         plan = plan_of(self.asked(settings), self.vary, [self.of])
         for name in plan.idle():
             can = "settings that do something here"
@@ -66,22 +75,25 @@ class Question:
         return plan
 
     def asked(self, settings: Settings) -> Settings:
-        """Settings of the runs that answer it beside those of the page.
+        """Settings of the runs that answer the question, made of those of the page.
 
-        At once, as nobody watches them; where LATIN's own iterations are counted, these
-        go on until they are within what is asked.
+        Runs finish at once, as nobody watches them; where LATIN's own iterations are
+        counted, they go on to the accuracy of the question.
         """
         if settings.finish == "none":
             return settings
         if not self.of.startswith("iterations"):
             return answer(settings)
         with contextlib.suppress(RefusedError):
-            nearer = min(reading(self.of).at or settings.accuracy, settings.accuracy)
-            return settings.replace(finish=SEARCH["finish"], accuracy=nearer)
+            accuracy = settings.accuracy
+            threshold = reading(self.of).at
+            if threshold:
+                accuracy = min(threshold, accuracy)
+            return settings.replace(finish=SEARCH["finish"], accuracy=accuracy)
         return settings
 
     def refusal(self, settings: Settings) -> str:
-        """What of it cannot be run and why, or nothing."""
+        """Reason why the question cannot be run, or ""."""
         try:
             self.plan(settings)
         except RefusedError as refusal:
@@ -90,42 +102,42 @@ class Question:
 
 
 def question_of(text: str, settings: Settings) -> Question:
-    """The question that a text asks; where settings do not have it, the first that is ready."""
+    """The question of a text; where settings do not have it, the first ready one."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
     names = {setting.partition("=")[0] for setting in vary}
-    is_known = names <= variable(settings).keys() and of.partition("@")[
-        0
-    ] in quantities(settings)
-    if is_known and not question.refusal(settings):
-        return question
-    return next(
-        ready for make in READY.values() if (ready := make(settings)) is not None
-    )
+    quantity = of.partition("@")[0]
+    if names <= variable(settings).keys() and quantity in quantities(settings):
+        if not question.refusal(settings):
+            return question
+    ready = [make(settings) for make in READY.values()]
+    return next(question for question in ready if question is not None)
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
-    """Settings that may vary: those that do something here and have several values."""
-    return {
-        name: definition
-        for name, definition in settings.definitions().items()
-        if settings.applies(name)
-        and (isinstance(definition, param.Number) or len(names_of(definition)) > 1)
-    }
+    """Settings that may vary: they do something here and have several values."""
+    known = {}
+    for name, definition in settings.definitions().items():
+        is_number = isinstance(definition, param.Number)
+        has_several = is_number or len(names_of(definition)) > 1
+        if has_several and settings.applies(name):
+            known[name] = definition
+    return known
 
 
 def quantities(settings: Settings) -> dict[str, Quantity]:
     """Quantities that runs of these settings may have."""
-    return {
-        name: quantity
-        for name, quantity in QUANTITIES.items()
-        if quantity.applies(settings)
-        and (has_reference(settings) or quantity.reads != "errors")
-    }
+    has_errors = has_reference(settings)
+    known = {}
+    for name, quantity in QUANTITIES.items():
+        can_be_read = has_errors or quantity.reads != "errors"
+        if can_be_read and quantity.applies(settings):
+            known[name] = quantity
+    return known
 
 
 def names_of(definition: Parameter) -> list[str]:
-    """Values of a setting that are no numbers."""
+    """Names of the values of a setting; none where they are numbers."""
     if isinstance(definition, param.Boolean):
         return ["false", "true"]
     if isinstance(definition, CurveParameter):
@@ -136,79 +148,102 @@ def names_of(definition: Parameter) -> list[str]:
 
 
 def proposed(settings: Settings, name: str) -> str:
-    """Values that are proposed for a setting: what its slider shows, or all its names."""
+    """Proposed values of a setting: the range of its slider, or all its names."""
     definition = settings.definitions()[name]
     if not isinstance(definition, param.Number):
         return f"{name}={','.join(names_of(definition))}"
     low, high = definition.softbounds
-    return f"{name}={low:g}:{high:g}:{VALUES}{LOG * is_logarithmic(definition)}"
+    return _range(name, low, high, VALUES, is_log=is_logarithmic(definition))
+
+
+def _range(name: str, low: float, high: float, count: int, *, is_log: bool) -> str:
+    """Values of a setting between two ends, in even steps or ratios (text)."""
+    text = f"{name}={low:g}:{high:g}:{count}"
+    if is_log:
+        text += LOG
+    return text
 
 
 def iterations_over_k(settings: Settings) -> Question:
     """Iterations over the search direction, with and without acceleration."""
-    names = "k_scale", *["acceleration"] * ("acceleration" in variable(settings))
-    return _iterations(settings, TENTH, *(proposed(settings, name) for name in names))
+    vary = [proposed(settings, "k_scale")]
+    if "acceleration" in variable(settings):
+        vary.append(proposed(settings, "acceleration"))
+    return _iterations(settings, TENTH, *vary)
 
 
-def _iterations(settings: Settings, within: float, *vary: str) -> Question:
-    """Iterations until the force is within a share, or else all, over settings."""
+def _iterations(settings: Settings, accuracy: float, *vary: str) -> Question:
+    """Iterations to an accuracy of the force over settings; all without a reference."""
+    of = "iterations"
     if has_reference(settings):
-        of = f"iterations_to_force@{within}"
-    else:
-        of = "iterations"
+        of = f"iterations_to_force@{accuracy}"
     return Question(vary, of)
 
 
 def _bricks(settings: Settings) -> Question | None:
-    """Over the courses, which the load passes one after the other; more bricks a course help."""
+    """Iterations over the number of courses, with and without the macro problem.
+
+    The load passes from course to course; None without courses.
+    """
     if "courses" not in variable(settings):
         return None
-    courses = ",".join(map(str, COURSES))
+    courses = ",".join(str(count) for count in COURSES)
     return _iterations(
         settings, HUNDREDTH, f"courses={courses}", "multiscale=true,false"
     )
 
 
 def _energy(settings: Settings, count: int, *others: str) -> Question | None:
-    """Energy over other settings and the load, from a tenth of what their sliders reach on.
+    """Energy over the load and other settings, from a tenth of their sliders' ends.
 
-    None where no number says how large the load is, or one of the others does nothing.
+    None where no number sets the size of the load, or another setting does nothing.
     The values of a load alone that is positive have even ratios.
     """
     known = variable(settings)
-    vary = []
     numbers = [name for name in known if isinstance(known[name], param.Number)]
-    loads = [
-        n for n in (*settings.CHIEF, *numbers) if n in numbers and about(known[n]).path
-    ]
-    if not loads or not {*others} <= {*numbers}:
+    load = _load_of(settings, numbers)
+    if load is None or not set(others) <= set(numbers):
         return None
-    for name in (*others, loads[0]):
-        end = known[name].softbounds[getattr(settings, name) >= 0.0]
+    vary = []
+    for name in (*others, load):
+        low, high = known[name].softbounds
+        if getattr(settings, name) >= 0.0:
+            end = high
+        else:
+            end = low
         low, high = sorted((TENTH * end, end))
         is_log = not others and end > 0.0
-        vary.append(f"{name}={low:g}:{high:g}:{count}{LOG * is_log}")
+        vary.append(_range(name, low, high, count, is_log=is_log))
     return Question(tuple(vary), "dissipation")
+
+
+def _load_of(settings: Settings, numbers: list[str]) -> str | None:
+    """The first number, chief settings before others, that a load path multiplies."""
+    definitions = settings.definitions()
+    for name in (*settings.CHIEF, *numbers):
+        if name in numbers and about(definitions[name]).path:
+            return name
+    return None
 
 
 TEXTS = tomllib.loads(
     (Path(__file__).parent / "texts.toml").read_text(encoding="utf-8")
 )
-"""A word on each question and report, by what its button says."""
+"""A word on each question and report, by the label of its button."""
 READY: dict[str, Callable[[Settings], Question | None]] = {
-    # Small ones take its third power along rods (Masing).
+    # For small amplitudes the energy in rods grows with their third power (Masing).
     "Energy over amplitude": lambda given: _energy(given, VALUES),
     "Iterations over k": iterations_over_k,
     "Iterations over bricks": _bricks,
     "Energy over friction and load": lambda given: _energy(given, COARSE, "friction"),
 }
-"""Questions that are ready, by what their buttons say."""
+"""Ready questions, by the labels of their buttons."""
 
 
 class Span:
-    """The fields of one setting, if there is one, and its values.
+    """Fields for the name of a setting that varies and for its values.
 
-    `changed` is called when somebody has changed a field.
+    `changed` is called when a person has changed a field.
     """
 
     def __init__(
@@ -231,14 +266,14 @@ class Span:
             field.param.watch(self._on_field, "value")
 
     def show(self, settings: Settings, text: str) -> None:
-        """Show a setting and its values, in the unit of its control; "" is none."""
+        """Show a setting and its values in the unit of its control; "" shows none."""
         self._settings = settings
         self._is_updating = True
         name, _, values = text.partition("=")
-        titles = {
-            _titled(known, settings): key for key, known in variable(settings).items()
-        }
-        self.name.param.update(options={**self._nothing, **titles}, value=name)
+        options = dict(self._nothing)
+        for key, known in variable(settings).items():
+            options[_titled(known, settings)] = key
+        self.name.param.update(options=options, value=name)
         definition = settings.definitions().get(name)
         label = "Values"
         if isinstance(definition, param.Number):
@@ -253,7 +288,13 @@ class Span:
         self._is_updating = False
 
     def text(self) -> str:
-        """The setting and its values in SI, "" for none; a ValueError for what is no number."""
+        """The setting and its values in SI, as in `Question.vary`; "" without a setting.
+
+        Raises
+        ------
+        ValueError
+            If a value is no number.
+        """
         name = self.name.value
         if not name:
             return ""
@@ -266,29 +307,27 @@ class Span:
         return f"{name}={values.replace(' ', '')}"
 
     def _on_field(self, event: param.parameterized.Event) -> None:
-        """Have the question changed; another setting brings its own values."""
+        """Tell that the question has changed; another setting brings its own values."""
         if self._is_updating:
             return
         if event.obj is self.name:
-            self.show(
-                self._settings, proposed(self._settings, event.new) if event.new else ""
-            )
+            text = ""
+            if event.new:
+                text = proposed(self._settings, event.new)
+            self.show(self._settings, text)
         self._changed()
 
 
 def _converted(values: str, convert: Callable[[str], str]) -> str:
-    """The ends of a range, or all numbers of a list, each as a function gives it."""
-    sign = ":" if ":" in values else ","
-    parts = values.split(sign)
-    if sign == ":":
-        ends = 2
-    else:
-        ends = len(parts)
-    return sign.join([*map(convert, parts[:ends]), *parts[ends:]])
+    """A range with both ends converted, or a list with all its numbers converted."""
+    if ":" in values:
+        low, high, *rest = values.split(":")
+        return ":".join([convert(low), convert(high), *rest])
+    return ",".join([convert(part) for part in values.split(",")])
 
 
 def _titled(definition: Parameter, settings: Settings) -> str:
-    """Title of a setting, with its group where another has the same."""
+    """Title of a setting, with its group where another setting has the same title."""
     titles = [title_of(other) for other in settings.definitions().values()]
     title = title_of(definition)
     if titles.count(title) > 1:

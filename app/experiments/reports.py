@@ -1,4 +1,4 @@
-"""Tabs on which long commands are started, followed and read: Reports, and what Fit has alike."""
+"""Tabs that start and follow a long command and show its report; the tab Reports."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COMMANDS = {
     "Stability": ("stability", "--quick"),
     "Proof": ("proof",),
 }
-"""By what is said of them in `WORDS`."""
+"""Arguments of the commands, by the titles that `WORDS` has of them."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
 FRAME = (
     '<iframe title="{title}" srcdoc="{page}" '
@@ -32,14 +32,15 @@ FRAME = (
 Command = tuple[tuple[str, ...], dict[str, str]]
 """Arguments, and the texts of files that these name."""
 Files = dict[str, bytes]
+"""Contents of files by their names."""
 
 
 class CommandTab(ABC):
-    """A tab with fields for a command, which is started there, and whose report is read there.
+    """A tab with fields for a command, buttons that start and end it, and its report.
 
-    `report` is the one that is chosen, of which `page` shows the last, and `files` has
-    buttons that save what was written; `job` is the command that is waiting or runs,
-    `buttons` are all buttons.
+    `report` is the title of the chosen report; `page` shows its last result, and
+    `files` has buttons that save its files. `job` is the command that is waiting or
+    runs, `buttons` are all buttons.
     """
 
     def __init__(self, state: PageState, tab: str, *fields: Any) -> None:
@@ -71,25 +72,25 @@ class CommandTab(ABC):
     @property
     @abstractmethod
     def command(self) -> Command | None:
-        """The command of the fields as they are, if it can be started."""
+        """The command of the present fields, if it can be started."""
 
     @property
     @abstractmethod
     def words(self) -> str:
-        """What it does, or what it cannot be started without."""
+        """Description of the command, or of what is missing to start it."""
 
     @property
     def report(self) -> str:
-        """What is started, and shown."""
+        """Title of the report that is started and shown."""
         return self._tab
 
     @property
     def written(self) -> Files:
-        """What the last report has written, whatever is set now."""
+        """Files of the last report, whatever is set now."""
         return self._done.get(self.report, {})
 
     def start(self) -> None:
-        """Have the command run, in place of the one before."""
+        """Run the command, in place of a running one."""
         self.end()
         self._started = self.report
         self.job = Job(*self.command)
@@ -103,20 +104,20 @@ class CommandTab(ABC):
             self.look()
 
     def end(self) -> None:
-        """Leave nothing behind."""
+        """End the command and remove its files."""
         if self.job is not None:
             self.job.close()
             self.job = None
 
     def look(self) -> None:
-        """Follow the command that runs."""
+        """Show the progress of the command, and its report once it is over."""
         job = self.job
         if job is None:
             return
-        if job.progress:
-            self.progress.object = f"{self._started}: {job.progress}"
-        else:
-            self.progress.object = ""
+        progress = job.progress
+        if progress:
+            progress = f"{self._started}: {progress}"
+        self.progress.object = progress
         if not job.is_over:
             return
         if not job.failure:
@@ -125,19 +126,17 @@ class CommandTab(ABC):
         self.show()
 
     def show(self) -> None:
-        """Show what is chosen, and the report if there is one."""
+        """Show the chosen command, and its report if there is one."""
         if self.state.tab != self._tab:
             return
         is_busy = self.job is not None
         files = self.written
         self._words.object = self.words
+        label = "Start"
         if files:
             label = "Do it again"
-        else:
-            label = "Start"
-        self.start_button.param.update(
-            disabled=is_busy or self.command is None, label=label
-        )
+        is_disabled = is_busy or self.command is None
+        self.start_button.param.update(disabled=is_disabled, label=label)
         self.cancel_button.visible = is_busy
         self.page.object = shown(files)
         self.files[:] = [
@@ -164,31 +163,30 @@ class Reports(CommandTab):
 
     @property
     def report(self) -> str:
-        """The report that is chosen."""
+        """Title of the chosen report."""
         return self.kind.value
 
     @property
     def command(self) -> Command:
-        """The command of the report that is chosen."""
-        return (*COMMANDS[self.report], "--out", OUT), {
-            SETTINGS: dump(self.state.settings)
-        }
+        """The command of the chosen report."""
+        arguments = (*COMMANDS[self.report], "--out", OUT)
+        return arguments, {SETTINGS: dump(self.state.settings)}
 
     @property
     def words(self) -> str:
-        """What it is of."""
+        """Description of the chosen report."""
         return WORDS[self.report]
 
 
 def shown(files: Files) -> str:
-    """The page among a report's files, in a frame; its links to runs lead to this server (HTML)."""
-    for name, data in files.items():
-        if name.endswith(".html"):
-            if pn.state.location is not None:
-                path = pn.state.location.pathname
-            else:
-                path = ""
-            text = data.decode().replace(PAGE, path or "app")
-            text = text.replace("<style>", '<base target="_parent"><style>', 1)
-            return FRAME.format(title=escape(name), page=escape(text))
-    return ""
+    """The page among a report's files in a frame, with links to this server (HTML)."""
+    pages = [name for name in files if name.endswith(".html")]
+    if not pages:
+        return ""
+    name = pages[0]
+    path = "app"
+    if pn.state.location is not None and pn.state.location.pathname:
+        path = pn.state.location.pathname
+    text = files[name].decode().replace(PAGE, path)
+    text = text.replace("<style>", '<base target="_parent"><style>', 1)
+    return FRAME.format(title=escape(name), page=escape(text))

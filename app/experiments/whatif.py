@@ -1,4 +1,4 @@
-"""The tab What if: a question over a range of settings, and its chart, which fills as runs end."""
+"""The tab What if: a question over a range of settings, and a chart of its runs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,10 @@ SCALES = {"automatic": None, "linear": False, "logarithmic": True}
 
 
 class WhatIf:
-    """The tab: the state has the question, and all that does not vary."""
+    """The tab What if.
+
+    The state has the question, and the settings that do not vary.
+    """
 
     def __init__(self, state: PageState) -> None:
         self.state = state
@@ -77,7 +80,7 @@ class WhatIf:
             width=150,
             **FIELD,
         )
-        self._scale.param.watch(lambda event: self.sweep and self._draw(), "value")
+        self._scale.param.watch(lambda event: self._on_scale(), "value")
         self._start = button("Draw", self.start, icon="play_arrow", **FIELD)
         look = {"variant": "outlined", **FIELD}
         self._cancel = button("Cancel", self.cancel, icon="stop", **look)
@@ -90,7 +93,7 @@ class WhatIf:
         self._meshed = PlainText(margin=(10, 8))
 
     def start(self) -> None:
-        """Have the question answered, in place of the one before."""
+        """Run the sweep of the question, in place of a running one."""
         refusal = self.question.refusal(self.state.settings)
         if refusal:
             self.message.object = refusal
@@ -100,18 +103,18 @@ class WhatIf:
         self._draw()
 
     def cancel(self) -> None:
-        """End the sweep; what has come so far stays."""
+        """End the sweep; finished runs stay."""
         if self.sweep is not None:
             self.sweep.cancel()
 
     def end(self) -> None:
-        """Leave nothing behind."""
+        """End the sweep and the study of meshes."""
         self.cancel()
         if self._job is not None:
             self._job.close()
 
     def look(self) -> None:
-        """Show what is new of the runs and of the meshes."""
+        """Show new runs of the sweep, and the progress of the study of meshes."""
         sweep = self.sweep
         job = self._job
         if sweep is not None and self._seen != (len(sweep.rows), sweep.is_over):
@@ -127,21 +130,20 @@ class WhatIf:
         """Rows of the sweep so far, as CSV in SI, with all settings."""
         if self.sweep is None:
             return ""
-        return csv_of(
-            self.sweep.plan, sorted(self.sweep.rows, key=lambda row: row.number)
-        )
+        rows = sorted(self.sweep.rows, key=lambda row: row.number)
+        return csv_of(self.sweep.plan, rows)
 
     def chart(self) -> Chart:
-        """What has come so far."""
+        """The chart of the runs so far."""
         plan = self.sweep.plan
         rows = list(self.sweep.rows)
-        text = lambda value, unit: unit_for(abs(value), unit)(value, 4)  # noqa: E731
-        return chart_of(plan, rows, 0, text, logarithmic=SCALES[self._scale.value])
+        is_log = SCALES[self._scale.value]
+        return chart_of(plan, rows, 0, _amount, logarithmic=is_log)
 
     def _show(self) -> None:
-        """Show the question, of which another scene may know nothing, and have it answered.
+        """Show and run the question, or a ready one where the scene lacks it.
 
-        One that was put together in the fields waits until it is to be drawn.
+        A question that was put together in the fields waits for the button.
         """
         if self.state.tab != "What if":
             return
@@ -151,6 +153,19 @@ class WhatIf:
         self._is_updating = True
         for span, text in zip(self.spans, (*self.question.vary, ""), strict=False):
             span.show(settings, text)
+        self._show_quantity(settings)
+        for title, ready in self._ready.items():
+            ready.visible = READY[title](settings) is not None
+        self.mesh.visible = decides(settings, reading(self.question.of))
+        self._start.disabled = False
+        self._is_updating = False
+        if self.sweep is None or self.question != before:
+            self.start()
+        else:
+            self._draw()
+
+    def _show_quantity(self, settings: Settings) -> None:
+        """Show the quantity of the question, and its parameter if it has one."""
         name, _, at = self.question.of.partition("@")
         options = {
             quantity.title: key for key, quantity in quantities(settings).items()
@@ -160,31 +175,29 @@ class WhatIf:
         self._at.param.update(value=at, visible=parameter is not None)
         if parameter is not None:
             self._at.label = parameter.words.replace("{:g}", "").strip() or "at"
-        for title, ready in self._ready.items():
-            ready.visible = READY[title](settings) is not None
-        self.mesh.visible = decides(settings, reading(self.question.of))
-        self._start.disabled = self._is_updating = False
-        if self.sweep is None or self.question != before:
-            self.start()
-        else:
-            self._draw()
+
+    def _chosen_quantity(self) -> str:
+        """The quantity of the fields with its parameter, as `Question.of` has it."""
+        name = self._of.value
+        parameter = QUANTITIES[name].parameter
+        if parameter is None:
+            return name
+        at = self._at.value.strip()
+        if not at and parameter.needed:
+            at = str(TENTH)
+        if not at:
+            return name
+        return f"{name}@{at}"
 
     def _change(self) -> None:
-        """Take the question from the fields; one that is refused stays there to be mended."""
+        """Take the question from the fields; a refused one stays there to be mended."""
         if self._is_updating:
             return
         settings = self.state.settings
-        of = self._of.value
-        parameter = QUANTITIES[of].parameter
-        if parameter is not None:
-            at = self._at.value.strip() or (str(TENTH) if parameter.needed else "")
-            if at:
-                of = f"{of}@{at}"
-            else:
-                of = of
+        of = self._chosen_quantity()
         try:
             texts = [span.text() for span in self.spans]
-            question = Question(tuple(filter(None, texts)), of)
+            question = Question(tuple(text for text in texts if text), of)
             refusal = question.refusal(settings)
         except ValueError as problem:
             refusal = f"{problem}."
@@ -197,8 +210,12 @@ class WhatIf:
     def _on_ready(self, title: str) -> None:
         self.state.question = str(READY[title](self.state.settings))
 
+    def _on_scale(self) -> None:
+        if self.sweep is not None:
+            self._draw()
+
     def _on_mesh(self) -> None:
-        """Have the quantity taken on three meshes and three numbers of instants, or no more."""
+        """Start the study of three meshes and three numbers of instants, or end it."""
         if self._job is not None:
             self._job.cancel()
         else:
@@ -207,7 +224,7 @@ class WhatIf:
         self.look()
 
     def _draw(self) -> None:
-        """Show what has come."""
+        """Draw the chart of the runs so far, with a message on them."""
         sweep = self.sweep
         settings = self.state.settings
         self._seen = len(sweep.rows), sweep.is_over
@@ -218,18 +235,22 @@ class WhatIf:
             words = sweep.progress
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
-        texts = TEXTS["questions"].items()
-        told = [
-            text for title, text in texts if READY[title](settings) == self.question
-        ]
-        self.message.object = " ".join([sweep.message, words, *told]).strip()
+        sentences = [sweep.message, words]
+        for title, text in TEXTS["questions"].items():
+            if READY[title](settings) == self.question:
+                sentences.append(text)
+        self.message.object = " ".join(sentences).strip()
         self._chart.show(self.chart())
 
 
+def _amount(value: float, unit: str) -> str:
+    """A value in SI in the unit in which it is read."""
+    return unit_for(abs(value), unit)(value, 4)
+
+
 def _is_of(plan: Plan, settings: Settings) -> bool:
-    """Whether a plan fixes what settings say."""
+    """Check whether a plan has settings but for those that vary in it."""
+    if settings.scene != plan.settings.scene:
+        return False
     varied = {axis.name: None for axis in plan.axes}
-    is_same_scene = settings.scene == plan.settings.scene
-    return (
-        is_same_scene and settings.values() | varied == plan.settings.values() | varied
-    )
+    return settings.values() | varied == plan.settings.values() | varied

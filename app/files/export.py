@@ -1,4 +1,4 @@
-"""What one takes away from the page: tables, pictures, a program, a page."""
+"""Files that a person takes away from the page: tables, a program, a page of plots."""
 
 from __future__ import annotations
 
@@ -47,9 +47,10 @@ for record in solution.records:
 print(solution.status.ending)
 """
 MOST_INSTANTS = 60
+"""Largest number of instants on the page that is saved."""
 HEIGHTS = {"Scene": 260, "Load path": 70}
 HEIGHT = 300
-"""Pixels of a figure."""
+"""Heights of figures, by the name of the view, and of all others, px."""
 PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
@@ -59,7 +60,8 @@ PAGE = """<!DOCTYPE html>
 <body>{% from macros import embed %}{{ embed(docs[0].roots[0]) }}{{ plot_script }}</body>
 </html>
 """
-"""As `file_html` takes it, whose own has what Panel would have a page load."""
+"""Template of `file_html`: in its own, Panel has a page load scripts from the
+network."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -67,7 +69,7 @@ models.forEach((model, n) => { model[names[n]] = values[n][i] })
 
 
 def program(settings: Settings) -> str:
-    """A Python program that gives the numbers of a run again, with all its settings."""
+    """A Python program that repeats a run, with all its settings."""
     values = indent(pformat(settings.values(), sort_dicts=False), "    ").lstrip()
     return PROGRAM.format(
         scene=settings.scene, values=values, errors=has_reference(settings)
@@ -81,7 +83,7 @@ def history_table(frame: Frame) -> str:
 
 
 def plot_table(view: View, frame: Frame) -> str:
-    """What a plot shows (CSV, with comments that begin with #): a line for each point of a curve.
+    """Points of a plot's curves, a line each (CSV, with comments that begin with #).
 
     Columns are those of the plot's sources, in the units of its axes; paths are
     numbered, and a curve has the name of its source.
@@ -104,117 +106,138 @@ def plot_table(view: View, frame: Frame) -> str:
 
 def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
     settings = frame.run.settings
+    at = f"iteration {frame.iteration}"
     if frame.is_answer:
         at = "answer"
-    else:
-        at = f"iteration {frame.iteration}"
     first = [
         f"Slipfront, {settings.scene}, {at}",
         *head,
         "settings:",
         *dump(settings).splitlines(),
     ]
-    return "".join(f"# {line}\n" for line in first) + table.to_csv(index=False)
+    comments = "".join([f"# {line}\n" for line in first])
+    return comments + table.to_csv(index=False)
 
 
 def offline_page(
     frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None
 ) -> str:
-    """A run as one page that needs nothing beside it (HTML): its plots at all instants.
+    """A run as a page that loads nothing (HTML), with its plots at all instants.
 
-    Views and ghost are those in sight, which are not touched. The save buttons of the
+    Views and ghost are those in sight; they are not changed. The save buttons of the
     plots write SVG.
     """
     copies = _copies(views)
-    settings = escape(dump(frame.run.settings))
     instants = frame.run.instants
-    end = float(frame.run.instants[-1])
+    end = float(instants[-1])
     columns = thinned(len(instants), MOST_INSTANTS)
-    at = int(np.argmin(np.abs(columns - frame.run.column(selection.phase))))
+    selected = int(np.argmin(np.abs(columns - frame.run.column(selection.phase))))
     slider = Slider(
         start=0,
         end=len(columns) - 1,
-        value=at,
+        value=selected,
         title="Instant",
         sizing_mode="stretch_width",
     )
     caption = Div(text="", sizing_mode="stretch_width")
-    rest = [view.figure for view in copies if view.name not in HEIGHTS]
-    page = Document()
-    page.add_root(
-        column(
-            slider,
-            caption,
-            *(view.figure for view in copies if view.name in HEIGHTS),
-            grid(rest, ncols=2, sizing_mode="stretch_width"),
-            Div(
-                text=f"<details><summary>All settings</summary><pre>{settings}</pre></details>"
-            ),
-            sizing_mode="stretch_width",
-        )
-    )
+    page = _document(slider, caption, copies, frame.run.settings)
 
-    def show(place: int) -> None:
-        time = float(instants[columns[place]])
+    def show(number: int) -> None:
+        time = float(instants[columns[number]])
         unit = unit_for(end, "s")
         caption.text = f"{escape(frame.run.sentence)} At {unit(time)} of {unit(end)}."
+        phase = 0.0
+        if end:
+            phase = time / end
         for view in copies:
-            view.update(
-                frame, replace(selection, phase=time / end if end else 0.0), ghost
-            )
+            view.update(frame, replace(selection, phase=phase), ghost)
 
     slider.js_on_change("value", _replay(page, len(columns), show))
-    # The page begins with the one that is looked at.
-    show(at)
+    # The page begins with the selected instant.
+    show(selected)
     return file_html(
         page,
         INLINE,
         f"Slipfront: {frame.run.settings.scene}",
         template=Template(PAGE),
         template_variables={"library": library("bokeh-widgets")},
-        # What is dragged or tapped there does nothing.
+        # Handlers of drags and taps do nothing there.
         suppress_callback_warning=True,
     )
 
 
+def _document(
+    slider: Slider, caption: Div, views: Sequence[View], settings: Settings
+) -> Document:
+    """The parts of the page one below the other.
+
+    Wide figures, a grid of plots, settings.
+    """
+    wide = [view.figure for view in views if view.name in HEIGHTS]
+    plots = [view.figure for view in views if view.name not in HEIGHTS]
+    text = escape(dump(settings))
+    page = Document()
+    page.add_root(
+        column(
+            slider,
+            caption,
+            *wide,
+            grid(plots, ncols=2, sizing_mode="stretch_width"),
+            Div(
+                text="<details><summary>All settings</summary>"
+                f"<pre>{text}</pre></details>"
+            ),
+            sizing_mode="stretch_width",
+        )
+    )
+    return page
+
+
 def _copies(views: Sequence[View]) -> list[View]:
-    """Views of the same kinds, with figures of their own, in which nothing is dragged."""
+    """Views of the same kinds with new figures, in which nothing is dragged."""
     copies = [type(view)(view.state) for view in views]
     for view in copies:
-        made = view.figure
-        made.output_backend = "svg"
-        made.sizing_mode = "stretch_width"
-        made.height = HEIGHTS.get(view.name, HEIGHT)
-        made.tools = [
-            tool for tool in made.tools if not isinstance(tool, PointDrawTool)
+        plot = view.figure
+        plot.output_backend = "svg"
+        plot.sizing_mode = "stretch_width"
+        plot.height = HEIGHTS.get(view.name, HEIGHT)
+        plot.tools = [
+            tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]
-        for tool in made.select({"type": SaveTool}):
+        for tool in plot.select({"type": SaveTool}):
             tool.filename = view.name
     return copies
 
 
 def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS:
-    """What shows one of so many pictures, with the values of all that differs between them."""
+    """A script that shows one of several pictures, from the values that differ."""
     changes: dict[tuple[Model, str], list[Any]] = {}
     page.on_change(lambda event: changes.setdefault((event.model, event.attr), []))
-    # At first it is found out what changes at all.
-    for place in range(count):
-        show(place)
-    for place in range(count):
-        show(place)
+    # The first round finds the properties that change, the second one their values.
+    for number in range(count):
+        show(number)
+    for number in range(count):
+        show(number)
         for (model, name), values in changes.items():
             value = getattr(model, name)
-            values.append(dict(value) if name == "data" else value)
-    changes = {
-        key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1
-    }
-    models, names = ([key[i] for key in changes] for i in (0, 1))
-    moved = {"models": models, "names": names, "values": list(changes.values())}
-    return CustomJS(args=moved, code=SHOW)
+            if name == "data":
+                value = dict(value)
+            values.append(value)
+    models = []
+    names = []
+    kept = []
+    for (model, name), values in changes.items():
+        is_constant = len({pickle.dumps(value) for value in values}) <= 1
+        if not is_constant:
+            models.append(model)
+            names.append(name)
+            kept.append(values)
+    arguments = {"models": models, "names": names, "values": kept}
+    return CustomJS(args=arguments, code=SHOW)
 
 
 def offers(state: PageState, views: Sequence[View]) -> list[Any]:
-    """Buttons that save what there is of what is seen: the run, and what the views show."""
+    """Buttons that save the run, and the data of the plots in sight."""
     frame = state.frame
     if frame is None:
         return [pmui.Typography("There is no run yet.")]

@@ -1,4 +1,7 @@
-"""The address of a page: what it says is shown, and what is shown it says."""
+"""The address of a page.
+
+Reads it to show a state, and writes the state that is shown.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from solver.settings.definitions import SettingGroup, checked_value, parse, titl
 from solver.settings.scene import Settings
 
 SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
-"""What an address has of a page's state beside settings."""
+"""Parts of a page's state in its address, beside settings."""
 DEFAULTS = {name: PageState.param[name].default for name in SHARED}
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much
@@ -40,7 +43,7 @@ _CHECKED: dict[str, Any] = {
 
 
 class Link:
-    """Keeps the address of a page, and brings the page to an address that one goes back to.
+    """Keeps the address of a page, and shows an address that the browser goes back to.
 
     Each change is an entry of the browser's history, so that Back undoes it; but for
     one that is dragged, and instants and iterations. `query` is the address from the
@@ -58,7 +61,7 @@ class Link:
         )
 
     def _write(self) -> None:
-        """Have the address say what is shown."""
+        """Write the state that is shown into the address."""
         query = query_of(place_of(self._state))
         if self._state.is_dragged or query == self.query:
             return
@@ -72,13 +75,13 @@ class Link:
                 self._location.search = query
 
     def copy(self) -> str:
-        """Have the browser copy the whole link; what is to be said of it."""
+        """Have the browser copy the whole link, and return a message on it."""
         self._browser.copied = ""
         self._browser.copied, message = link_of(self._state)
         return f"The link to what is shown is copied. {message}".rstrip()
 
     def go(self, query: str) -> None:
-        """Bring the page to an address."""
+        """Show the state of an address."""
         place, refusal = read(query, self._state.settings)
         self.query = query_of(place)
         show(self._state, place)
@@ -86,7 +89,7 @@ class Link:
 
 
 def show(state: PageState, place: Place) -> None:
-    """Show what an address says."""
+    """Show the state that was read from an address."""
     # At once: what is between two addresses has none.
     with param.parameterized.batch_call_watchers(state):
         state.param.update(**{name: place.get(name, DEFAULTS[name]) for name in SHARED})
@@ -99,12 +102,12 @@ def show(state: PageState, place: Place) -> None:
 
 
 def place_of(state: PageState) -> Place:
-    """What is shown, without the instant and the iteration."""
+    """The state that is shown, without the instant and the iteration."""
     return {name: getattr(state, name) for name in ("settings", *SHARED)}
 
 
 def link_of(state: PageState) -> tuple[str, str]:
-    """The whole link to what is shown, instant and iteration too, and what it had to leave out."""
+    """The whole link, with instant and iteration, and a message on values left out."""
     frame = state.frame
     is_held = not state.running or state.frame is not state.newest
     is_waiting = frame is not None and not frame.is_answer and is_held
@@ -128,7 +131,7 @@ def link_of(state: PageState) -> tuple[str, str]:
 
 
 def query_of(place: Place) -> str:
-    """The address that says what differs from the defaults, or from those of a lesson or a case."""
+    """The address: differences from the defaults, or from a lesson or a case."""
     if place.get("room"):
         return f"?class={quote(place['room'])}"
     settings = place["settings"]
@@ -164,7 +167,7 @@ def query_of(place: Place) -> str:
 
 
 def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
-    """What an address says from the question mark on, and what of it was refused and why, or "".
+    """State of an address from the question mark on, and refused parts with reasons, or "".
 
     The settings that hold at present have what is too long for an address.
     """
@@ -213,7 +216,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
 
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
-    """Settings from which an address says what differs, and the lesson or case that has them."""
+    """Settings from which an address differs, and the lesson or case of them."""
     scene = pairs.pop("scene", "")
     names = {kind: pairs.pop(kind, "") for kind in KNOWN}
     for kind, name in names.items():
@@ -232,7 +235,7 @@ def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str
 
 
 def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Settings:
-    """Settings with as many values as hold together; the others are refused, one by one."""
+    """Settings with the values that hold together; refuse the others one by one."""
     while True:
         try:
             return base.replace(**values)

@@ -1,4 +1,4 @@
-"""Buttons that open and save files, and a dialog of what the columns of a table are."""
+"""Buttons that open and save files, and a dialog of the columns of a table."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def files_panel(state: PageState, width: int) -> pn.Column:
 
 
 class TableOpener:
-    """A button that opens a file, what was understood of it, and a dialog of its columns.
+    """A button that opens a file, a message on it, and a dialog of its columns.
 
     In the dialog `use` is what the table is used as, and `heads` are the names and
     units of its columns. What is chosen holds at once.
@@ -124,12 +124,12 @@ class TableOpener:
         self._on_brought()
 
     def show(self) -> None:
-        """Open the dialog, for the scene as it is now."""
+        """Open the dialog for the present scene."""
         self._offer(self.use.value)
         self.dialog.open = True
 
     def _open(self) -> None:
-        """Take a file as what it seems to be; of a loop the columns are shown."""
+        """Use a file by its content; for a measured loop show the columns, too."""
         if not self.file.value:
             return
         self._table = None
@@ -163,7 +163,7 @@ class TableOpener:
         return read_as(use, table, state)
 
     def _offer(self, use: str) -> None:
-        """Offer what a table may be used as in this scene."""
+        """Offer the uses of a table in this scene."""
         paths = paths_of(self._state.settings).items()
         kinds = USES | {title_of(path): name for name, path in paths}
         self._is_updating = True
@@ -172,7 +172,7 @@ class TableOpener:
         self._is_updating = False
 
     def _reread(self) -> None:
-        """Use the table as the dialog says."""
+        """Use the table as chosen in the dialog."""
         if not self._is_updating and self._table is not None:
             self._take(self._read_as)
 
@@ -182,7 +182,10 @@ class TableOpener:
         )
 
     def _take(self, read: Callable[[], tuple[Content, str]]) -> Content | None:
-        """What is read, which the page shows or runs; None where it is refused, as is said."""
+        """Show or run the content of a file.
+
+        None, and a message, where it is refused.
+        """
         content = None
         try:
             content, message = read()
@@ -209,7 +212,7 @@ class TableOpener:
 
 
 def names_of(table: Table) -> list[str]:
-    """Names and units of the columns; of those without a name their numbers."""
+    """Names and units of the columns of a table; numbers for columns without a name."""
     return [
         f"{column.name or place} [{column.unit}]"
         if column.unit

@@ -1,4 +1,4 @@
-"""A dialog of the points of one path, which are dragged, typed, pasted, or come from a table."""
+"""A dialog of the points of a path: dragged, typed, pasted, or from a table."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MOST_DRAGGED = 200
 
 
 class CurveDialog:
-    """A dialog that has the points of one path; what is done there holds at once.
+    """A dialog of the points of a path; each change runs at once.
 
     They are in their units in `source`, where they are dragged, and as a table in
     `text`.
@@ -73,7 +73,7 @@ class CurveDialog:
         )
 
     def update(self) -> None:
-        """Show the points that hold, those of the preset where there are none yet."""
+        """Show the points of the path, or those of its preset."""
         settings = self._state.settings
         value = getattr(settings, self._name)
         if isinstance(value, str):
@@ -137,7 +137,7 @@ class CurveDialog:
             self._take(self._table(points), "the plot")
 
     def _take(self, table: str | bytes, source: str) -> None:
-        """Have a table be the path; one that is refused stays to be mended."""
+        """Use a table as the path; a refused one stays there to be mended."""
         if self._is_updating or not table:
             return
         settings = self._state.settings

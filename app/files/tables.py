@@ -21,7 +21,7 @@ Content = Settings | OtherResults | MeasuredLoop
 
 
 def use_on(state: PageState, table: Table) -> str:
-    """What a table is used as by its head: a loop, results, or the path of that name."""
+    """Use of a table by its head: a loop, results, or the path of that name."""
     use = use_of(table, axes_on(state))
     if use is Use.PATH:
         return path_of(table, state.settings)
@@ -29,7 +29,7 @@ def use_on(state: PageState, table: Table) -> str:
 
 
 def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
-    """What a table has that is used as a loop, results or a path, and what was understood."""
+    """Content of a table as a loop, results or a path, and a message on it."""
     if use == Use.RESULTS:
         results = results_in(table, state.settings)
         return results, f"{table.source}: {results.message}."
@@ -41,7 +41,7 @@ def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
 
 
 def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
-    """Sentences where a loop is some thousand times off the run that is shown."""
+    """Warnings where a loop is some thousand times off the run that is shown."""
     frame = state.frame
     if frame is None or (frame.run.across[1], frame.run.up[1]) != loop.units:
         return []
@@ -49,7 +49,7 @@ def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
 
 
 def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
-    """Settings with a table for a path, and what was understood.
+    """Settings with a table for a path, and a message on it.
 
     A run then lasts until the last of its tables ends.
     """
@@ -71,7 +71,7 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
 
 
 def table_of(data: bytes | str, source: str) -> Table:
-    """Table of a file, whatever it is of."""
+    """The table in a file of any kind."""
     return read_table(data, source, "the table", "a table of time and value")
 
 
@@ -90,13 +90,13 @@ def renamed(table: Table, heads: str) -> Table:
 
 
 def paths_of(settings: Settings) -> dict[str, CurveParameter]:
-    """Definitions of the paths over time that do something, by name."""
+    """Definitions of the paths over time that do something in the scene, by name."""
     definitions = settings.definitions()
     return {name: definitions[name] for name in settings.paths}
 
 
 def path_of(table: Table, settings: Settings) -> str:
-    """The path over time that the head of a table names, or the only one, or that of the load."""
+    """Name of the path in the head of a table, else the only one, or the load's."""
     paths = paths_of(settings)
     named = paths.keys() & {column.key for column in table.columns}
     loads = [

@@ -1,4 +1,4 @@
-"""Cases of the trade: a gallery of their pictures, and what the page says of one beside its run."""
+"""Cases of the trade: a gallery of their pictures, and the text beside a case's run."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from solver.study.quantities.quantity import Quantity
 from solver.study.trade_case import Case
 
 ANSWERS_STAY = "Decomposition", "Method", "Stop"
-"""Groups of settings that leave what is known as it is."""
+"""Groups of settings on which the known value does not depend."""
 
 
 def gallery(begin: Callable[[str], None]) -> pn.FlexBox:
-    """The cases by their pictures."""
+    """A button with a picture for each case, which begins it."""
     cards = [
         button(
             case.title,
@@ -39,24 +39,26 @@ def gallery(begin: Callable[[str], None]) -> pn.FlexBox:
 
 
 def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
-    """Its question, what is known beside what the run has found so far, and its source (Markdown).
+    """Parts of the text of a case (Markdown), called again with each frame.
 
-    They are called again with each frame.
+    They are its question, its known value beside that of the run, and its source.
     """
     head = f"### {case.title}\n\n**{_raised(case.question)}**"
-    known = f"*{_raised(case.formula)}*. {_raised(case.how)}\n\n<small>{case.source}</small>"
+    known = (
+        f"*{_raised(case.formula)}*. {_raised(case.how)}"
+        f"\n\n<small>{case.source}</small>"
+    )
     change = f"{known}\n\n#### What to change first\n\n{case.change}"
     return [lambda: head, lambda: _known_beside_found(case, state), lambda: change]
 
 
 def _known_beside_found(case: Case, state: PageState) -> str:
-    """What is known beside what the run finds (Markdown)."""
+    """The known value of a quantity beside that of the run so far (Markdown)."""
     frame = state.frame
     quantity = case.quantity
     is_known = _is_known(case, state.settings)
-    if frame is None:
-        found = math.nan
-    else:
+    found = math.nan
+    if frame is not None:
         found = frame.readings.get(quantity.name, math.nan)
     run = PENDING
     off = ""
@@ -64,18 +66,15 @@ def _known_beside_found(case: Case, state: PageState) -> str:
         run = _written(found, quantity)
         if is_known:
             off = f" ({100.0 * abs(found / case.known - 1.0):.1f} % off)"
-        else:
-            off = ""
+    known = "known before the change"
     if is_known:
         known = "known"
-    else:
-        known = "known before the change"
     words = f"{known} **{_written(case.known, quantity)}**, this run **{run}**{off}"
     return f"{quantity.title}: {words}"
 
 
 def _is_known(case: Case, settings: Settings) -> bool:
-    """Whether what is known is of these settings, however they are solved."""
+    """Check whether settings differ from those of a case only in mesh and method."""
     definitions = settings.definitions()
     mesh = {*settings.MESH, "instants"}
     return all(
@@ -85,13 +84,13 @@ def _is_known(case: Case, settings: Settings) -> bool:
 
 
 def _written(value: float, quantity: Quantity) -> str:
-    """A value with its unit; two that differ by a thousandth differ."""
+    """A value with its unit, in four digits; a share in per cent."""
     if quantity.is_share:
         return f"{number(100.0 * value)} %"
     return unit_for(abs(value), quantity.unit)(value, 4)
 
 
 def _raised(text: str) -> str:
-    """Text with powers and indices as such."""
+    """Text with raised powers and lowered indices (HTML)."""
     text = re.sub(r"\^(\d+)", r"<sup>\1</sup>", text.replace("*", "\\*"))
     return re.sub(r"_(\w+)", r"<sub>\1</sub>", text)

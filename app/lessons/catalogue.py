@@ -1,4 +1,7 @@
-"""All lessons and cases: what a page has of one, and what it says with quantities of a frame."""
+"""All lessons and cases.
+
+Their settings, plots, and texts with quantities of a frame.
+"""
 
 from __future__ import annotations
 
@@ -50,28 +53,31 @@ def settings_of(lesson: Lesson | Case) -> Settings:
 
 
 def plots_of(case: str) -> list[str]:
-    """Names of the plots that come to the front with a case; none without one."""
+    """Names of the plots that come to the front with a case; empty without a case."""
     if case in CASES:
         return list(CASES[case].views)
     return []
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
-    """The plots that stand beside a lesson; before the choice only those that leave it open."""
+    """The plots beside a lesson.
+
+    Before the choice only those that do not show the answer.
+    """
     return tuple(
         KINDS[name] for name in (lesson.views if is_answered else lesson.beside)
     )
 
 
 def readings_of(lesson: Lesson) -> list[str]:
-    """Names of the quantities in what a lesson says."""
+    """Names of the quantities in the texts of a lesson."""
     return list(
         dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation))))
     )
 
 
 def parts_of(paragraph: str) -> list[str]:
-    """Markdown with `{value:NAME}` in it and, in turn, names of settings whose control follows."""
+    """Markdown with `{value:NAME}`, and names of settings with a control, in turn."""
     # A sentence ends with its control: its full stop would stand alone.
     return re.split(r"\{control:(.*?)\}[ .:]*", paragraph)
 
@@ -83,13 +89,13 @@ def without_controls(paragraph: str) -> str:
 
 
 def filled(text: str, frame: Frame | None) -> str:
-    """Markdown in which every quantity is that of a frame."""
+    """Markdown with the quantities of a frame filled in."""
     text = VALUE.sub(lambda match: f"**{_value(frame, match[1])}**", text)
     return re.sub(r"\^(\d+)", r"<sup>\1</sup>", text)
 
 
 def _value(frame: Frame | None, name: str) -> str:
-    """A quantity of a frame's run with its unit, as far as the run has come."""
+    """A quantity of a frame with its unit, or a placeholder until it is known."""
     if frame is None or name not in frame.readings:
         return PENDING
     value = frame.readings[name]

@@ -1,4 +1,4 @@
-"""A curve that one draws before the measured one is shown."""
+"""A figure to draw an expected curve on, before the measured one is shown."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from solver.study.lessons import Lesson
 
 
 class DrawnCurve:
-    """A figure over a setting on which the expected curve is drawn, and then the measured one.
+    """A figure over a setting for the expected curve, and then the measured one.
 
     `drawn` and `measured` are the sources of what was drawn by hand, and of what the
     checkpoints of the `lesson` measure.
@@ -53,7 +53,7 @@ class DrawnCurve:
         self.figure = made
 
     def reveal(self) -> None:
-        """Show what was measured; nothing is drawn any more."""
+        """Show the measured curve, and end the drawing."""
         self.figure.toolbar.active_drag = None
         places, values = zip(*self.lesson.curve, strict=True)
         self.measured.data = {

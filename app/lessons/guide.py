@@ -1,4 +1,4 @@
-"""The text beside the plots: a lesson, with its question, choice and answer, or a case."""
+"""The text beside the plots: a lesson (question, choice, answer) or a case."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
 
 WITHOUT = -1
-"""The prediction of who wants to see the answer without one."""
+"""The prediction of a person who wants to see the answer without predicting."""
 text_button = partial(button, margin=(3, 8, 3, 0))
 
 
 class Guide:
-    """The lesson or the case that a page is in, if it is in one.
+    """The lesson or the case that a page is in, if any.
 
     `view` stands beside the plots, `dialogs` are the lists of all lessons and of all
-    cases; `changed` is called when another one is shown. The transport plays the
-    picture while a question is open; `open_counts` has a class see how many predicted
-    what.
+    cases; `changed` is called when another lesson or case is shown. The transport plays
+    the picture once a question is answered; `open_counts` shows a class the number of
+    predictions of each choice.
     """
 
     def __init__(
@@ -76,11 +76,12 @@ class Guide:
         state.param.watch(lambda event: self.update(), "frame")
 
     def open(self, kind: str, name: str) -> None:
-        """Begin a lesson or a case, with its scene and settings, in place of another."""
+        """Begin a lesson or a case with its settings, in place of another."""
         self.dialogs[kind].open = False
-        places = {"lesson": "", "case": "", "prediction": None, kind: name}
+        opened = {"lesson": "", "case": "", kind: name}
+        plots = plots_of(opened["case"])
         with param.parameterized.batch_call_watchers(self._state):
-            self._state.param.update(**places, plots=plots_of(places["case"]))
+            self._state.param.update(**opened, prediction=None, plots=plots)
             self._state.adopt(settings_of(KNOWN[kind][name]))
 
     def offer(self, kind: str) -> None:
@@ -92,30 +93,29 @@ class Guide:
         listed.open = True
 
     def update(self) -> None:
-        """Bring the quantities in its sentences up to the frame."""
+        """Set the quantities in the sentences to those of the frame."""
         for pane, text in self._texts:
             pane.object = text()
 
     @property
     def kinds(self) -> tuple[type[View], ...] | None:
-        """The plots that stand beside it; None without a lesson."""
+        """The plots that stand beside the lesson; None without a lesson."""
         lesson = LESSONS.get(self._state.lesson)
         if lesson:
             return kinds_of(lesson, is_answered=not self._state.is_asked)
         return None
 
     def predict(self, choice: int) -> None:
-        """Take a prediction, which alone, or of who leads, goes on to the answer."""
-        poll = self._state.poll
+        """Take a prediction; outside a class, or from its leader, show the answer."""
         self._state.prediction = choice
-        if poll is None or poll.leads:
-            # One watches from the start what was out of sight.
+        if not self._follows:
+            # The search was out of sight: it is watched from its start.
             self._state.run()
 
     def show(self) -> None:
-        """Show what is open: of a lesson the question or the answer, and what a class predicts."""
+        """Show the lesson or case that is open, and the predictions of a class."""
         state = self._state
-        lesson = LESSONS.get(self._state.lesson)
+        lesson = LESSONS.get(state.lesson)
         shown = state.lesson, state.case, state.is_asked
         if shown != self._shown:
             self._shown = shown
@@ -125,6 +125,12 @@ class Guide:
                 *self._choices_of(lesson, state.poll),
                 *self._of_class(state.poll),
             ]
+
+    @property
+    def _follows(self) -> bool:
+        """Check whether the leader of a class decides when the answer is shown."""
+        poll = self._state.poll
+        return poll is not None and not poll.leads
 
     def _build(self, lesson: Lesson | None, case: Case | None) -> None:
         state = self._state
@@ -147,17 +153,16 @@ class Guide:
             self._look(lesson)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
+        """Make a figure to draw on for the question; in the answer add the measured curve."""
         is_asked = self._state.is_asked
-        curve = self._curve
-        if is_asked or curve is None or curve.lesson is not lesson:
+        if is_asked or self._curve is None or self._curve.lesson is not lesson:
+            self._curve = None
             if lesson.draw:
-                curve = self._curve = DrawnCurve(lesson)
-            else:
-                curve = self._curve = None
-        if curve is not None and not is_asked:
+                self._curve = DrawnCurve(lesson)
+        if self._curve is not None and not is_asked:
             # A figure's own models change under the document's lock, which a click does
             # not have.
-            pn.state.execute(curve.reveal, schedule=True)
+            pn.state.execute(self._curve.reveal, schedule=True)
 
     def _parts_of_case(self, case: Case) -> list[Any]:
         buttons = pn.FlexBox(
@@ -167,35 +172,38 @@ class Guide:
             text_button("All settings", self._end),
             margin=(8, 0),
         )
-        texts = map(self._markdown, texts_of(case, self._state))
-        return [*texts, *map(self._control, case.controls), buttons]
+        texts = [self._markdown(text) for text in texts_of(case, self._state)]
+        controls = [self._control(name) for name in case.controls]
+        return [*texts, *controls, buttons]
 
     def _look(self, lesson: Lesson) -> None:
-        """Look at what it speaks of: the moving picture, or the instant of its plots."""
+        """Select the instant of the answer, or play the picture of the question."""
         state = self._state
         state.select(interface=lesson.interface)
         if not state.is_asked:
             state.select(phase=lesson.instant)
-        elif state.poll is None or state.poll.leads:
-            state.select(phase=Selection.phase if lesson.until == 1.0 else 0.0)
+        elif not self._follows:
+            start = 0.0
+            if lesson.until == 1.0:
+                start = Selection.phase
+            state.select(phase=start)
             self._transport.play(lesson.until)
 
     def _parts(self, lesson: Lesson) -> list[Any]:
-        """The question, and after the choice the answer with what explains it."""
+        """The question, and after the choice the answer with its explanation."""
+        figures = []
         if self._curve:
             figures = [pn.pane.Bokeh(self._curve.figure, margin=0)]
-        else:
-            figures = []
+        title = f"### {lesson.title}"
         question = [*self._paragraphs((f"**{lesson.question}**",)), self._choices]
         explore = text_button("Explore freely", self._end, variant="text")
         if self._state.is_asked:
-            paragraphs = self._paragraphs((f"### {lesson.title}", *lesson.text))
+            paragraphs = self._paragraphs((title, *lesson.text))
             return [*paragraphs, *figures, *question, explore]
         explanation = self._paragraphs(lesson.explanation)
         buttons = pn.FlexBox(*self._onward(lesson), explore, margin=(8, 0))
-        head = self._paragraphs((f"### {lesson.title}",))
         return [
-            *head,
+            *self._paragraphs((title,)),
             *question,
             self._verdict(lesson),
             *figures,
@@ -204,16 +212,14 @@ class Guide:
         ]
 
     def _verdict(self, lesson: Lesson) -> pmui.Alert:
-        """The right choice and why, in the colour of whether it was predicted."""
+        """The right choice and its reason; the colour says whether it was predicted."""
         prediction = self._state.prediction
-        choice = lesson.choices[lesson.right]
-        is_right = prediction == lesson.right
-        is_open = prediction in (None, WITHOUT)
-        text = f"{'Right: ' if is_right else ''}{choice}. {lesson.why}"
-        if is_open:
+        text = f"{lesson.choices[lesson.right]}. {lesson.why}"
+        if prediction in (None, WITHOUT):
             severity = "info"
-        elif is_right:
+        elif prediction == lesson.right:
             severity = "success"
+            text = f"Right: {text}"
         else:
             severity = "warning"
         return pmui.Alert(
@@ -221,28 +227,32 @@ class Guide:
         )
 
     def _onward(self, lesson: Lesson) -> list[Any]:
-        """The way to the next lesson, which a follower waits for, and the handout."""
+        """Buttons of the handout and, unless another page leads, of the next lesson."""
         make = partial(handout, self._state, lesson, self._curve)
         on_paper = download("Handout", f"{lesson.name}.html", make, size="small")
         following = dict(pairwise(LESSONS)).get(lesson.name)
-        poll = self._state.poll
-        if following is None or not (poll is None or poll.leads):
+        if following is None or self._follows:
             return [on_paper]
-        return [
-            text_button("Next lesson", lambda: self.open("lesson", following)),
-            on_paper,
-        ]
+        begin = partial(self.open, "lesson", following)
+        return [text_button("Next lesson", begin), on_paper]
 
     def _paragraphs(self, paragraphs: tuple[str, ...]) -> list[Any]:
-        """Panes of text, with controls where they are named."""
-        return [
-            self._markdown(lambda part=part: filled(part, self._state.frame))
-            if place % 2 == 0
-            else self._control(part)
-            for text in paragraphs
-            for place, part in enumerate(parts_of(text))
-            if part
-        ]
+        """Panes of text, with the control of a setting where it is named."""
+        panes = []
+        for paragraph in paragraphs:
+            # Texts and names of settings in turn.
+            for number, part in enumerate(parts_of(paragraph)):
+                if not part:
+                    continue
+                if number % 2 == 0:
+                    panes.append(self._filled(part))
+                else:
+                    panes.append(self._control(part))
+        return panes
+
+    def _filled(self, part: str) -> pn.pane.Markdown:
+        """A pane of text with quantities of the frame."""
+        return self._markdown(lambda: filled(part, self._state.frame))
 
     def _markdown(self, text: Callable[[], str]) -> pn.pane.Markdown:
         """A pane of text that follows the frame."""
@@ -253,62 +263,74 @@ class Guide:
 
     def _control(self, name: str) -> Any:
         """The control of a setting."""
-        self._controls.append(SettingControl(name, self._state))
-        return self._controls[-1].view
+        control = SettingControl(name, self._state)
+        self._controls.append(control)
+        return control.view
 
     def _choices_of(self, lesson: Lesson, poll: Poll | None) -> list[pmui.Button]:
-        """Buttons of the choices; with what a class predicts of each once that is open."""
+        """Buttons of the choices, with the counts of a class once they are open."""
+        counts: tuple[int, ...] = ()
         if poll is not None:
             counts = poll.counts
-        else:
-            counts = ()
-        is_asked = self._state.is_asked
-        if not (is_asked or counts):
-            # Whoever is right or wrong reads it below.
+        if not self._state.is_asked and not counts:
+            # The answer below says whether the prediction was right.
             return []
+        labels = list(lesson.choices)
+        if counts:
+            labels = [
+                f"{choice}: {count}"
+                for choice, count in zip(lesson.choices, counts, strict=True)
+            ]
         return [
-            text_button(
-                f"{choice}: {counts[number]}" if counts else choice,
-                lambda number=number: self.predict(number),
-                variant="contained" if number == self._state.prediction else "outlined",
-                color="success"
-                if not is_asked and number == lesson.right
-                else "primary",
-                disabled=not is_asked,
-                **looks("choice"),
-            )
-            for number, choice in enumerate(lesson.choices)
+            self._choice(number, label, lesson) for number, label in enumerate(labels)
         ]
 
-    def _of_class(self, poll: Poll | None) -> list[Any]:
-        """What follows the choices: who has predicted, and the way to the answer."""
+    def _choice(self, number: int, label: str, lesson: Lesson) -> pmui.Button:
+        """The button of a choice.
+
+        Filled where it was predicted, green where it is right.
+        """
         is_asked = self._state.is_asked
+        variant = "outlined"
+        if number == self._state.prediction:
+            variant = "contained"
+        color = "primary"
+        if not is_asked and number == lesson.right:
+            color = "success"
+        return text_button(
+            label,
+            partial(self.predict, number),
+            variant=variant,
+            color=color,
+            disabled=not is_asked,
+            **looks("choice"),
+        )
+
+    def _of_class(self, poll: Poll | None) -> list[Any]:
+        """Parts below the choices.
+
+        The number of predictions, and buttons to the answer.
+        """
+        is_asked = self._state.is_asked
+        answer = partial(self.predict, WITHOUT)
         if poll is None:
-            show = text_button("Show me", lambda: self.predict(WITHOUT), variant="text")
             if is_asked:
-                return [show]
+                return [text_button("Show me", answer, variant="text")]
             return []
+        text = f"{poll.predicted} of {poll.present} have predicted."
         if is_asked and not poll.leads:
-            waits = " The answer comes with the class."
-        else:
-            waits = ""
-        parts = [
-            pn.pane.Markdown(
-                f"{poll.predicted} of {poll.present} have predicted.{waits}"
-            )
-        ]
+            text += " The answer comes with the class."
+        parts = [pn.pane.Markdown(text)]
         if poll.leads and not poll.counts:
             parts.append(
                 text_button("Open the counts", self._open_counts, variant="outlined")
             )
         if poll.leads and is_asked:
-            parts.append(
-                text_button("Go on to the answer", lambda: self.predict(WITHOUT))
-            )
+            parts.append(text_button("Go on to the answer", answer))
         return parts
 
     def _follow_settings(self) -> None:
-        """Leave it for another scene; show its controls as settings are."""
+        """Leave the lesson or case for another scene; show settings in its controls."""
         state = self._state
         shown = LESSONS.get(state.lesson) or CASES.get(state.case)
         if shown is not None and state.settings.scene != shown.settings.scene:
@@ -317,15 +339,17 @@ class Guide:
             control.update()
 
     def _end(self) -> None:
-        """Leave it; the run stays."""
+        """Leave the lesson or case; the run stays."""
         self._state.param.update(lesson="", case="")
 
 
 def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
-    """The lessons, by subject."""
+    """The titles of all lessons by subject, as buttons that begin them."""
     columns = []
     for subject in SUBJECTS:
-        title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
+        title = "#### The method"
+        if subject == "mechanics":
+            title = "#### Mechanics"
         buttons = [
             text_button(
                 lesson.title, partial(begin, name), **looks("choice"), variant="text"

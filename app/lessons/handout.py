@@ -1,4 +1,7 @@
-"""A lesson on paper: the question with room to write, and overleaf the answer with its plots."""
+"""A lesson on paper.
+
+A question with room to write, and overleaf its answer with plots.
+"""
 
 from __future__ import annotations
 
@@ -78,7 +81,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
 def _drawn(
     view: View, state: PageState, lesson: Lesson, width: int, height: int
 ) -> Any:
-    """A figure of its own, for paper."""
+    """A new figure of a view, for paper."""
     figure = view.figure
     figure.update(sizing_mode=None, width=width, height=height, toolbar_location=None)
     if state.frame is not None:

@@ -1,4 +1,4 @@
-"""How many numbers a field takes: singular values, modes of separated bases, and clips."""
+"""Views of reduced bases: singular values, modes of separated bases, and clips."""
 
 from __future__ import annotations
 
@@ -30,14 +30,15 @@ rounding."""
 
 
 class Spectra(ExtraView):
-    """One curve a substructure: how fast it falls says how many modes it needs."""
+    """Singular values, a curve a substructure: a fast fall means few modes."""
 
     name = "Singular values"
     needs = frozenset({"spectra"})
 
     applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the axes, the curves of all substructures and their colour bar."""
         made = self.begin(
             ("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0)
         )
@@ -66,11 +67,12 @@ class Spectra(ExtraView):
 
 
 class ModePlot(ExtraView):
-    """Curves of the largest modes, one colour a rank."""
+    """Curves of the largest modes, a colour for each rank."""
 
     needs = frozenset({"modes"})
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each mode, and the selected instant."""
         self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
         self.add("now", "VSpan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
@@ -96,7 +98,7 @@ class SpaceModes(ModePlot):
 
 
 class TimeFunctions(ModePlot):
-    """Time functions of the same modes, each over its largest value, which the legend has."""
+    """Time functions of the modes over their largest values, which the legend has."""
 
     name = "Time functions"
 
@@ -116,7 +118,7 @@ class TimeFunctions(ModePlot):
 
 
 class ClipErrors(ExtraView):
-    """Error of this iterate's friction over the numbers that are kept of it."""
+    """Error of the friction of an iterate over the count of stored numbers."""
 
     name = "Clips"
     needs = frozenset({"clips"})
@@ -127,7 +129,8 @@ class ClipErrors(ExtraView):
         )
     )
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each form of storage, and the size of the table."""
         made = self.begin(
             ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),
@@ -168,7 +171,7 @@ class ClipErrors(ExtraView):
 
 
 def _shown(way: Floats) -> Floats:
-    """Errors from the first number on, down to the first that is as good as none, (2, n)."""
+    """Counts and errors, (2, n), from a count of 1 to the first negligible error."""
     some = way[:, way[0] > 0]
     below = np.flatnonzero(some[1] <= FLOOR)
     some = some[:, : int(below[0]) + 1 if len(below) else None]

@@ -1,4 +1,4 @@
-"""Colours that mean something; all can be told apart by the colour-blind (Okabe and Ito)."""
+"""Colours with a meaning; the colour-blind can tell all apart (Okabe and Ito)."""
 
 from __future__ import annotations
 
@@ -19,19 +19,27 @@ BACKWARD = "#0072B2"
 OPENED = "#4D4D4D"
 STATUS = {-1: BACKWARD, 0: STICK, 1: FORWARD, 2: OPENED}
 KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENED}
-"""What a legend calls each status."""
+"""Colours of the status by its names in legends."""
 BODY = "#8FAAC2"
 EDGE = "#607D8B"
 CUT = "#8A8A8A"
-"""Of the lines where substructures meet."""
+"""Colour of lines where substructures meet."""
 UNSEEN = "#00000000"
-"""Of a mark that only carries a text into a legend."""
+"""Colour of a mark that only carries a text into a legend."""
 RANKS = (LATIN, ERROR, DISPLACEMENT, PRESSURE, "#B58500", REFERENCE)
-"""Of curves side by side, as modes and wires."""
-SCALE = ("#7A4FB5", "#0072B2", "#008577", "#5C8700", "#B07A00", "#C24E00")
-"""From the first to the last of many curves; no end of it fades into light or dark."""
+"""Colours of curves side by side, as modes and wires."""
+SCALE = (
+    "#7A4FB5",
+    "#0072B2",
+    "#008577",
+    "#5C8700",
+    "#B07A00",
+    "#C24E00",
+)
+"""Colours from the first to the last of many curves; no end fades into light or
+dark."""
 
 
 def scaled(count: int) -> list[str]:
-    """As many colours of the scale."""
+    """A number of colours, evenly spaced on the scale."""
     return list(interp_palette(SCALE, count))

@@ -1,10 +1,17 @@
-"""Friction along the interface beside the reference, and what lies between them."""
+"""Contact forces along an interface, beside the reference and other results."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from app.frame import Floats, Frame, InterfaceFields, Selection
+from app.frame import (
+    Floats,
+    Frame,
+    FrictionInterface,
+    InterfaceFields,
+    Run,
+    Selection,
+)
 from app.views.axis import extent
 from app.views.colors import (
     BESIDE,
@@ -17,24 +24,26 @@ from app.views.colors import (
     REFERENCE,
 )
 from app.views.view import View, hover, joined
+from solver.reference.closed_forms import ExactCurve
 from solver.study.comparison import FRICTION, OtherResults
 
 ROOM = 1.15
 MOST = 2.0
-"""What is seen of forces, over their bound or reference: at least, and at most."""
+"""Limits of the axis over the bound or the reference: at least, and at most."""
 
 
 class ContactForce(View):
-    """Contact forces at the selected instant, LATIN on top of the reference, the error shaded.
+    """Contact forces at the selected instant: LATIN, the reference, the error shaded.
 
-    Of plane bodies whose pressure is not given they are pressure and friction.
+    In plane bodies whose pressure is not given these are pressure and friction.
     """
 
     name = "Contact force"
     needs = frozenset({"beside"})
 
-    def _make(self) -> None:
-        made = self.begin(("x", "m"), ("force", "N/m"))
+    def make(self) -> None:
+        """Draw curves of LATIN, the reference, the bound and other results."""
+        plot = self.begin(("x", "m"), ("force", "N/m"))
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.add("exact", color=EXACT, width=8, alpha=0.35)
@@ -45,95 +54,122 @@ class ContactForce(View):
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         self.add("reference", color=REFERENCE, width=1.5)
         self.add("beside", color=BESIDE, width=2, dash="dashed")
-        lines = [
-            self.add(name, y="latin", color=color, width=2.5)
-            for name, color in (("pressure", PRESSURE), ("friction", LATIN))
-        ]
+        pressure = self.add("pressure", y="latin", color=PRESSURE, width=2.5)
+        friction = self.add("friction", y="latin", color=LATIN, width=2.5)
         self.legend(
-            friction="LATIN", pressure="pressure", reference="reference", error="error",
-            bound="±µp", exact="closed form", ghost="ghost", beside="beside",
-        )  # fmt: skip
+            friction="LATIN",
+            pressure="pressure",
+            reference="reference",
+            error="error",
+            bound="±µp",
+            exact="closed form",
+            ghost="ghost",
+            beside="beside",
+        )
         tips = {
             "x": "@x{0.000}",
             "LATIN": "@latin{0.000}",
             "reference": "@reference{0.000}",
         }
-        hover(made, lines, tips)
+        hover(plot, [pressure, friction], tips)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the contact forces along the selected interface."""
         run = frame.run
-        name = selection.interface_of(frame.run)
+        name = selection.interface_of(run)
         fields = frame.contact.get(name)
-        interface = run.interfaces[name]
         if fields is None:
             return
+        interface = run.interfaces[name]
         column = run.column(selection.phase)
-        reference = run.reference.get(name)
-        is_plane = run.settings.kind == "plane"
-        has_pressure = fields.pressure is not None
-        self.y.rename("traction" if is_plane else "force", "Pa" if is_plane else "N/m")
-        curves = run.known("friction") + (run.known("pressure") if has_pressure else [])
-        exact = [
-            curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2
-        ]
+        if run.settings.kind == "plane":
+            self.y.rename("traction", "Pa")
+        else:
+            self.y.rename("force", "N/m")
+        exact = _closed_forms(run, has_pressure=fields.pressure is not None)
         self._scale(frame, name, fields, [curve.up for curve in exact])
-        places = interface.positions
-        # The error is nothing where there is no reference.
+        self._show_forces(interface, fields, run.reference.get(name), column)
+        self._show_bound(interface, fields, column)
+        self.fill("cuts", x=self.x(interface.cuts))
+        selected = []
+        if selection.place is not None:
+            selected = [selection.place]
+        self.fill("place", x=self.x(selected))
+        curves = [(curve.across, curve.up[:, column]) for curve in exact]
+        self.draw("exact", *joined(curves))
+        self._show_ghost(ghost, selection)
+        self._show_beside(frame, float(run.instants[column]))
+
+    def _show_forces(
+        self,
+        interface: FrictionInterface,
+        fields: InterfaceFields,
+        reference: InterfaceFields | None,
+        column: int,
+    ) -> None:
+        """Show the forces of the iterate and the reference, with their difference."""
+        positions = interface.positions
+        has_pressure = fields.pressure is not None
         for quantity in ("friction", "pressure"):
-            both = [getattr(each, quantity) for each in (fields, reference or fields)]
-            if both[0] is not None:
-                latin, known = both
-            else:
-                latin, known = np.zeros((2, 0, column + 1))
-            forces = {
-                "latin": self.y(latin[:, column]),
-                "reference": self.y(known[:, column]),
-            }
+            latin = getattr(fields, quantity)
+            # Without a reference the difference is zero.
+            known = getattr(reference or fields, quantity)
+            if latin is None:
+                latin = known = np.zeros((0, column + 1))
             title = quantity if has_pressure else "LATIN"
-            self.fill(quantity, title, x=self.x(places[: len(latin)]), **forces)
-        self.draw("reference", *_curves(places, reference, column))
+            self.fill(
+                quantity,
+                title,
+                x=self.x(positions[: len(latin)]),
+                latin=self.y(latin[:, column]),
+                reference=self.y(known[:, column]),
+            )
+        self.draw("reference", *_curves(positions, reference, column))
         self.show("error", reference is not None)
+
+    def _show_bound(
+        self, interface: FrictionInterface, fields: InterfaceFields, column: int
+    ) -> None:
+        """Show the bound of friction in both directions, given or µ times pressure."""
         bound = interface.bound
         if bound is None:
             bound = interface.coefficient * np.maximum(fields.pressure, 0.0)
         bound = bound[:, min(column, bound.shape[1] - 1)]
-        self.draw("bound", *joined([(places, bound), (places, -bound)]))
-        self.fill("cuts", x=self.x(interface.cuts))
-        self.fill(
-            "place", x=self.x([] if selection.place is None else [selection.place])
-        )
-        self.draw("exact", *joined([(c.across, c.up[:, column]) for c in exact]))
-        past = None
-        if ghost is not None:
-            other = selection.interface_of(ghost.run)
-            past = ghost.contact.get(other)
-            places = ghost.run.interfaces[other].positions
-            column = ghost.run.column(selection.phase)
-        self.draw("ghost", *_curves(places, past, column), self.ghost_name)
-        self._show_beside(frame, float(run.instants[run.column(selection.phase)]))
+        positions = interface.positions
+        self.draw("bound", *joined([(positions, bound), (positions, -bound)]))
+
+    def _show_ghost(self, ghost: Frame | None, selection: Selection) -> None:
+        if ghost is None:
+            self.draw("ghost", [], [], self.ghost_name)
+            return
+        run = ghost.run
+        name = selection.interface_of(run)
+        positions = run.interfaces[name].positions
+        column = run.column(selection.phase)
+        curve = _curves(positions, ghost.contact.get(name), column)
+        self.draw("ghost", *curve, self.ghost_name)
 
     def _scale(
         self, frame: Frame, name: str, fields: InterfaceFields, exact: list[Floats]
     ) -> None:
-        """Hold all that is known, and of iterates what does not dwarf it."""
+        """Set the limits: all that is known, and iterates up to a multiple of it."""
         run = frame.run
         key = (*frame.stage[:2], name)
-        bound = frame.run.interfaces[name].bound
-        known = run.reference.get(name, fields if bound is None else None)
-        if bound is None:
-            bounds = []
-        else:
+        bound = run.interfaces[name].bound
+        known = run.reference.get(name)
+        bounds = []
+        if bound is not None:
             bounds = [bound, -bound]
+        elif known is None:
+            known = fields
         low, high = extent([*_given(known), *exact, *bounds])
-        most = MOST * max(abs(low), abs(high))
+        largest = MOST * max(abs(low), abs(high))
+        iterate = np.clip(extent(_given(fields)), -largest, largest)
         self.x.hold(key, run.interfaces[name].positions)
-        self.y.hold(
-            key, [ROOM * low, ROOM * high], np.clip(extent(_given(fields)), -most, most)
-        )
+        self.y.hold(key, [ROOM * low, ROOM * high], iterate)
 
     def _show_beside(self, frame: Frame, time: float) -> None:
-        """Show another program's friction at its nearest instant, and name it."""
+        """Show another program's friction at its instant nearest to a time, s."""
         results = (frame.extras.get("beside") or {}).get("brought")
         if not isinstance(results, OtherResults) or results.quantity != FRICTION:
             self.draw("beside", [], [])
@@ -145,14 +181,23 @@ class ContactForce(View):
         self.draw("beside", results.positions[rows], results.values[rows], title)
 
 
-def _curves(places: Floats, fields: InterfaceFields | None, column: int) -> Floats:
-    """Friction, and pressure where it is not given, as one curve, shape (2, n)."""
-    return joined([(places, field[:, column]) for field in _given(fields)])
+def _closed_forms(run: Run, *, has_pressure: bool) -> list[ExactCurve]:
+    """Closed forms of the contact forces along an interface at all instants."""
+    curves = run.known("friction")
+    if has_pressure:
+        curves = curves + run.known("pressure")
+    return [curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2]
+
+
+def _curves(positions: Floats, fields: InterfaceFields | None, column: int) -> Floats:
+    """Friction and, if found, pressure as one curve, m and N/m or Pa, (2, n)."""
+    return joined([(positions, field[:, column]) for field in _given(fields)])
 
 
 def _given(fields: InterfaceFields | None) -> list[Floats]:
+    """Friction and, where it is found, pressure, shape (n_points, n_instants) each."""
     if fields is None:
-        both = []
-    else:
-        both = [fields.friction, fields.pressure]
-    return [field for field in both if field is not None]
+        return []
+    if fields.pressure is None:
+        return [fields.friction]
+    return [fields.friction, fields.pressure]

@@ -32,7 +32,7 @@ top."""
 
 
 class ErrorPlot(View):
-    """A plot of what the run has come to so far, also where an earlier iterate is gone back to."""
+    """A plot of the run so far, also while an earlier iterate is shown."""
 
     def _newest(self, frame: Frame) -> Frame:
         newest: Frame = self.state.newest or frame
@@ -46,18 +46,19 @@ class ErrorPlot(View):
         up: str,
         title: str = "",
     ) -> None:
-        """Draw a column of a history over another one, as far as both are positive and finite."""
+        """Draw a column of a history over another where it is positive and finite."""
         x, y = (history.get(column, np.zeros(0)) for column in (across, up))
         shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
         self.draw(name, x[shown], y[shown], title)
 
 
 class Convergence(ErrorPlot):
-    """Error of the force bold, and indicators on an axis that does not flatten it."""
+    """Errors and indicators over iterations; the error of the force is bold."""
 
     name = "Convergence"
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each error and indicator of the history."""
         made = self.begin(
             ("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST)
         )
@@ -108,19 +109,20 @@ class Convergence(ErrorPlot):
 
 
 def _searched(frame: Frame) -> dict[str, Floats]:
-    """The history without the answer, which is no iteration."""
+    """The history without the answer, shape (n_iterations,) each."""
     count = len(frame.history["iteration"]) - (1 if frame.is_answer else 0)
     return {name: values[:count] for name, values in frame.history.items()}
 
 
 class ErrorTime(ErrorPlot):
-    """Error over the time of the method, set-up included, by which settings are compared."""
+    """Error over the run time of the method, set-up included, to compare settings."""
 
     name = "Error over run time"
 
     applies = staticmethod(has_reference)
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw curves of this run and of the ghost, and the reference's run time."""
         made = self.begin(
             ("run time, s",), ("force error",), x_axis_type="log", y_axis_type="log",
             x_range=(1e-3, 1.0), y_range=(LEAST_IN_TIME, MOST_IN_TIME),

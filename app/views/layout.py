@@ -1,4 +1,7 @@
-"""Where bodies lie on the screen, and how much their displacement is magnified."""
+"""Layout of the scene.
+
+Position and scale of the bodies, magnification of displacements.
+"""
 
 from __future__ import annotations
 
@@ -14,37 +17,36 @@ from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 
 THICK = 52.0
-"""Most pixels that a rod is thick."""
+"""Largest thickness of a rod, px."""
 BAND = 7.0
-"""Thickness of what rubs, px."""
+"""Thickness of the band of an interface, px."""
 FOOT = 18.0
 COLUMN = 150.0
 """Height of the line of keys below the bodies, or width of their column, px."""
 LETTER = 0.56
-"""Width of a letter of a word, about, as a share of the size of its type."""
+"""Width of a letter over its type size, about."""
 LONG = 5.0
-"""Length over height of bodies that are long, at least."""
+"""Least length over height of long bodies."""
 HIGH = 3.0
-"""Width over height of bodies that are high, at most."""
+"""Largest width over height of high bodies."""
 WALL = 54.0
-"""Pixels from a body to the wall that its spring is fixed to."""
+"""Distance from a body to the wall of its spring, px."""
 DEEPEST = 18.0
 IMAGE = 26.0
-"""Pixels that a gap is deep at most in a low figure, and of the image below the
-bodies."""
+"""Largest depth of a gap in a low figure, and depth of the image below bodies, px."""
 NARROW = 560.0
 """Width below which keys take two lines, px."""
 
 
 class Layout:
-    """From metres to pixels, of bodies in a figure of so many pixels; bare ones show no acts.
+    """Position and scale of the bodies in a figure of `width` times `height` px.
 
-    The bodies have the `size` in m, length and height as they are drawn. `scale` is in
-    pixels per metre, along x and y, which differ for rods alone; `origin` is the middle
-    of their foot, px. An arrow is `arrow` px long at its largest value; the largest
-    displacement takes `motion` px at most, along x and y. Keys stand below the bodies
-    in `key_rows`, or at their left if there are none. A `letter` of what belongs to
-    arrows is so many pixels wide.
+    Arrays have shape (2,), along x and y. The bodies have the `size` in m, length and
+    height as they are drawn; bare ones show no loads. `scale` is in px/m: only of rods
+    it differs along x and y. `origin` is the middle of their foot, px. An arrow is
+    `arrow` px long at its largest value, and a letter of its words `letter` px wide;
+    the largest displacement takes `motion` px at most. Keys stand below the bodies in
+    `key_rows`, or at their left if there are none.
     """
 
     def __init__(
@@ -61,23 +63,32 @@ class Layout:
         self.height = height
         self.key_rows = key_rows
         self.letter = LETTER * type_size
-        described = geometry.description
-        top = float(geometry.nodes[:, 1].max())
+        self.description = geometry.description
         if is_bare:
-            description = replace(described, acts=())
-        else:
-            description = described
-        arrow = min(max(0.19 * height, 18.0), 38.0)
+            self.description = replace(self.description, acts=())
+        top = float(geometry.nodes[:, 1].max())
+        self.size = np.array([self.description.length, top])
+        self.arrow = min(max(0.19 * height, 18.0), 38.0)
         self.deepest = max(DEEPEST, 0.1 * height)
+        self._fit()
+
+    def _fit(self) -> None:
+        """Fit the bodies and their largest motion between the margins."""
+        description = self.description
+        top = float(self.size[1])
         left, right, below, above = _margins(
-            description, arrow, self.letter, self.deepest
+            description, self.arrow, self.letter, self.deepest
         )
-        left = left + (0.0 if key_rows else COLUMN)
-        below = below + FOOT * key_rows
-        room = np.maximum([width - left - right, height - below - above], 24.0)
+        if not self.key_rows:
+            left += COLUMN
+        below += FOOT * self.key_rows
+        free = [self.width - left - right, self.height - below - above]
+        room = np.maximum(free, 24.0)
         low, high = _extent(description.length, top, description.tilt)
-        is_long = description.length > LONG * top
-        motion = np.array([0.04 * width, (0.12 if is_long else 0.06) * height])
+        share = 0.06
+        if description.length > LONG * top:
+            share = 0.12
+        motion = np.array([0.04 * self.width, share * self.height])
         if description.height is None:
             motion[1] = 0.0
         scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
@@ -85,25 +96,20 @@ class Layout:
             scale[1] = min(scale[1], THICK * description.bodies / top)
         else:
             scale[:] = scale.min()
-        origin = (
-            np.array([left, below]) + 0.5 * (room - (high - low) * scale) - low * scale
-        )
+        rest = room - (high - low) * scale
         motion[0] = min(motion[0], 0.12 * description.length * scale[0])
-        self.description = description
-        self.arrow = arrow
-        self.size = np.array([description.length, top])
         self.scale = scale
-        self.origin = origin
+        self.origin = np.array([left, below]) + 0.5 * rest - low * scale
         self.motion = motion
 
     def local(self, places: Array) -> Array:
-        """Pixels from the middle of the foot, along the bodies, of places in m, (..., 2)."""
+        """Places in px from the middle of the foot, of places in m, (..., 2) each."""
         return np.asarray((places - self.size * [0.5, 0.0]) * self.scale)
 
     def fitting(self, largest: Array, factor: float | None) -> float:
-        """Factor on displacements: the present one as long as motion is seen and has room.
+        """Factor on displacements: the present one while motion is seen and has room.
 
-        That depends on the largest displacement over all instants, along x and y, m.
+        `largest` is the largest displacement over all instants along x and y, (2,), m.
         """
         room = np.where(self.motion > 0.0, self.motion, np.inf)
         share = float((largest * self.scale / room).max())
@@ -115,7 +121,7 @@ class Layout:
 
 
 def is_high(geometry: Geometry) -> bool:
-    """Whether a picture of the bodies has more room beside plots than above them."""
+    """Check whether a picture of bodies has more room beside plots than above."""
     described = geometry.description
     top = float(geometry.nodes[:, 1].max())
     low, high = _extent(described.length, top, described.tilt)
@@ -124,19 +130,19 @@ def is_high(geometry: Geometry) -> bool:
 
 
 def turned(points: Array, angle: float) -> Array:
-    """Points turned about the origin, (..., 2)."""
+    """Points turned about the origin by an angle in rad, shape (..., 2) each."""
     cos = math.cos(angle)
     sin = math.sin(angle)
     return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
 
 
 def is_aside(act: Act) -> bool:
-    """Whether it acts along the side that it acts on."""
+    """Check whether a load acts along the side that it acts on."""
     return np.ndim(act.towards) == 1 and abs(float(np.dot(act.towards, act.away))) < 0.5
 
 
 def is_opposite(act: Act, other: Act) -> bool:
-    """Whether two acts are the same pressure from both sides."""
+    """Check whether two loads are the same pressure from both sides."""
     return act.unit == other.unit and np.array_equal(act.values, -other.values)
 
 
@@ -144,21 +150,29 @@ def is_opposite(act: Act, other: Act) -> bool:
 def layout_of(
     geometry: Geometry, is_bare: bool, type_size: float, width: float, height: float
 ) -> Layout:
-    """The layout of bodies in a figure of so many pixels, keys below them or at their left."""
-    below = Layout(
-        geometry, is_bare, type_size, width, height, 2 if width < NARROW else 1
-    )
+    """The larger of two layouts in a figure in px.
+
+    Keys below the bodies, or at their left.
+    """
+    rows = 1
+    if width < NARROW:
+        rows = 2
+    below = Layout(geometry, is_bare, type_size, width, height, rows)
     beside = Layout(geometry, is_bare, type_size, width, height, 0)
-    return beside if beside.scale[0] > below.scale[0] else below
+    if beside.scale[0] > below.scale[0]:
+        return beside
+    return below
 
 
 def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array]:
-    """Corners of the box that bodies take as they are tilted, from the middle of their foot, m."""
+    """Lower and upper corner, (2,), m, of the box about bodies at all their tilts, rad.
+
+    Both are from the middle of the foot.
+    """
     half = 0.5 * length
     corners = np.array([[-half, 0.0], [half, 0.0], [half, top], [-half, top]])
-    if tilt is None:
-        angles = np.zeros(1)
-    else:
+    angles = np.zeros(1)
+    if tilt is not None:
         angles = np.linspace(tilt.min(), tilt.max(), 9)
     all_corners = np.concatenate([turned(corners, float(angle)) for angle in angles])
     return all_corners.min(axis=0), all_corners.max(axis=0)
@@ -167,27 +181,35 @@ def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array
 def _margins(
     description: Description, arrow: float, letter: float, deepest: float
 ) -> tuple[float, float, float, float]:
-    """Pixels on the left, on the right, below and above, for what holds and what acts."""
-    room = {"left": 10.0, "right": 10.0, "bottom": 6.0, "top": 8.0}
+    """Margins for supports and loads on the left, on the right, below and above, px."""
+    room = {
+        "left": 10.0,
+        "right": 10.0,
+        "bottom": 6.0,
+        "top": 8.0,
+    }
+    supports = {"spring": WALL + 16.0, "image": IMAGE, "support": 16.0}
     for hold in description.holds:
-        size = {"spring": WALL + 16.0, "image": IMAGE, "support": 16.0}.get(
-            hold.kind, 18.0
-        )
+        size = supports.get(hold.kind, 18.0)
         if hold.gap is not None and np.any(hold.gap > 0.0):
             size += deepest
         room[hold.side] = max(room[hold.side], size)
     for act in description.acts:
         side = act.where.partition(" ")[0]
         if side in ("left", "right"):
-            room[side] = max(
-                room[side], 20.0 + letter * (len(act.symbol) + len(act.unit) + 9)
-            )
-        elif side in ("top", "bottom"):
-            held = beside(description, side)
-            room[side] = max(room[side], held + 11.0 if is_aside(act) else arrow + 10.0)
+            size = 20.0 + letter * (len(act.symbol) + len(act.unit) + 9)
+        elif side not in ("top", "bottom"):
+            continue
+        elif is_aside(act):
+            size = beside(description, side) + 11.0
+        else:
+            size = arrow + 10.0
+        room[side] = max(room[side], size)
     return room["left"], room["right"], room["bottom"], room["top"]
 
 
 def beside(description: Description, side: str) -> float:
-    """Pixels between a side and an arrow along it."""
-    return 20.0 if any(hold.side == side for hold in description.holds) else 9.0
+    """Distance of an arrow along a side from that side, px."""
+    if any(hold.side == side for hold in description.holds):
+        return 20.0
+    return 9.0

@@ -1,4 +1,4 @@
-"""Loops: force over displacement, cycle by cycle, and the slip of a point over that of another."""
+"""Loops: force over displacement, cycles, and slips of two points."""
 
 from __future__ import annotations
 
@@ -45,7 +45,8 @@ class HysteresisLoop(View):
 
     applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each loop, and the selected instant."""
         made = self.begin()
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
@@ -89,7 +90,7 @@ class HysteresisLoop(View):
 def _beside(
     brought: comparison.OtherResults | MeasuredLoop | None, frame: Frame
 ) -> tuple[Array, Array]:
-    """A measured loop; or another program's displacement of the end, under the run's load."""
+    """A measured loop, or another program's under the run's load, (n,) each, SI."""
     if isinstance(brought, MeasuredLoop):
         return brought.displacement, brought.force
     if brought is None or brought.quantity != comparison.DISPLACEMENT:
@@ -104,7 +105,7 @@ def _beside(
 
 
 class CyclePlot(ExtraView):
-    """A plot of what cycles of the load do."""
+    """A plot of the cycles of the load."""
 
     needs = frozenset({"cycles"})
 
@@ -113,7 +114,7 @@ class CyclePlot(ExtraView):
     )
 
     def _add_legend(self) -> None:
-        """Name the first and the last cycle, and what becomes of slip."""
+        """Add a legend of the first and the last cycle, and of how slip goes on."""
         self.mark({"first": SCALE[0], "last": SCALE[-1], "text": UNSEEN})
         self.legend(first="cycle 1", last="last", text="text")
 
@@ -123,11 +124,12 @@ class CyclePlot(ExtraView):
 
 
 class Cycles(CyclePlot):
-    """Force over displacement from the first cycle to the last, and what becomes of slip."""
+    """Force over displacement from the first cycle to the last."""
 
     name = "Cycles"
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the loops of the cycles, and the selected instant."""
         self.begin()
         self.add("loops", "MultiLine", "xs ys color", width=2)
         self.add("now", "Scatter", color=ERROR, size=10)
@@ -159,7 +161,8 @@ class CycleEnergy(CyclePlot):
 
     name = "Energy a cycle"
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a bar for each cycle."""
         made = self.begin(("cycle",), ("energy", "J"))
         whole(made.xaxis[0])
         bars = self.add("bars", "VBar", "x top color", width=0.7)
@@ -178,7 +181,7 @@ class CycleEnergy(CyclePlot):
 
 
 class SlipPlane(View):
-    """Where two points have slipped, and the lines between which both stick."""
+    """Slips of two points, and the lines between which both stick."""
 
     name = "Slip plane"
     needs = frozenset({"slips"})
@@ -190,7 +193,8 @@ class SlipPlane(View):
         )
     )
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the limits of slip of both points, and the path of their slip."""
         self.begin(("left slip", "m"), ("right slip", "m"))
         self.add("room", "Patch", color=DISPLACEMENT, alpha=0.3)
         self.add("left", color=LATIN, width=1.5)
@@ -204,7 +208,7 @@ class SlipPlane(View):
         )  # fmt: skip
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show where both have slipped so far, and the lines at which they slip now."""
+        """Show the slips of both points so far, and the present limits of slip."""
         slips = frame.extras.get("slips", {})
         column = frame.run.column(selection.phase)
         self.show("held", slips is None)

@@ -1,4 +1,4 @@
-"""All that one picture of the scene shows, as columns of its sources, px."""
+"""A picture of the scene, as columns of the sources of its figure, px."""
 
 from __future__ import annotations
 
@@ -14,19 +14,22 @@ from app.views.acts import Arrows, anchor_of, color_of, gapped, strokes_of, text
 from app.views.colors import EDGE, ERROR, FORCE, STATUS
 from app.views.layout import BAND, IMAGE, Layout, is_opposite, turned
 from solver.arrays import Array
+from solver.discrete.structure import Act
 
 MECHANISM = 0.12
-"""Share of the height of all bodies that the largest motion of a mechanism is drawn
-as."""
+"""Largest motion of a mechanism as drawn, over the height of all bodies."""
+LEFT_OF = {"left": 0.0, "center": 0.5, "right": 1.0}
+"""Share of a text at the left of its anchor, by its alignment."""
 Columns = dict[str, Any]
+"""Columns of one source by their names."""
 Strokes = list[tuple[Array, str, float]]
-"""Lines, NaN between them, with a colour and a width, px."""
+"""Lines with NaN between them, shape (n, 2), px, a colour, and a width, px."""
 
 
 class Picture:
     """A frame at the instant of a column, with displacements magnified by a factor.
 
-    Arrows of the values in `peaks` have full length, by where they act.
+    `peaks` has the value of an arrow of full length for each load, by where it acts.
     """
 
     def __init__(
@@ -47,32 +50,31 @@ class Picture:
         # Values of a description are not thinned.
         instant = frame.run.instants[column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
-        tilt = self._described.tilt
-        if tilt is None:
-            self.tilt = 0.0
-        else:
-            self.tilt = float(tilt[self._now])
+        self.tilt = 0.0
+        if self._described.tilt is not None:
+            self.tilt = float(self._described.tilt[self._now])
 
     @cached_property
     def nodes(self) -> Array:
-        """Deformed nodes, px from the middle of the foot."""
+        """Deformed nodes, px from the middle of the foot, shape (n_nodes, 2)."""
         return self._moved(
             self._geometry.nodes, self.frame.deformed.nodes[:, :, self.column]
         )
 
     @cached_property
     def points(self) -> Array:
-        """Contact points, px from the middle of the foot."""
-        places = self._geometry.points
-        local = self._moved(places, self.frame.deformed.points[:, :, self.column])
+        """Contact points, px from the middle of the foot, shape (n_points, 2)."""
+        positions = self._geometry.points
+        local = self._moved(positions, self.frame.deformed.points[:, :, self.column])
         if self._described.height is not None and self._described.bodies == 1:
-            # Of rods, a band is thinner than the room that is left for it.
-            local[places[:, 1] <= 1e-6 * self._described.length, 1] -= 0.5 * BAND
+            # The band lies below a single body. Rods leave room for it.
+            at_foot = positions[:, 1] <= 1e-6 * self._described.length
+            local[at_foot, 1] -= 0.5 * BAND
         return local
 
     @cached_property
     def arrows(self) -> list[Arrows]:
-        """Those of all that acts."""
+        """The arrows of all loads."""
         layout = self.layout
         behind = self.frame.run.settings.behind()
         arrows = []
@@ -85,42 +87,57 @@ class Picture:
 
     @property
     def draggable(self) -> list[Arrows]:
-        """Those with a setting behind them."""
+        """The arrows whose load is a setting."""
         return [
             arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)
         ]
 
     def columns(self) -> dict[str, Columns]:
-        """Columns of all sources, by their names; of bare bodies without status of what rubs."""
-        parts = _drawn(self._geometry.outlines, self.nodes)
-        image = np.zeros((0, 2))
-        if any(hold.kind == "image" for hold in self._described.holds):
-            # The bodies go on below, turned by half a turn, as far as there is room.
-            image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
-        handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
-        marks = {"line_color": [color_of(arrows.act) for arrows in self.draggable]}
-        rims = _drawn(self._geometry.rims, self.nodes)
-        if self.layout.is_bare:
-            bands = []
-        else:
-            bands = self._bands()
-        # The last are on top.
-        strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3), *bands]
-        strokes.append((gapped(self.nodes[self._at_break]), ERROR, 3.0))
-        heads: Strokes = []
-        for arrows in self.arrows:
-            color = color_of(arrows.act)
-            width = 1.6 if len(arrows.lines) > 3 else 3.2
-            strokes.append((arrows.strokes, color, width))
-            heads.append((gapped(arrows.heads), color, 1.0))
+        """Columns of all sources, by their names."""
+        bodies = _drawn(self._geometry.outlines, self.nodes)
         return {
-            "image": self._line(image),
-            "bodies": self._line(parts),
-            "strokes": self._columns(strokes),
-            "heads": self._columns(heads),
-            "marks": self._line(handles) | marks,
+            "image": self._line(self._image(bodies)),
+            "bodies": self._line(bodies),
+            "strokes": self._columns(self._strokes()),
+            "heads": self._columns(self._heads()),
+            "marks": self._marks(),
             "words": self._words(),
         }
+
+    def _image(self, bodies: Array) -> Array:
+        """The bodies turned by half a turn, if a support is such an image.
+
+        Both are outlines with NaN behind each, shape (n, 2), px.
+        """
+        if not any(hold.kind == "image" for hold in self._described.holds):
+            return np.zeros((0, 2))
+        # As far as there is room.
+        y = np.maximum(-bodies[:, 1], -IMAGE)
+        return np.stack([-bodies[:, 0], y], axis=1)
+
+    def _strokes(self) -> Strokes:
+        """All lines, the last on top; bare bodies have no bands of their interfaces."""
+        rims = _drawn(self._geometry.rims, self.nodes)
+        strokes: Strokes = [(rims, EDGE, 1.4), (self._holds(), EDGE, 1.3)]
+        if not self.layout.is_bare:
+            strokes += self._bands()
+        strokes.append((gapped(self.nodes[self._at_break]), ERROR, 3.0))
+        for arrows in self.arrows:
+            width = 1.6 if len(arrows.lines) > 3 else 3.2
+            strokes.append((arrows.strokes, color_of(arrows.act), width))
+        return strokes
+
+    def _heads(self) -> Strokes:
+        return [
+            (gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows
+        ]
+
+    def _marks(self) -> Columns:
+        """The handles of arrows that can be dragged."""
+        handles = [arrows.handle for arrows in self.draggable]
+        columns = self._line(np.reshape(handles, (-1, 2)))
+        columns["line_color"] = [color_of(arrows.act) for arrows in self.draggable]
+        return columns
 
     def ghost(self, frame: Frame, column: int) -> Columns:
         """Outline of another run's bodies at the same scale, on the page."""
@@ -129,52 +146,64 @@ class Picture:
         return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
-        """Outline of the bodies as they begin to collapse, on the page."""
-        size = float(np.abs(moved).max(initial=0.0)) or 1.0
+        """Outline of bodies that begin to collapse.
+
+        Nodes move by `moved`, (n_nodes, 2).
+        """
+        size = float(np.abs(moved).max(initial=0.0))
+        if size == 0.0:
+            size = 1.0
         shown = MECHANISM * self.layout.size[1] / size * moved
         nodes = self.layout.local(self._geometry.nodes + shown)
         return self._line(_drawn(self._geometry.outlines, nodes))
 
     def page(self, local: Array) -> Array:
-        """Pixels of the figure, of places from the middle of the foot, along the bodies."""
+        """Px of the figure, of local px from the middle of the foot, (..., 2)."""
         return turned(local, self.tilt) + self.layout.origin
 
     def to_local(self, x: float, y: float) -> Array:
-        """A place on the page from the middle of the foot, along the bodies, px."""
+        """Local px, (2,), from the middle of the foot, of a point of the figure."""
         return turned(np.array([x, y]) - self.layout.origin, -self.tilt)
 
     def many(self, lines: Array) -> Columns:
-        """Lines or patches, (n, k, 2), on the page, each by itself."""
+        """Columns of lines or patches, (n, k, 2), px from the middle of the foot."""
         x, y = np.moveaxis(np.round(self.page(lines), 1), -1, 0)
         return {"xs": x.tolist(), "ys": y.tolist()}
 
     def _line(self, local: Array) -> Columns:
+        """Columns of a line or of points, (n, 2), px from the middle of the foot."""
         x, y = self.page(local).T.astype(np.float32)
         return {"x": x, "y": y}
 
-    def _moved(self, places: Array, moved: Array) -> Array:
-        return self.layout.local(places) + moved * (self._factor * self.layout.scale)
+    def _moved(self, positions: Array, moved: Array) -> Array:
+        """Moved positions in px from the middle of the foot, both (n, 2), m."""
+        magnified = moved * (self._factor * self.layout.scale)
+        return self.layout.local(positions) + magnified
 
-    def _follow(self, places: Array) -> Array:
-        """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
-        away = ((self._geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
+    def _follow(self, positions: Array) -> Array:
+        """Positions on the bodies, (n, 2), m, moved with their nearest nodes, px."""
+        away = ((self._geometry.nodes - positions[:, None]) ** 2).sum(axis=-1)
+        nearest = away.argmin(axis=1)
         return self._moved(
-            places, self.frame.deformed.nodes[away.argmin(axis=1), :, self.column]
+            positions, self.frame.deformed.nodes[nearest, :, self.column]
         )
 
     @cached_property
     def _at_break(self) -> Array:
-        """Nodes of both sides of a break, (2, 2); none where no body is broken."""
+        """Numbers of the nodes on both sides of a break, (2, 2).
+
+        (0, 2) without a break.
+        """
         if self._described.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
-        body, place = self._described.broken
+        body, position = self._described.broken
         x, y = self._geometry.nodes.T
-        is_there = np.abs(x - place) < 1e-4 * self._described.length
+        is_there = np.abs(x - position) < 1e-4 * self._described.length
         row = np.floor(y * self._described.bodies / self.layout.size[1])
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _columns(self, strokes: Strokes) -> Columns:
-        """On the page; binary arrays, which go fast to the browser."""
+        """Columns of strokes on the page: binary arrays go fast to the browser."""
         pages = [self.page(line).T.astype(np.float32) for line, _, _ in strokes]
         return {
             "xs": [x for x, _ in pages],
@@ -184,6 +213,7 @@ class Picture:
         }
 
     def _holds(self) -> Array:
+        """Strokes of the supports, and a horizontal where bodies tilt, (n, 2), px."""
         layout = self.layout
         length = self._described.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
@@ -195,80 +225,92 @@ class Picture:
         return np.concatenate([np.zeros((0, 2)), *strokes])
 
     def _bands(self) -> Strokes:
-        """What rubs, by its status, on a rim where there is contact."""
+        """Bands of the interfaces in the colours of their status."""
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
-        width = min(
-            BAND,
-            0.35 * self.layout.size[1] * self.layout.scale[1] / self._described.bodies,
-        )
+        height = self.layout.size[1] * self.layout.scale[1] / self._described.bodies
+        width = min(BAND, 0.35 * height)
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
-        rims = [line for kind, line in lines.items() if kind != OPEN]
-        return [(np.concatenate([np.zeros((0, 2)), *rims]), EDGE, width + 2.0)] + [
-            (line, STATUS[kind], 0.5 * width if kind == OPEN else width)
-            for kind, line in lines.items()
-        ]
+        closed = [line for kind, line in lines.items() if kind != OPEN]
+        rims = np.concatenate([np.zeros((0, 2)), *closed])
+        strokes: Strokes = [(rims, EDGE, width + 2.0)]
+        for kind, line in lines.items():
+            if kind == OPEN:
+                strokes.append((line, STATUS[kind], 0.5 * width))
+            else:
+                strokes.append((line, STATUS[kind], width))
+        return strokes
 
     def _words(self) -> Columns:
-        """What acts, and the slope; moved inwards where it would be cut."""
+        """Symbols and values of the loads, and the slope, inside the figure."""
         layout = self.layout
         texts = []
-        places = []
+        anchors = []
         aligns = []
         colors = []
-        above = [act for act in self._described.acts if act.where.startswith("top")]
         for arrows in self.arrows:
             act = arrows.act
-            (place, align) = anchor_of(arrows, layout)
-            # What presses from above and below alike is said once.
-            if not act.where.startswith("bottom") or not any(
-                is_opposite(act, a) for a in above
-            ):
-                texts.append(text_of(act, self._now))
-                places.append(self.page(place))
-                aligns.append(align)
-                colors.append(color_of(act))
+            if self._is_repeated(act):
+                continue
+            anchor, align = anchor_of(arrows, layout)
+            texts.append(text_of(act, self._now))
+            anchors.append(self.page(anchor))
+            aligns.append(align)
+            colors.append(color_of(act))
         if self._described.tilt is not None:
-            corner = np.array(
-                [0.5 * self._described.length * layout.scale[0] + 30.0, -14.0]
-            )
+            x = 0.5 * self._described.length * layout.scale[0] + 30.0
             texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
-            places.append(corner + layout.origin)
+            anchors.append(np.array([x, -14.0]) + layout.origin)
             aligns.append("left")
             colors.append(FORCE)
-        x, y = np.reshape(places, (-1, 2)).T
-        widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
-        left = widths * [
-            {"left": 0.0, "center": 0.5, "right": 1.0}[align] for align in aligns
-        ]
+        x, y = _inside(layout, texts, anchors, aligns)
         return {
-            "x": np.clip(x, left, np.maximum(layout.width - widths + left, left)),
-            "y": np.clip(y, 8.0, layout.height - 8.0),
+            "x": x,
+            "y": y,
             "text": texts,
             "text_align": aligns,
             "text_color": colors,
         }
 
+    def _is_repeated(self, act: Act) -> bool:
+        """Check whether a load is a pressure from below that is named above already."""
+        if not act.where.startswith("bottom"):
+            return False
+        above = [act for act in self._described.acts if act.where.startswith("top")]
+        return any(is_opposite(act, other) for other in above)
+
+
+def _inside(
+    layout: Layout, texts: list[str], anchors: list[Array], aligns: list[str]
+) -> tuple[Array, Array]:
+    """Anchors, (2,) each, px, moved inwards where their texts would be cut.
+
+    X and y, (n,).
+    """
+    x, y = np.reshape(anchors, (-1, 2)).T
+    widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
+    left = widths * [LEFT_OF[align] for align in aligns]
+    right = np.maximum(layout.width - widths + left, left)
+    return np.clip(x, left, right), np.clip(y, 8.0, layout.height - 8.0)
+
 
 def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:
-    """Lines along contact points by their status, each to the middle between it and the next.
+    """Lines along contact points by status, each to the middle before the next status.
 
-    Points, shape (n, 2), are NaN where their chain is broken, and so are lines behind
-    stretches.
+    Points have shape (n, 2), numbers of their chains and status (n,). Points are NaN
+    where a chain is broken, and lines behind each stretch.
     """
     is_joined = chains[1:] == chains[:-1]
     cuts = np.flatnonzero(~is_joined | (status[1:] != status[:-1]))
-    middles = np.where(
-        is_joined[cuts, None], 0.5 * (points[cuts + 1] + points[cuts]), np.nan
-    )
-    path = np.append(
-        np.insert(points, cuts + 1, middles, axis=0), [[np.nan, np.nan]], axis=0
-    )
-    before, after = (
-        np.insert(status, cuts + 1, status[side]) for side in (cuts, cuts + 1)
-    )
+    middles = 0.5 * (points[cuts + 1] + points[cuts])
+    middles = np.where(is_joined[cuts, None], middles, np.nan)
+    path = np.insert(points, cuts + 1, middles, axis=0)
+    path = np.append(path, [[np.nan, np.nan]], axis=0)
+    # At a cut the path belongs to both status.
+    before = np.insert(status, cuts + 1, status[cuts])
+    after = np.insert(status, cuts + 1, status[cuts + 1])
     lines = {}
     for kind in np.unique(status):
         is_on = np.append((before == kind) | (after == kind), False)
@@ -278,5 +320,5 @@ def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:
 
 
 def _drawn(lines: Array, nodes: Array) -> Array:
-    """Places of lines, (n, 2), NaN behind each."""
+    """Points of lines, (n, 2), with NaN behind each, of numbers of nodes, (n,)."""
     return np.append(nodes, [[np.nan, np.nan]], axis=0)[lines]

@@ -1,4 +1,4 @@
-"""Views of wires: where a strand is cut, and the force along rods and wires."""
+"""Views of wires: a section of a strand, and the axial force along rods and wires."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 
 
 class WireSection(ExtraView):
-    """All wires where a bent strand is cut, coloured by stress and ringed where they slip.
+    """Section of a bent strand: wires coloured by stress, ringed where they slip.
 
     A tap selects a wire.
     """
@@ -32,7 +32,8 @@ class WireSection(ExtraView):
 
     applies = staticmethod(lambda settings: settings.kind == "helices")
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw the wires as circles, the colour bar of the stress, and the legend."""
         made = self.begin(
             match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d()
         )
@@ -97,7 +98,8 @@ class AxialForces(ExtraView):
 
     applies = staticmethod(lambda settings: settings.kind != "plane")
 
-    def _make(self) -> None:
+    def make(self) -> None:
+        """Draw a curve for each wire, and the closed form."""
         made = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)

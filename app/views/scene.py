@@ -1,4 +1,7 @@
-"""The figure of the scene, and what is done in it with the pointer."""
+"""The figure of the scene, which the pointer drags and selects in.
+
+Stress and thrust.
+"""
 
 from __future__ import annotations
 
@@ -17,26 +20,28 @@ from app.units import number, unit_for
 from app.views.acts import Arrows
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
-from app.views.layout import layout_of
+from app.views.layout import Layout, layout_of
 from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
 
 WIDTH = 950.0
 HEIGHT = 190.0
-"""Of the figure until the browser tells, px."""
+"""Size of the figure until the browser reports its own, px."""
 NEAR = 22.0
 CLOSE = 14.0
-"""Pixels within which a handle is held, and an interface is tapped."""
+"""Distances within which a handle is held, and an interface is tapped, px."""
 KEPT = 0.3, 1.5
-"""Shares of the full length between which arrows stay as they are scaled."""
+"""Largest values over full length between which arrows keep their scale."""
 WIDEST = 9.0
 LEAST = 0.01
-"""Width of the line of the largest thrust, px, and the share of it below which none is
+"""Width of the line of the largest thrust, px, and share of it below which no line is
 drawn."""
+STRESS_STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
+"""Ends of the scale of stresses, times a power of ten: it seldom changes."""
 
 
 class Scene(View):
-    """The deformed bodies at the selected instant, what holds them, rubs, and acts on them.
+    """The deformed bodies at the selected instant, with supports, interfaces and loads.
 
     Arrows are dragged by their ends; a tap selects a substructure, and an interface.
     """
@@ -44,31 +49,36 @@ class Scene(View):
     name = "Scene"
     is_bare = False
 
-    def _make(self) -> None:
-        made = self._made = bare(90, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
-        self._draw(made)
+    def make(self) -> None:
+        """Draw all layers of the picture, and react to the pointer and to the size."""
+        plot = bare(90, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
+        self._figure = plot
+        self._draw(plot)
         self._peaks: dict[str, float] = {}
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
         self._held: tuple[Arrows, Picture] | None = None
-        for event, react in (
-            (PanStart, self._hold), (Pan, self._drag), (PanEnd, self._let_go), (Tap, self._select),
-        ):  # fmt: skip
-            made.on_event(event, react)
+        plot.on_event(PanStart, self._hold)
+        plot.on_event(Pan, self._drag)
+        plot.on_event(PanEnd, self._let_go)
+        plot.on_event(Tap, self._select)
         self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         for size in self._size:
-            made.on_change(size, self._resize)
+            plot.on_change(size, self._resize)
 
-    def _draw(self, made: figure) -> None:
+    def _draw(self, plot: figure) -> None:
+        """Add all layers from the bottom to the top, and the legend."""
         self.add("image", "Patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
-        look = {
-            "fill_color": BODY,
-            "line_color": EDGE,
-            "line_width": 0.8,
-            "line_alpha": 0.55,
-        }
-        self.add("bodies", "Patch", fill_alpha=0.0 if self.is_bare else 0.5, **look)
+        self.add(
+            "bodies",
+            "Patch",
+            fill_alpha=0.0 if self.is_bare else 0.5,
+            fill_color=BODY,
+            line_color=EDGE,
+            line_width=0.8,
+            line_alpha=0.55,
+        )
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
         self.add("strokes", "MultiLine", "xs ys line_color line_width")
         self.add(
@@ -78,65 +88,94 @@ class Scene(View):
             fill_color="line_color",
             also="line_width",
         )
-        look = {"size": 11, "fill_color": "white", "line_width": 2.5}
-        self.add("marks", "Scatter", "x y line_color", **look)
         self.add(
-            "words", "Text", "x y text text_align text_color",
-            text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
-        )  # fmt: skip
+            "marks",
+            "Scatter",
+            "x y line_color",
+            size=11,
+            fill_color="white",
+            line_width=2.5,
+        )
+        self.add(
+            "words",
+            "Text",
+            "x y text text_align text_color",
+            text_font_style="bold",
+            text_font=value("Roboto, sans-serif"),
+            text_baseline="middle",
+        )
         self.mark(KEYS | {"note": UNSEEN})
-        if self.is_bare:
-            keys = ()
-        else:
-            keys = KEYS
-        self._keys = self.legend(*keys, "note", place="center")
+        names = ["note"]
+        if not self.is_bare:
+            names = [*KEYS, "note"]
+        self._keys = self.legend(*names, place="center")
         self._keys.location = "bottom_left"
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant."""
-        made = self.figure
+        plot = self.figure
         run = frame.run
-        shown = self._shown
+        layout = self._layout_of(frame)
+        self._scale(frame, layout)
         self._shown = frame, selection, ghost
-        type_size = float(self.words.removesuffix("px"))
-        layout = layout_of(run.geometry, self.is_bare, type_size, *self._size.values())
-        if shown is None or shown[0].run.settings.scene != run.settings.scene:
-            self._factor = None
-            self._peaks = {}
-        if self._factor is None or shown is None or shown[0] is not frame:
-            largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
-            self._factor = layout.fitting(largest, self._factor)
-            self._scale_arrows(frame)
-        made.x_range.end = layout.width
-        made.y_range.end = layout.height
+        plot.x_range.end = layout.width
+        plot.y_range.end = layout.height
         column = run.column(selection.phase)
-        self.picture = picture = Picture(
-            frame, column, layout, self._factor, self._peaks
-        )
+        picture = Picture(frame, column, layout, self._factor, self._peaks)
+        self.picture = picture
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
+        # In the place of the ghost a structure that collapses shows its mechanism.
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:
             past = picture.ghost(ghost, ghost.run.column(selection.phase))
         if run.mechanism is not None and run.instants[column] >= run.collapses_at:
             past = picture.mechanism(run.mechanism)
         self.fill("ghost", **past)
-        self.show("open", any(each.bound is None for each in run.interfaces.values()))
-        is_rods = run.geometry.description.height is None
+        self._show_keys(frame, layout)
+
+    def _layout_of(self, frame: Frame) -> Layout:
+        type_size = float(self.words.removesuffix("px"))
+        width, height = self._size.values()
+        return layout_of(frame.run.geometry, self.is_bare, type_size, width, height)
+
+    def _scale(self, frame: Frame, layout: Layout) -> None:
+        """Choose the magnification and the scale of arrows for a frame that is new."""
+        shown = None
+        if self._shown is not None:
+            shown = self._shown[0]
+        if shown is None or shown.run.settings.scene != frame.run.settings.scene:
+            self._factor = None
+            self._peaks = {}
+        if self._factor is None or shown is not frame:
+            largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
+            self._factor = layout.fitting(largest, self._factor)
+            self._scale_arrows(frame)
+
+    def _show_keys(self, frame: Frame, layout: Layout) -> None:
+        """Show the keys of the status in rows or a column, with the magnification."""
+        run = frame.run
+        can_open = any(each.bound is None for each in run.interfaces.values())
+        self.show("open", can_open)
         note = f"displacement × {number(self._factor)}"
-        self.show("note", note + ", thickness not to scale" * is_rods)
-        rows = layout.key_rows
-        self._keys.update(
-            orientation="horizontal" if rows else "vertical", nrows=rows or "auto"
-        )
+        if run.geometry.description.height is None:
+            note += ", thickness not to scale"
+        self.show("note", note)
+        if layout.key_rows:
+            self._keys.update(orientation="horizontal", nrows=layout.key_rows)
+        else:
+            self._keys.update(orientation="vertical", nrows="auto")
 
     def _scale_arrows(self, frame: Frame) -> None:
-        """Keep how long arrows are for their values, while they stay long enough and fit."""
+        """Keep the scale of arrows while they stay long enough and fit, or are held."""
+        shortest, longest = KEPT
         for act in frame.run.geometry.description.acts:
             peak = float(np.abs(act.values).max())
             kept = self._peaks.get(act.where)
-            if kept is None or not (self._held or KEPT[0] <= peak / kept <= KEPT[1]):
-                self._peaks[act.where] = peak
+            if kept is not None:
+                if self._held or shortest <= peak / kept <= longest:
+                    continue
+            self._peaks[act.where] = peak
 
     def _resize(self, name: str, old: float, new: float) -> None:
         self._size[name] = max(float(new), 60.0)
@@ -169,15 +208,16 @@ class Scene(View):
             self.state.release(name, value)
 
     def _value(self, event: Any) -> float:
-        """The value that the pointer gives what is held, within the range of its slider."""
+        """Value of the held load at the pointer, within the range of its slider."""
         arrows, picture = self._held
         present = float(getattr(picture.frame.run.settings, arrows.setting))
         dragged = arrows.scaled(present, picture.to_local(event.x, event.y))
         low, high = self.state.settings.definitions()[arrows.setting].softbounds
-        return float(f"{np.clip(dragged, min(low, present), max(high, present)):.3g}")
+        clipped = np.clip(dragged, min(low, present), max(high, present))
+        return float(f"{clipped:.3g}")
 
     def _select(self, event: Any) -> None:
-        """Select the substructure that was tapped, or is nearest, and the interface if any was."""
+        """Select the substructure nearest to a tap, and an interface that is close."""
         picture = self.picture
         if picture is None:
             return
@@ -194,7 +234,7 @@ class Scene(View):
 
 
 class ExtraScene(Scene):
-    """The scene without what acts and rubs, but with an extra, as far as the frame has it."""
+    """The scene without loads and interfaces, but with an extra if the frame has it."""
 
     is_bare = True
 
@@ -218,7 +258,7 @@ class Stress(ExtraScene):
     name = "Stress"
     needs = frozenset({"stress"})
 
-    def _draw(self, made: figure) -> None:
+    def _draw(self, plot: figure) -> None:
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         color = {"field": "value", "transform": self.colors}
         self.add(
@@ -229,33 +269,28 @@ class Stress(ExtraScene):
             fill_color=color,
             line_color=color,
         )
-        self.bar = color_bar(made, self.colors)
-        super()._draw(made)
+        self.bar = color_bar(plot, self.colors)
+        super()._draw(plot)
 
     def _show(self, extra: Any, picture: Picture) -> None:
         title, si, values = extra
         largest = float(np.abs(values).max())
         unit = unit_for(largest, si)
-        # It seldom changes.
-        high = rounded_up(
-            0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
-        )
-        signed = float(values.min()) < -1e-3 * largest
-        self.colors.update(
-            palette=RdBu11 if signed else Cividis256,
-            low=-high if signed else 0.0,
-            high=high,
-        )
+        high = rounded_up(0.999 * largest / unit.factor, STRESS_STEPS)
+        if float(values.min()) < -1e-3 * largest:
+            self.colors.update(palette=RdBu11, low=-high, high=high)
+        else:
+            self.colors.update(palette=Cividis256, low=0.0, high=high)
         self.bar.title = f"{title}, {unit.name}"
         corners = picture.many(picture.nodes[picture.frame.run.geometry.quads])
         self.fill("stress", **corners, value=values[:, picture.column] / unit.factor)
 
 
 class Thrust(ExtraScene):
-    """How many bodies find their load its way: resultants of joints from middle to middle.
+    """Resultant forces of joints, as lines from middle to middle of bodies.
 
-    Lines are as wide as forces are large; the largest of all instants is the widest
-    line.
+    The width of a line is in proportion to its force; the largest force of all instants
+    has the widest line.
     """
 
     name = "Thrust"
@@ -264,8 +299,8 @@ class Thrust(ExtraScene):
         lambda settings: settings.has_joints and settings.n_bodies > 2
     )
 
-    def _draw(self, made: figure) -> None:
-        super()._draw(made)
+    def _draw(self, plot: figure) -> None:
+        super()._draw(plot)
         look = {"line_color": LATIN, "line_alpha": 0.8, "line_cap": "round"}
         self.add("thrust", "MultiLine", "xs ys line_width", **look)
 

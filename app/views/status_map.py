@@ -8,22 +8,30 @@ import numpy as np
 from bokeh.events import Tap
 from bokeh.models import LinearColorMapper
 
-from app.frame import Floats, Frame, Selection
+from app.frame import (
+    Floats,
+    Frame,
+    FrictionInterface,
+    InterfaceFields,
+    Run,
+    Selection,
+)
 from app.views.axis import edges
 from app.views.colors import CUT, ERROR, EXACT, GHOST, KEYS, STATUS
 from app.views.view import View, hover, joined
 
 
 class StatusMap(View):
-    """The status of the selected interface; a tap selects the instant and the place."""
+    """The status of the selected interface; a tap selects an instant and a point."""
 
     name = "Stick and slip"
 
     applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def _make(self) -> None:
-        made = self.begin(("x", "m"), ("t", "s"))
-        made.center = []
+    def make(self) -> None:
+        """Draw the image of the status, with marks of what is selected."""
+        plot = self.begin(("x", "m"), ("t", "s"))
+        plot.center = []
         self.mark(KEYS)
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
         image = self.add("status", "Image", "image x y dw dh", color_mapper=colors)
@@ -33,40 +41,50 @@ class StatusMap(View):
         self.add("now", "HSpan", "y", color=ERROR, line_width=2)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.legend(*KEYS, "ghost", front="closed form")
-        hover(made, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
-        made.on_event(Tap, self._select)
+        hover(plot, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
+        plot.on_event(Tap, self._select)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the status of every point at every instant."""
         run = frame.run
-        name = selection.interface_of(frame.run)
+        name = selection.interface_of(run)
         fields = frame.contact.get(name)
-        interface = run.interfaces[name]
         if fields is None:
             return
+        interface = run.interfaces[name]
         self.x.hold((run.number, name), interface.positions)
         self.y.hold((run.number, name), run.instants)
-        x = edges(interface.positions)[[0, -1]]
-        y = edges(run.instants)[[0, -1]]
-        (left, right) = self.x(x)
-        (low, high) = self.y(y)
-        size = {"dw": [right - left], "dh": [high - low]}
-        self.fill("status", image=[fields.status.T], x=[left], y=[low], **size)
+        self._show_image(run, interface, fields)
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
-        self.fill(
-            "place", x=self.x([] if selection.place is None else [selection.place])
-        )
+        selected = []
+        if selection.place is not None:
+            selected = [selection.place]
+        self.fill("place", x=self.x(selected))
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
-        if ghost is None:
-            lines = np.zeros((4, 0))
-        else:
+        lines = np.zeros((4, 0))
+        if ghost is not None:
             lines = _boundary(ghost, selection)
-        (x0, x1) = self.x(lines[::2])
-        (y0, y1) = self.y(lines[1::2])
+        x0, x1 = self.x(lines[::2])
+        y0, y1 = self.y(lines[1::2])
         self.fill("ghost", self.ghost_name, x0=x0, y0=y0, x1=x1, y1=y1)
+
+    def _show_image(
+        self, run: Run, interface: FrictionInterface, fields: InterfaceFields
+    ) -> None:
+        """Show the status as an image whose cells lie about points and instants."""
+        left, right = self.x(edges(interface.positions)[[0, -1]])
+        low, high = self.y(edges(run.instants)[[0, -1]])
+        self.fill(
+            "status",
+            image=[fields.status.T],
+            x=[left],
+            y=[low],
+            dw=[right - left],
+            dh=[high - low],
+        )
 
     def _select(self, event: Any) -> None:
         frame = self.state.frame
@@ -78,7 +96,7 @@ class StatusMap(View):
 
 
 def _boundary(frame: Frame, selection: Selection) -> Floats:
-    """Ends x0, y0, x1, y1 of the lines between different status, (4, n_lines), m and s."""
+    """Lines between different status: ends x0, y0, x1, y1, m and s, (4, n_lines)."""
     name = selection.interface_of(frame.run)
     if name not in frame.contact:
         return np.zeros((4, 0))

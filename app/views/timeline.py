@@ -1,4 +1,4 @@
-"""The load path as the time line: one drags along it to choose the instant."""
+"""The load path as a time line, along which the instant is dragged."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ HIGH = 2.7
 
 
 class Timeline(View):
-    """What is given over time, each path over its largest value, and the selected instant."""
+    """Load paths over time, each over its largest value, and the selected instant."""
 
     name = "Load path"
 
-    def _make(self) -> None:
-        made = self._made = bare(40, (-0.01, 1.01), (LOW, HIGH))
+    def make(self) -> None:
+        """Draw the paths, and follow the pointer along them."""
+        made = self._figure = bare(40, (-0.01, 1.01), (LOW, HIGH))
         self._number = 0
         axis = made.xaxis
         axis.major_label_standoff = 1
@@ -92,7 +93,7 @@ class Timeline(View):
 
 
 def paths_of(run: Run) -> list[tuple[str, Array]]:
-    """What is given over time, first what changes: its name with its range, and values."""
+    """Title with range, and values, (n_instants,), of all paths, constant ones last."""
     described = run.geometry.description
     given: list[tuple[str, Array, Unit]] = []
     if described.tilt is not None:

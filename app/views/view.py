@@ -1,4 +1,4 @@
-"""What a view is: a Bokeh figure made once, and an update from a frame."""
+"""Views: a Bokeh figure that is made once, and an update of it from a frame."""
 
 from __future__ import annotations
 
@@ -40,11 +40,10 @@ from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
 SHORT = 200
-"""Numbers of a curve up to which it is sent as a list, which then takes less time than
-an array."""
+"""Length of a curve up to which it is sent as a list: faster there than an array."""
 TEXT = "12px"
 WORDS = "14px"
-"""Sizes of what is written in plots, and of what belongs to arrows."""
+"""Type sizes of plots, and of words at arrows."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Keeps sizes that are not the theme's, as the browser sets these when it draws a
 figure."""
@@ -65,93 +64,98 @@ const is_mark = shown.name == null
 const others = (each) => each.name == shown.name && each != shown
 for (const each of is_mark ? [shown] : plot.renderers.filter(others)) each.visible = !each.visible
 """
-"""Hides the glyph that a copy in the legend is of, or shows it again; marks stay as
+"""Hides the glyph whose copy in the legend is clicked, or shows it again; marks stay as
 they are."""
 
 
 class View:
-    """A figure, made when it is first seen, below a legend that names what is there.
+    """A figure, made when it is first seen, below a legend of its curves.
 
-    A click on an entry of the legend hides its curve. What is done in the figure, as a
-    tap, selects in the state of the page. `x` and `y` are the axes, `sources` what is
-    drawn, by name.
+    A click on an entry of the legend hides its curve. A tap or a drag in the figure
+    selects in the state of the page. `x` and `y` are the axes, `sources` the data of
+    the glyphs, by name.
     """
 
     name: ClassVar[str]
-    """What its tab is called."""
+    """Title of its tab."""
     needs: ClassVar[frozenset[str]] = frozenset()
     """Names of the extras of a frame that it shows."""
     applies: ClassVar[Callable[[Settings], bool]] = staticmethod(lambda settings: True)
-    """Whether it says anything about a run with such settings."""
+    """Check whether the view applies to a run with some settings."""
 
     def __init__(self, state: PageState) -> None:
         self.state = state
         self._type = TEXT
-        self._made: figure | None = None
+        self._figure: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
         self._items: dict[str, LegendItem] = {}
 
     @cached_property
     def figure(self) -> figure:
-        """The figure."""
-        # Nothing in it is selected or left out: what would say so is shared, as each
-        # model counts.
+        """The figure, made by `make`."""
+        # In no source anything is selected or filtered: all share these models, as each
+        # model costs time.
         self._selects = {
             "selected": models.Selection(),
             "selection_policy": UnionRenderers(),
         }
         self._filter = AllIndices()
-        self._make()
+        self.make()
+        # A size that was asked for before there was a figure.
         size = self._type
         self._type = TEXT
         self.magnify(size)
-        return self._made
+        return self._figure
 
     def magnify(self, size: str) -> None:
-        """Have its type in a size, as CSS has it."""
-        made = self._made
+        """Set the type size of the figure, as CSS has it."""
+        plot = self._figure
         keep = CustomJS(code=KEEP)
         is_same = size == self._type
         self._type = size
-        if is_same or made is None:
+        if is_same or plot is None:
             return
         # Each by itself: an em is 13 pixels to axes, whatever the style.
-        for model in (made, *made.legend):
+        for model in (plot, *plot.legend):
             model.styles = {**model.styles, "font-size": size}
-        for words in made.select(models.Text):
+        for words in plot.select(models.Text):
             words.text_font_size = self.words
-        for model in (*made.axis, *made.select(Title), *made.select(ColorBar)):
+        for model in (*plot.axis, *plot.select(Title), *plot.select(ColorBar)):
             names = [
                 name for name in model.properties() if name.endswith("text_font_size")
             ]
             sizes = dict.fromkeys(names, size)
-            model.update(tags=[sizes] if size != TEXT else [], **sizes)
+            tags = []
+            if size != TEXT:
+                tags = [sizes]
+            model.update(tags=tags, **sizes)
             if not model.js_property_callbacks:
                 model.js_on_change(names[0], keep)
 
     @property
     def words(self) -> str:
-        """Size of the type of what belongs to arrows, as CSS has it."""
+        """Type size of words at arrows, as CSS has it."""
         return WORDS if self._type == TEXT else self._type
 
-    def _make(self) -> None:
-        """Make the figure, by `begin` and `add`."""
+    def make(self) -> None:
+        """Make the figure, by `begin` and `add`; each view overrides it."""
         raise NotImplementedError
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show a frame; the ghost is that of the run that it is compared with."""
+        """Show a frame; the ghost is the frame of the run that it is compared with."""
         raise NotImplementedError
 
     @property
     def ghost_name(self) -> str:
-        """What the run is called that is drawn beside the present one."""
+        """Name of the run that is drawn beside the present one."""
         return "last run" if self.state.pinned is None else "pinned run"
 
     def begin(
         self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any
     ) -> figure:
         """A new figure whose axes have a title and an SI unit; `add` fills it."""
-        made = self._made = figure(
+        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)}
+        plot = figure(
             sizing_mode="stretch_both",
             min_height=120,
             # It stands nearer than the label of an axis, which the theme moves away.
@@ -160,22 +164,23 @@ class View:
             tools=TOOLS,
             active_drag=None,
             active_scroll="wheel_zoom",
-            **({"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more),
+            **(ranges | more),
         )
-        made.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
-        made.toolbar.autohide = True
-        made.toolbar.logo = None
-        made.min_border = 2
-        made.min_border_right = 10
-        made.outline_line_color = None
-        made.axis.major_label_standoff = 3
-        made.axis.minor_tick_line_color = None
-        made.axis.major_tick_in = 0
-        made.axis.major_tick_out = 3
-        made.grid.grid_line_alpha = 0.3
-        self.x = Axis(made, "x", *x)
-        self.y = Axis(made, "y", *y)
-        return made
+        plot.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
+        plot.toolbar.autohide = True
+        plot.toolbar.logo = None
+        plot.min_border = 2
+        plot.min_border_right = 10
+        plot.outline_line_color = None
+        plot.axis.major_label_standoff = 3
+        plot.axis.minor_tick_line_color = None
+        plot.axis.major_tick_in = 0
+        plot.axis.major_tick_out = 3
+        plot.grid.grid_line_alpha = 0.3
+        self._figure = plot
+        self.x = Axis(plot, "x", *x)
+        self.y = Axis(plot, "y", *y)
+        return plot
 
     def add(
         self,
@@ -187,65 +192,82 @@ class View:
         on: str = "",
         **look: Any,
     ) -> GlyphRenderer:
-        """A glyph of Bokeh's, columns called as its properties, on a source called as it or `on`.
+        """Add a glyph of Bokeh's, by a name under which `fill` and `legend` know it.
 
-        The source has also other columns, for whoever hovers, or other glyphs on it.
+        `columns` are the columns of its source, called as properties of the glyph;
+        `also` are further ones, for tips or other glyphs. The source is called as the
+        glyph, or `on`, which several glyphs may share.
         """
         kind = getattr(models, glyph)
-        own = columns.split()
-        if (on or name) not in self.sources:
-            self.sources[on or name] = self._source(
-                {each: [] for each in (*own, *also.split())}
-            )
-        look = {column: column for column in own} | look
-        return self._render(self.sources[on or name], kind(**visuals(kind, look)), name)
+        fields = columns.split()
+        source_name = on or name
+        if source_name not in self.sources:
+            empty = {column: [] for column in (*fields, *also.split())}
+            self.sources[source_name] = self._source(empty)
+        look = {column: column for column in fields} | look
+        drawn = kind(**visuals(kind, look))
+        return self._render(self.sources[source_name], drawn, name)
 
     def _render(
         self, source: ColumnDataSource, glyph: Glyph, name: str | None = None
     ) -> GlyphRenderer:
-        without = {
-            f"{state}_glyph": None for state in ("selection", "nonselection", "muted")
-        }
-        view = CDSView(filter=self._filter)
-        return self._made.add_glyph(source, glyph, name=name, view=view, **without)
+        return self._figure.add_glyph(
+            source,
+            glyph,
+            name=name,
+            view=CDSView(filter=self._filter),
+            selection_glyph=None,
+            nonselection_glyph=None,
+            muted_glyph=None,
+        )
 
     def _source(self, columns: dict[str, Any]) -> ColumnDataSource:
         return ColumnDataSource(columns, **self._selects)
 
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
-        """Marks that stand in the legend only, by name; they share a glyph, as each costs time."""
+        """Add marks to the legend only, by name.
+
+        They share a glyph, as each costs time.
+        """
         nowhere = [np.nan] * len(colors)
         columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
         look = {"marker": "square", "size": 10, "color": "color"} | look
         marks = self._render(self._source(columns), Scatter(**visuals(Scatter, look)))
-        for place, name in enumerate(colors):
-            self._items[name] = LegendItem(renderers=[marks], index=place)
+        for index, name in enumerate(colors):
+            self._items[name] = LegendItem(renderers=[marks], index=index)
 
     def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
         """Name glyphs in a legend, in this order, by their own names or by titles.
 
-        It shows copies of them without data: it is made anew whenever the data of what
-        it shows change.
+        The legend shows copies of them without data, as Bokeh makes it anew whenever
+        the data of a glyph in it change.
         """
         titles = {name: name for name in names} | titles
-        drawn = {r.name: r for r in reversed(self._made.renderers) if r.name in titles}
-        columns = {
-            column for each in drawn.values() for column in each.data_source.data
-        }
-        nowhere = self._source({column: [np.nan] for column in columns})
-        for name, each in drawn.items():
-            self._items[name] = LegendItem(
-                renderers=[self._render(nowhere, each.glyph, name)]
-            )
+        # Of glyphs of one name the first.
+        drawn: dict[str, GlyphRenderer] = {}
+        columns: dict[str, list[float]] = {}
+        for renderer in self._figure.renderers:
+            if renderer.name in titles:
+                drawn.setdefault(renderer.name, renderer)
+        for renderer in drawn.values():
+            columns |= {column: [np.nan] for column in renderer.data_source.data}
+        nowhere = self._source(columns)
+        for name, renderer in drawn.items():
+            copy = self._render(nowhere, renderer.glyph, name)
+            self._items[name] = LegendItem(renderers=[copy])
         for name, title in titles.items():
             self._items[name].label = value(title)
-        box = legend(self._made, [self._items[name] for name in titles], place)
+        box = legend(self._figure, [self._items[name] for name in titles], place)
         box.click_policy = "hide"
-        box.js_on_event(LegendItemClick, CustomJS(args={"plot": self._made}, code=HIDE))
+        hide = CustomJS(args={"plot": self._figure}, code=HIDE)
+        box.js_on_event(LegendItemClick, hide)
         return box
 
     def show(self, name: str, wanted: bool | str) -> None:
-        """Show or hide an entry of the legend, unless it comes back, or give it another title."""
+        """Show or hide an entry of the legend, or give it another title.
+
+        Nothing is hidden that comes back with the next frame.
+        """
         if self.state.is_fleeting and not wanted:
             return
         item = self._items.get(name)
@@ -255,7 +277,10 @@ class View:
                 item.label = value(wanted)
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
-        """Fill a source; the legend has it, by a title, if there is anything in it."""
+        """Fill a source.
+
+        The legend has its entry, by a title, if the source has data.
+        """
         target = self.sources[name]
         columns = {column: _sent(values) for column, values in columns.items()}
         new = [
@@ -263,15 +288,19 @@ class View:
             for column in columns
             if not _equal(target.data[column], columns[column])
         ]
-        # What is the same is not sent again.
+        # A column that is the same is not sent again.
         if len(new) == 1 < len(columns):
             target.data[new[0]] = columns[new[0]]
         elif new:
             target.data = columns
-        self.show(name, any(map(len, columns.values())) and (title or True))
+        has_data = any(len(values) for values in columns.values())
+        if has_data and title:
+            self.show(name, title)
+        else:
+            self.show(name, has_data)
 
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
-        """Draw a curve of values in SI."""
+        """Draw a curve of values in SI, shape (n,) each."""
         self.fill(name, title, x=self.x(x), y=self.y(y))
 
     def draw_each(
@@ -281,16 +310,22 @@ class View:
         ys: Sequence[ArrayLike],
         titles: Sequence[str],
     ) -> None:
-        """Draw curves over the same places; names that are left over are of none."""
+        """Draw curves over the same x, shape (n,), in SI.
+
+        Empty the names that are left.
+        """
         for name, y, title in zip_longest(names, ys, titles):
-            self.draw(name, *([], []) if y is None else (x, y, title))
+            if y is None:
+                self.draw(name, [], [])
+            else:
+                self.draw(name, x, y, title)
 
 
 class ExtraView(View):
-    """A view of the one extra that it needs, which the worker sends once the view is in sight."""
+    """A view of one extra, which the worker sends once the view is in sight."""
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show what a frame has of it."""
+        """Show the extra of a frame, if the frame has it."""
         (name,) = self.needs
         extra = frame.extras.get(name)
         if extra is not None:
@@ -303,61 +338,81 @@ class ExtraView(View):
 def bare(
     least: int, across: tuple[float, float], up: tuple[float, float], **more: Any
 ) -> figure:
-    """A figure without tools, frame and grid, at least so many pixels high, with ends of axes."""
-    made = figure(
-        sizing_mode="stretch_both", min_height=least, tools="", toolbar_location=None, title=None,
-        x_range=Range1d(*across), y_range=Range1d(*up), min_border=0, y_axis_type=None, **more,
-    )  # fmt: skip
-    made.center = []
-    made.outline_line_color = None
-    made.background_fill_alpha = made.border_fill_alpha = 0.0
-    return made
+    """A figure without tools, frame and grid, with a least height, px, and limits."""
+    plot = figure(
+        sizing_mode="stretch_both",
+        min_height=least,
+        tools="",
+        toolbar_location=None,
+        title=None,
+        x_range=Range1d(*across),
+        y_range=Range1d(*up),
+        min_border=0,
+        y_axis_type=None,
+        **more,
+    )
+    plot.center = []
+    plot.outline_line_color = None
+    plot.background_fill_alpha = 0.0
+    plot.border_fill_alpha = 0.0
+    return plot
 
 
-def color_bar(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A bar beside a figure that says what its colours mean."""
+def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
+    """A bar at the right of a figure that explains its colours."""
     bar = ColorBar(
-        color_mapper=colors, width=9, padding=2, margin=0, title_standoff=4,
-        title_text_font_style="normal", background_fill_alpha=0.0, **look,
-    )  # fmt: skip
-    made.add_layout(bar, "right")
+        color_mapper=colors,
+        width=9,
+        padding=2,
+        margin=0,
+        title_standoff=4,
+        title_text_font_style="normal",
+        background_fill_alpha=0.0,
+        **look,
+    )
+    plot.add_layout(bar, "right")
     return bar
 
 
 def hover(
-    made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]
+    plot: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]
 ) -> None:
-    """Show values where the pointer is: names, and columns of the renderers' sources."""
-    made.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
+    """Show values at the pointer: titles, and columns of the renderers' sources."""
+    plot.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
 
 
 def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
-    """Properties of a kind of glyph; `color`, `alpha`, `width`, `dash` are of line and fill."""
+    """Properties of a kind of glyph.
+
+    `color`, `width` etc. hold for its line and fill.
+    """
     names = kind.properties()
     properties = {}
     for trait, given in look.items():
         if trait in names:
-            both = [trait]
-        else:
-            both = [f"line_{trait}", f"fill_{trait}"]
-        properties |= {name: given for name in both if name in names}
+            properties[trait] = given
+            continue
+        for name in (f"line_{trait}", f"fill_{trait}"):
+            if name in names:
+                properties[name] = given
     return properties
 
 
 def _sent(values: Any) -> Any:
-    """Values with short curves as lists: an array is sent by itself, in two messages."""
+    """Values with short curves as lists.
+
+    An array is sent by itself, in two messages.
+    """
     if isinstance(values, list):
         return [_sent(each) for each in values]
-    is_short = (
-        isinstance(values, np.ndarray) and values.ndim == 1 and len(values) <= SHORT
-    )
-    if is_short:
+    is_curve = isinstance(values, np.ndarray) and values.ndim == 1
+    if is_curve and len(values) <= SHORT:
         return values.tolist()
     return values
 
 
 def _equal(old: Any, new: Any) -> bool:
-    """Whether values are the same, as is NaN and NaN."""
+    """Check whether values are equal; NaN equals NaN."""
     if isinstance(new, np.ndarray):
         return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
     if isinstance(new, list):
@@ -366,14 +421,23 @@ def _equal(old: Any, new: Any) -> bool:
 
 
 def joined(curves: Iterable[ArrayLike]) -> Floats:
-    """Curves, shape (2, n) each, one after the other as one, NaN between them."""
+    """Curves, shape (2, n) each, as one with NaN between them, shape (2, n_all)."""
     gap = np.full((2, 1), np.nan)
-    pieces = [piece for curve in curves for piece in (np.asarray(curve), gap)]
-    return np.concatenate(pieces[:-1] or [gap[:, :0]], axis=1)
+    pieces: list[Floats] = []
+    for curve in curves:
+        if pieces:
+            pieces.append(gap)
+        pieces.append(np.asarray(curve))
+    if not pieces:
+        return gap[:, :0]
+    return np.concatenate(pieces, axis=1)
 
 
-def legend(made: figure, items: Sequence[Any], place: str = "above") -> Legend:
-    """A legend in one line, above the plot, where it covers no curve, or in it."""
+def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
+    """A legend in one line: above the plot, where it covers no curve, or inside."""
+    styles = {"font-size": TEXT}
+    if place == "above":
+        styles |= ABOVE
     box = Legend(
         items=items,
         orientation="horizontal",
@@ -384,8 +448,8 @@ def legend(made: figure, items: Sequence[Any], place: str = "above") -> Legend:
         glyph_height=12,
         glyph_width=12,
         background_fill_alpha=0.0,
-        styles={"font-size": TEXT} | (ABOVE if place == "above" else {}),
+        styles=styles,
         stylesheets=[CLOSE],
     )
-    made.add_layout(box, place)
+    plot.add_layout(box, place)
     return box

@@ -1,4 +1,4 @@
-"""What a process does that makes a report: a command of the command line, in a folder."""
+"""Process of a report: runs a command of the command line in a folder."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LOG = "log.txt"
 
 
 def command(arguments: Sequence[str], folder: Path) -> int:
-    """Run a command with its output in the folder's log, which goes if the server is gone."""
+    """Run a command with its output in the folder's log; end if the server is gone."""
     from solver.commands.cli import main
 
     # A process does one command and ends.

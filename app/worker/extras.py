@@ -1,11 +1,12 @@
-"""What only some views need of an iterate, computed while one of them is in sight."""
+"""Extras: quantities of an iterate that only some views need."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,13 +14,16 @@ from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
 from app.worker.geometry import MOST_POINTS, floats, thinned
-from solver.arrays import Array
+from solver.arrays import Array, Indices
+from solver.discrete import Problem
+from solver.discrete.structure import Loop
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
 from solver.settings.definitions import SettingError
+from solver.settings.scene import Settings
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import (
@@ -35,60 +39,72 @@ from solver.study.quantities.reduction_measures import (
     products_in,
 )
 
-if TYPE_CHECKING:
-    from app.worker.sampling import Sampler
-
 MOST_SPECTRA = 24
 MOST_VALUES = 64
-"""Substructures, and singular values of each, that are shown at most."""
+"""Largest numbers of substructures, and of singular values of each, that are shown."""
 MOST_MODES = 5
-"""Modes that are shown at most."""
+"""Largest number of modes that are shown."""
 
 
-def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
-    """Singular values of the friction force in substructures, over the largest of these."""
-    places = thinned(len(iterate.problem.substructures), MOST_SPECTRA)
+@dataclass(frozen=True, eq=False)
+class Sampled:
+    """The problem of a run, with its loop and the instants that frames show.
+
+    `columns` are the indices of these instants among all, shape (n_shown,).
+    """
+
+    problem: Problem
+    settings: Settings
+    loop: Loop
+    columns: Indices
+
+
+def spectra(sampled: Sampled, iterate: Iterate, needs: Needs) -> list[Floats]:
+    """Singular values of the friction force in substructures over the largest of all.
+
+    Each array has shape (n_values,), without unit.
+    """
+    numbers = thinned(len(iterate.problem.substructures), MOST_SPECTRA)
     parts = decompositions(
-        iterate.problem, iterate.boundary_force, places, is_force=True
+        iterate.problem, iterate.boundary_force, numbers, is_force=True
     )
     shown = [part.values[:MOST_VALUES] for part in parts]
-    largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
+    largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0)
+    if largest == 0.0:
+        largest = 1.0
     return [floats(np.asarray(part) / largest) for part in shown]
 
 
-def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
+def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
     """Slips of two points, and the lines A w = b between which both stick.
 
     "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4,
     n_instants), N, whose first and third lines are those of the left point; "room", the
-    corners of where both may stay in the whole last cycle, (n_corners, 2), m. None
-    where contact alone holds the body, whose slip says nothing of what presses it.
+    corners of the region in which both may stay in the whole last cycle, (n_corners,
+    2), m. None where contact alone holds the body: then slip says nothing of the
+    pressure.
     """
-    space = _slip_space(sampler)
+    space = _slip_space(sampled)
     if space is None:
         return None
     ((law, slip, _),) = slips_of(iterate)
-    ends = ends_of(sampler.settings)
+    ends = ends_of(sampled.settings)
     if len(ends) > 1:
-        last = slice(ends[-2], ends[-1] + 1)
+        room = room_of_two(space, slice(ends[-2], ends[-1] + 1))
     else:
-        last = None
-    if last is None:
         room = np.zeros((0, 2))
-    else:
-        room = room_of_two(space, last)
     moved = np.cumsum(law.mean_by_point(slip), axis=1)
     return {
-        "slip": floats(moved[:, sampler.columns]),
+        "slip": floats(moved[:, sampled.columns]),
         "matrix": floats(space.matrix),
-        "limit": floats(space.limit[:, sampler.columns]),
+        "limit": floats(space.limit[:, sampled.columns]),
         "room": floats(room),
     }
 
 
 @lru_cache(maxsize=1)
-def _slip_space(sampler: Sampler) -> SlipSpace | None:
-    problem = sampler.problem
+def _slip_space(sampled: Sampled) -> SlipSpace | None:
+    problem = sampled.problem
     points = [len(law.positions) for law in problem.rubbing.values()]
     if points != [2] or problem.motions is not None:
         return None
@@ -99,19 +115,19 @@ def _slip_space(sampler: Sampler) -> SlipSpace | None:
     return space if space.matrix.shape[1] == 2 else None
 
 
-def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """The iterate, cycle by cycle of its load; None where that has none.
+def cycles(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Slip and energy of an iterate in each cycle of its load; None without cycles.
 
     "columns" of the instants at which cycles begin, and the last one ends, (n_cycles +
-    1,); "energy" that friction takes in each, (n_cycles,), J; "text", what becomes of
-    slip.
+    1,); "energy" that friction takes in each, (n_cycles,), J; "text", a sentence on how
+    slip goes on.
     """
-    found = cycles_of(sampler.settings, iterate)
+    found = cycles_of(sampled.settings, iterate)
     if not len(found):
         return None
     slipped = bool(found.slip.any() or found.before.any())
     return {
-        "columns": np.searchsorted(sampler.columns, found.ends),
+        "columns": np.searchsorted(sampled.columns, found.ends),
         "energy": floats(found.energy),
         "text": _fate_text(found) if slipped else "nothing slips",
     }
@@ -137,45 +153,44 @@ def _fate_text(cycles: LoadCycles) -> str:
             return f"ratcheting: every cycle takes {energy} and leaves {net} of slip"
 
 
-def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """The largest modes of the selected substructure's separated basis; None without bases.
+def modes(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Largest modes of the selected substructure's separated basis; None without bases.
 
-    "x" along rods, (n_places,), m; "space", (n_modes, n_places), over the largest entry
-    of each; "time", (n_modes, n_instants), m; "substructure" from 0; "text", what the
-    iteration did to the basis.
+    "x" along rods, (n_points,), m; "space", (n_modes, n_points), over the largest entry
+    of each; "time", (n_modes, n_instants), m; "substructure" from 0; "text", its number
+    of modes.
     """
     if not iterate.bases:
         return None
     last = len(iterate.bases) - 1
     if needs.substructure is None:
-        place = last
+        number = last
     else:
-        place = min(max(needs.substructure, 0), last)
-    basis = iterate.bases[place]
-    problem = sampler.problem
+        number = min(max(needs.substructure, 0), last)
+    basis = iterate.bases[number]
+    problem = sampled.problem
     # Rows of two interfaces that meet at a point move together.
-    rows = problem.row_dofs[problem.substructures[place].rows]
+    rows = problem.row_dofs[problem.substructures[number].rows]
     dofs, first = np.unique(rows, return_index=True)
     space = basis.displacement_modes[first, :MOST_MODES].T
     size = _signed_size(space)
-    time = (
-        basis.time_functions(place)[:MOST_MODES, sampler.columns]
-        * problem.scales.displacement
-    )
+    functions = basis.time_functions(number)[:MOST_MODES, sampled.columns]
+    time = functions * problem.scales.displacement
     kept = thinned(len(dofs), MOST_POINTS)
     return {
         "x": floats(problem.positions[dofs[kept]]),
         "space": floats(space[:, kept] / size[:, None]),
         "time": floats(time * size[:, None]),
-        "substructure": place,
-        "text": f"substructure {place + 1}: {basis.n_modes} modes",
+        "substructure": number,
+        "text": f"substructure {number + 1}: {basis.n_modes} modes",
     }
 
 
 def _signed_size(space: Array) -> Array:
-    """Largest entry of every mode, with the sign of its last large lobe.
+    """Largest entry of every mode, with the sign of its last large lobe, (n_modes,).
 
-    The sign of the largest entry itself would flip whenever two lobes change places.
+    Modes have shape (n_modes, n_points). The sign of the largest entry itself would
+    flip whenever two lobes change places.
     """
     largest = np.abs(space).max(axis=1)
     last = np.argmax(np.abs(space[:, ::-1]) >= 0.5 * largest[:, None], axis=1)
@@ -183,28 +198,24 @@ def _signed_size(space: Array) -> Array:
     return np.where(largest > 0.0, size, 1.0)
 
 
-def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """Numbers that the iterate's friction takes, kept as singular vectors, modes, and clips.
+def clips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Size of the friction stored as singular vectors, as PGD modes, and as clips.
 
-    None where it cannot be kept as clips.
-
-    "table", how many values it has; "branches", times that the load goes one way; and
-    for each of "SVD", "PGD" (None without bases) and "clips" the numbers and errors,
-    (2, n).
+    "table", the number of its values; "branches", the number of branches of the load;
+    and for each of "SVD", "PGD" (None without bases) and "clips" the count of stored
+    numbers and the relative error, shape (2, n). None where clips cannot represent it.
     """
-    if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
+    if not can_be_clipped(sampled.settings) or sampled.settings.instants < 2:
         return None
-    fitted = clips_in(sampler.settings, iterate)
-    bases = iterate.bases
-    if bases:
-        pieces = of_bases(iterate.problem, iterate.boundary_force, bases)
-    else:
-        pieces = None
+    fitted = clips_in(sampled.settings, iterate)
+    pgd = None
+    if iterate.bases:
+        pgd = _pairs(of_bases(iterate.problem, iterate.boundary_force, iterate.bases))
     return {
         "table": fitted.given.size,
         "branches": fitted.branches,
         "SVD": _pairs(products_in(fitted)),
-        "PGD": None if pieces is None else _pairs(pieces),
+        "PGD": pgd,
         "clips": _pairs(of_clips(fitted)),
     }
 
@@ -213,32 +224,33 @@ def _pairs(sizes: Sizes) -> Floats:
     return floats(np.stack([sizes.numbers, sizes.errors]))
 
 
-def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
-    """What was "brought", a measured loop or results of another program, if it is of this scene.
+def beside(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Measured loop or results of another program, and the iterate's distance to them.
 
-    And the relative "distance" of the iterate to it, NaN where both share too few rows.
+    "brought" is the loop or the results; "distance" is relative, NaN where both share
+    too few rows. None where nothing was brought, or it is of another scene.
     """
     brought = needs.brought
-    loop = sampler.loop
+    loop = sampled.loop
     distance = np.nan
     if isinstance(brought, MeasuredLoop):
         if brought.units != (loop.across[1], loop.up[1]):
             return None
         with suppress(SettingError):
-            distance = LoopComparison(brought, loop, sampler.problem).of(iterate)
-    elif brought is None or brought.scene != sampler.settings.scene:
+            distance = LoopComparison(brought, loop, sampled.problem).of(iterate)
+    elif brought is None or brought.scene != sampled.settings.scene:
         return None
     else:
-        distance = _comparison(brought, sampler, needs.interface).of(iterate)
+        distance = _comparison(brought, sampled, needs.interface).of(iterate)
     return {"brought": brought, "distance": distance}
 
 
 @lru_cache(maxsize=1)
-def _comparison(brought: OtherResults, sampler: Sampler, interface: str) -> Comparison:
-    return Comparison(brought, sampler.problem, interface)
+def _comparison(brought: OtherResults, sampled: Sampled, interface: str) -> Comparison:
+    return Comparison(brought, sampled.problem, interface)
 
 
-EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {
+EXTRAS: dict[str, Callable[[Sampled, Iterate, Needs], Any]] = {
     "spectra": spectra,
     "slips": slips,
     "cycles": cycles,
@@ -246,5 +258,5 @@ EXTRAS: dict[str, Callable[[Sampler, Iterate, Needs], Any]] = {
     "clips": clips,
     "beside": beside,
 }
-"""By the name that a view needs them by; bodies of one kind have more
+"""Extras of all scenes, by the names in `View.needs`; bodies of one kind have more
 (`Drawn.extras`)."""

@@ -1,4 +1,4 @@
-"""From a problem to the bodies that are drawn, and how they move."""
+"""Geometry of the drawn bodies of a problem, and their displacements."""
 
 from __future__ import annotations
 
@@ -16,39 +16,40 @@ from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate
+from solver.laws.contact import Contact
 from solver.settings.scene import Settings
 
 THICKNESS = 0.08
 PITCH = 0.1
-"""Of a rod as it is drawn, which has none in the model, and between two rods; shares of
-length."""
+"""Thickness of a drawn rod, which has none in the model, and distance of two rods, over
+the length."""
 MOST_POINTS = 201
-"""Contact points of an interface, and nodes of a rod, that are shown at most."""
+"""Largest number of contact points of an interface, and of nodes of a rod, in a
+frame."""
 MOST_WIRES = 6
-"""Wires whose axial force is shown at most, beside a broken one."""
+"""Largest number of wires whose axial force is shown, beside a broken one."""
 MOST_QUADS = 400
-"""Quadrilaterals that are drawn at most, or one for each body."""
+"""Largest number of quadrilaterals that are drawn, or one for each body."""
 NONE = -1
 """In place of a degree of freedom, and between two lines in a list of nodes."""
 StressField = tuple[str, str, Floats]
-"""What colours the quadrilaterals: title, SI unit, and values, (n_quads,
-n_instants)."""
+"""Title, SI unit, and values in the quadrilaterals, (n_quads, n_instants)."""
 Extras = dict[str, Callable[[Iterate, Needs], Any]]
-"""What only some views need of an iterate, by the name that they need it by."""
+"""Extras of an iterate for some views, by the names in `View.needs`."""
 
 
 def floats(values: NDArray[np.generic]) -> Floats:
-    """Numbers as frames have them."""
+    """Arrays as frames have them, of the same shape."""
     return values.astype(np.float32, order="C")
 
 
 def thinned(size: int, most: int) -> Indices:
-    """Indices that stand for a long axis, first and last included."""
+    """Indices of a thinned axis, first and last included, at most `most`."""
     return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(np.intp))
 
 
 class Drawn:
-    """Bodies as they are drawn at some instants, and the contact points of all interfaces.
+    """Bodies as they are drawn at some instants, and their contact points.
 
     The mesh is as of `mesh_of`; positions are those of all degrees of freedom, (n_dofs,
     2), m.
@@ -62,6 +63,8 @@ class Drawn:
         mesh: dict[str, Any],
         positions: Array,
     ) -> None:
+        # Numbers of the shown contact points among all, their degrees of freedom along
+        # and across the interface, and numbers of their interfaces.
         chosen = []
         dofs = []
         chains = []
@@ -70,15 +73,7 @@ class Drawn:
             points, pairs = np.unique(law.points, return_index=True)
             kept = thinned(len(points), MOST_POINTS)
             chosen.append(first + kept)
-            moving = [law.tangent, *([law.normal.component] if law.normal else [])]
-            rows = np.stack(
-                [component.above[pairs[kept]] for component in moving], axis=1
-            )
-            # What does not move off its support has no degree of freedom there.
-            own = problem.row_dofs[rows]
-            dofs.append(
-                np.pad(own, ((0, 0), (0, 2 - len(moving))), constant_values=NONE)
-            )
+            dofs.append(_dofs_of(problem, law, pairs[kept]))
             chains.append(np.full(len(kept), number))
             first += len(points)
         self._problem = problem
@@ -94,10 +89,9 @@ class Drawn:
         )
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How the bodies have moved."""
-        moved = iterate.problem.at_rest(iterate.displacement)[self._dofs][
-            :, :, self._columns
-        ]
+        """Displacements of nodes and points, and the status, at the shown instants."""
+        absolute = iterate.problem.at_rest(iterate.displacement)
+        moved = absolute[self._dofs][:, :, self._columns]
         moved[self._dofs == NONE] = 0.0
         status = iterate.status[np.ix_(self._points, self._columns)]
         return DeformedGeometry(self._nodes_moved(iterate), floats(moved), status)
@@ -106,39 +100,53 @@ class Drawn:
         raise NotImplementedError
 
 
+def _dofs_of(problem: Problem, law: Contact, pairs: Indices) -> Indices:
+    """Degrees of freedom of pairs of an interface, along and across it, (n_points, 2).
+
+    Where bodies do not open, none is across: `NONE`.
+    """
+    components = [law.tangent]
+    if law.normal:
+        components.append(law.normal.component)
+    rows = np.stack([component.above[pairs] for component in components], axis=1)
+    missing = 2 - len(components)
+    dofs = problem.row_dofs[rows]
+    return np.pad(dofs, ((0, 0), (0, missing)), constant_values=NONE)
+
+
 class DrawnRods(Drawn):
-    """Rods as rectangles above each other; they rub between them, or on what is below."""
+    """Rods as rectangles above each other, with interfaces below them."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         description = settings.structure().described()
-        rods = problem.substructures
+        parts = problem.substructures
         length = description.length
-        per_rod = len(rods) // description.bodies
-        lows = PITCH * length * (np.arange(len(rods)) // per_rod)
+        per_rod = len(parts) // description.bodies
         positions = np.stack([problem.positions, np.zeros(problem.n_dofs)], axis=1)
-        for rod, low in zip(rods, lows, strict=True):
-            positions[rod.dofs, 1] = low - 0.5 * (PITCH - THICKNESS) * length
-        kept = [thinned(len(rod.dofs), max(MOST_POINTS // per_rod, 2)) for rod in rods]
-        dofs = [rod.dofs[own] for rod, own in zip(rods, kept, strict=True)]
-        self._along = np.concatenate([np.tile(own, 2) for own in dofs])
-        grids = [
-            np.stack(
-                np.meshgrid(problem.positions[own], [low, low + THICKNESS * length]),
-                axis=-1,
-            )
-            for own, low in zip(dofs, lows, strict=True)
-        ]
-        elements = np.cumsum([0, *(len(rod.dofs) - 1 for rod in rods[:-1])])
-        middles = [
-            n + (own[:-1] + own[1:]) // 2 for n, own in zip(elements, kept, strict=True)
-        ]
+        grids = []
+        dofs = []
+        elements = []
+        first = 0
+        for number, part in enumerate(parts):
+            low = PITCH * length * (number // per_rod)
+            # Contact points lie in the gap below a rod.
+            positions[part.dofs, 1] = low - 0.5 * (PITCH - THICKNESS) * length
+            kept = thinned(len(part.dofs), max(MOST_POINTS // per_rod, 2))
+            shown = part.dofs[kept]
+            heights = [low, low + THICKNESS * length]
+            grid = np.meshgrid(problem.positions[shown], heights)
+            grids.append(np.stack(grid, axis=-1))
+            dofs.append(np.tile(shown, 2))
+            # The element in the middle of each quadrilateral.
+            elements.append(first + (kept[:-1] + kept[1:]) // 2)
+            first += len(part.dofs) - 1
+        self._along = np.concatenate(dofs)
+        self._elements = np.concatenate(elements)
         self._force = AxialForce(problem, columns)
-        self._elements = np.concatenate(middles)
-        if description.broken is None:
-            self._broken = None
-        else:
+        self._broken: int | None = None
+        if description.broken is not None:
             self._broken = description.broken[0]
-        mesh = mesh_of(grids, np.arange(len(rods)))
+        mesh = mesh_of(grids, np.arange(len(parts)))
         self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
         super().__init__(problem, description, columns, mesh, positions)
 
@@ -154,33 +162,35 @@ class DrawnRods(Drawn):
         slipped, (n_places, n_instants) of a strand that is bent, else (0, n_instants).
         """
         count = int(self._force.wires.max()) + 1
-        broken = self._broken
-        places = thinned(len(self._force.wires) // count, MOST_POINTS)
-        shown = sorted(
-            {
-                *thinned(count, MOST_WIRES).tolist(),
-                *([] if broken is None else [broken]),
-            }
-        )
-        names = [f"{n + 1}, broken" if n == broken else str(n + 1) for n in shown]
+        kept = thinned(len(self._force.wires) // count, MOST_POINTS)
+        shown = set(thinned(count, MOST_WIRES).tolist())
+        if self._broken is not None:
+            shown.add(self._broken)
+        numbers = sorted(shown)
+        names = []
+        for number in numbers:
+            name = str(number + 1)
+            if number == self._broken:
+                name += ", broken"
+            names.append(name)
         if count > 1:
             names[0] = f"wire {names[0]}"
         else:
             names[0] = "rod"
         forces = self._forces(iterate).reshape(count, -1, len(self._columns))
         return {
-            "x": floats(self._force.positions[places]),
-            "force": floats(forces[np.ix_(shown, places)]),
+            "x": floats(self._force.positions[kept]),
+            "force": floats(forces[np.ix_(numbers, kept)]),
             "names": names,
             "stuck": floats(forces[0, :0]),
         }
 
     def _forces(self, iterate: Iterate) -> Array:
-        """Those in all elements, shape (n_elements, n_instants), N."""
+        """Axial forces in all elements, shape (n_elements, n_instants), N."""
         return self._force(iterate.displacement[:, self._columns])
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
-        """They move along themselves."""
+        """Displacement of the nodes, which move along the rods, m."""
         moved = iterate.problem.at_rest(iterate.displacement)
         along = moved[np.ix_(self._along, self._columns)]
         return floats(np.stack([along, np.zeros_like(along)], axis=1))
@@ -190,32 +200,26 @@ class DrawnMesh(Drawn):
     """Plane bodies, with some lines of the mesh of each substructure."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
-        self._inside = inside = problem.inside
-        self._poisson, self._state = (
-            settings.values()[name] for name in ("poisson", "plane")
-        )
+        inside = problem.inside
+        values = settings.values()
+        self._inside = inside
+        self._poisson = values["poisson"]
+        self._state = values["plane"]
         self.extras: Extras = {"stress": self._stress}
         if settings.has_joints:
             self.extras["thrust"] = self._thrust
+        # All grids are thinned alike, to a number of quadrilaterals each at most.
         most = max(MOST_QUADS // len(inside.grids), 1)
         shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
         share = min(np.sqrt(most / shapes.prod(axis=1).max()), 1.0)
         grids = []
         quads = []
-        count = 0
-        for grid, (n_rows, n_columns) in zip(inside.grids, shapes, strict=True):
-            rows = max(int(share * n_rows), 1)
-            up = thinned(n_rows + 1, rows + 1)
-            across = thinned(
-                n_columns + 1, max(min(int(share * n_columns), most // rows), 1) + 1
-            )
+        first = 0
+        for grid in inside.grids:
+            up, across = _kept_lines(grid, share, most)
             grids.append(grid[np.ix_(up, across)])
-            row, column = (
-                np.searchsorted(kept, np.arange(n), side="right") - 1
-                for kept, n in ((up, n_rows), (across, n_columns))
-            )
-            quads.append(count + np.add.outer(row * (len(across) - 1), column).ravel())
-            count += (len(up) - 1) * (len(across) - 1)
+            quads.append(first + _quads_of(grid, up, across))
+            first += (len(up) - 1) * (len(across) - 1)
         self._nodes = np.concatenate([grid.ravel() for grid in grids])
         # The quadrilateral that each element lies in.
         self._quad = np.concatenate(quads)
@@ -242,49 +246,73 @@ class DrawnMesh(Drawn):
         end there. "forces" are their sizes, (n_joints, n_instants), N.
         """
         problem = self._problem
+        middles = self._middles()
         lines = []
         forces = []
-        middles = np.zeros((problem.n_dofs, 2, 1))
-        for grid, part in zip(self._inside.grids, problem.substructures, strict=True):
-            middles[part.dofs, :, 0] = self._inside.nodes[grid].mean(axis=(0, 1))
         for name, law in problem.rubbing.items():
             _, pairs = np.unique(law.points, return_index=True)
-            above, *below = (
+            above, *below = [
                 problem.row_dofs[rows[pairs]] for rows in law.tangent.sides
-            )
-            normal, tangential = (
-                iterate.contact_force[own][:, self._columns]
-                for own in problem.contact_places[name]
-            )
+            ]
+            normal, tangential = [
+                iterate.contact_force[rows][:, self._columns]
+                for rows in problem.contact_places[name]
+            ]
             pressed = np.maximum(normal, 0.0)
             whole = pressed.sum(axis=0)
+            # The resultant acts at the mean of the points by their pressure; in the
+            # middle of a joint that is open.
             share = pressed / np.where(whole > 0.0, whole, 1.0)
-            point = problem.positions[above].T @ np.where(
-                whole > 0.0, share, 1.0 / len(above)
-            )
+            weights = np.where(whole > 0.0, share, 1.0 / len(above))
+            point = problem.positions[above].T @ weights
+            end = point
             if below:
                 end = middles[below[0][0]]
-            else:
-                end = point
             lines.append(np.stack(np.broadcast_arrays(middles[above[0]], point, end)))
             forces.append(np.hypot(whole, tangential.sum(axis=0)))
         return {"lines": floats(np.stack(lines)), "forces": floats(np.stack(forces))}
 
+    def _middles(self) -> Array:
+        """Middle of the body of each degree of freedom, shape (n_dofs, 2, 1), m."""
+        problem = self._problem
+        middles = np.zeros((problem.n_dofs, 2, 1))
+        for grid, part in zip(self._inside.grids, problem.substructures, strict=True):
+            middles[part.dofs, :, 0] = self._inside.nodes[grid].mean(axis=(0, 1))
+        return middles
+
     def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of the nodes, (n_nodes, 2), of that of degrees of freedom, (n_dofs,), m."""
-        moved, still = (
-            self._inside.displacement(size * displacement[:, None], [0])
-            for size in (1.0, 0.0)
-        )
+        """Displacement of nodes, (n_nodes, 2), m, of all degrees of freedom, (n_dofs,)."""
+        moved = self._inside.displacement(displacement[:, None], [0])
+        # Displacements that are given are no part of it.
+        still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])
         return floats((moved - still)[self._nodes, :, 0])
 
     def _moved(self, iterate: Iterate) -> Array:
-        return self._inside.displacement(iterate.displacement, slice(None))[
-            :, :, self._columns
-        ]
+        """Displacement of all nodes at the shown instants, (n_nodes, 2, n_shown), m."""
+        moved = self._inside.displacement(iterate.displacement, slice(None))
+        return moved[:, :, self._columns]
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         return floats(self._moved(iterate)[self._nodes])
+
+
+def _kept_lines(grid: Indices, share: float, most: int) -> tuple[Indices, Indices]:
+    """Rows and columns of a grid of nodes that are drawn.
+
+    A share, `most` cells at most.
+    """
+    n_rows, n_columns = np.subtract(grid.shape, 1)
+    rows = max(int(share * n_rows), 1)
+    columns = max(min(int(share * n_columns), most // rows), 1)
+    return thinned(n_rows + 1, rows + 1), thinned(n_columns + 1, columns + 1)
+
+
+def _quads_of(grid: Indices, up: Indices, across: Indices) -> Indices:
+    """Quadrilateral of kept rows and columns about each element, (n_elements,)."""
+    n_rows, n_columns = np.subtract(grid.shape, 1)
+    row = np.searchsorted(up, np.arange(n_rows), side="right") - 1
+    column = np.searchsorted(across, np.arange(n_columns), side="right") - 1
+    return np.add.outer(row * (len(across) - 1), column).ravel()
 
 
 def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
@@ -292,32 +320,40 @@ def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
 
     Each grid is of one of the parts, (n_rows, n_columns, 2), m, row by row from below.
     """
-    sizes = np.cumsum([grid[..., 0].size for grid in grids])
-    numbers = [
-        own.reshape(grid.shape[:2])
-        for own, grid in zip(
-            np.split(np.arange(sizes[-1]), sizes[:-1]), grids, strict=True
-        )
-    ]
-    corners = [(n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]) for n in numbers]
-    quads = [np.stack(four, axis=-1).reshape(-1, 4) for four in corners]
-    rings = [
-        np.concatenate([n[0], n[1:, -1], n[-1, -2::-1], n[-2::-1, 0]]) for n in numbers
-    ]
+    quads = []
+    rings = []
+    first = 0
+    for grid in grids:
+        n_rows, n_columns = grid.shape[:2]
+        size = n_rows * n_columns
+        n = np.arange(first, first + size).reshape(n_rows, n_columns)
+        corners = (n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1])
+        quads.append(np.stack(corners, axis=-1).reshape(-1, 4))
+        ring = (n[0], n[1:, -1], n[-1, -2::-1], n[-2::-1, 0])
+        rings.append(np.concatenate(ring))
+        first += size
     nodes = np.concatenate([grid.reshape(-1, 2) for grid in grids])
-    # A side is free where no other one has it the other way round; grids share places,
-    # not nodes.
-    places = np.round(nodes / np.ptp(nodes) * 1e5).astype(np.int64)
-    place = np.unique(places, axis=0, return_inverse=True)[1].ravel()
     sides = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
-    ends = place[sides]
-    is_free = ~np.isin(ends @ [len(nodes), 1], ends @ [1, len(nodes)]) & (
-        ends[:, 0] != ends[:, 1]
-    )
+    free = sides[_is_free(sides, nodes)]
     return {
         "nodes": floats(nodes),
         "quads": np.concatenate(quads).astype(np.int32),
-        "parts": np.repeat(parts, list(map(len, quads))),
+        "parts": np.repeat(parts, [len(some) for some in quads]),
         "outlines": np.concatenate([np.append(ring, NONE) for ring in rings]),
-        "rims": np.insert(sides[is_free], 2, NONE, axis=1).ravel(),
+        "rims": np.insert(free, 2, NONE, axis=1).ravel(),
     }
+
+
+def _is_free(sides: Indices, nodes: Array) -> NDArray[np.bool_]:
+    """Check which sides, (n_sides, 2), of grids no other grid has, (n_sides,).
+
+    A shared side runs the other way round in the other grid; grids share positions,
+    not nodes, (n_nodes, 2), m.
+    """
+    rounded = np.round(nodes / np.ptp(nodes) * 1e5).astype(np.int64)
+    position = np.unique(rounded, axis=0, return_inverse=True)[1].ravel()
+    ends = position[sides]
+    there = ends @ [len(nodes), 1]
+    back = ends @ [1, len(nodes)]
+    has_length = ends[:, 0] != ends[:, 1]
+    return ~np.isin(there, back) & has_length

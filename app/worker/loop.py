@@ -1,4 +1,4 @@
-"""The process of a page: it takes orders, and between them works at its page's run."""
+"""The worker process: takes orders of its page, and works at the run between them."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class WorkerLoop:
             self._send(messages.NewFrame(runner.frame(self._needs)))
 
     def _rest(self) -> float | None:
-        """Seconds to wait for an order."""
+        """Seconds to wait for an order; None waits without end."""
         runner = self._runner
         if runner is None or self._is_unseen:
             return None
@@ -117,7 +117,7 @@ class WorkerLoop:
             self._runner = runner
 
     def _guard(self, action: object, argument: object) -> None:
-        """Do something; what breaks is told, and ends the run."""
+        """Call an action; an error in it is reported, and ends the run."""
         try:
             action(argument)  # type: ignore[operator]
         except (RefusedError, FloatingPointError) as problem:
@@ -135,17 +135,17 @@ class WorkerLoop:
         self._send(messages.Failed(self._number, text))
 
     def _is_superseded(self) -> bool:
-        """Whether another run is ordered."""
+        """Check whether another run is ordered."""
         self._receive(0.0)
         return any(isinstance(order, Start) for order in self._orders)
 
     def _is_halted(self) -> bool:
-        """Whether another run is ordered, or this one is to wait."""
+        """Check whether another run is ordered, or this one is to wait."""
         self._receive(0.0)
         return any(isinstance(order, Start) or order == PAUSE for order in self._orders)
 
     def _receive(self, timeout: float | None) -> None:
-        """Take what has been ordered; of several runs, only the last counts."""
+        """Take the orders that have come; of several runs only the last counts."""
         while self._connection.poll(timeout):
             order = self._connection.recv()
             if isinstance(order, Start):

@@ -24,7 +24,7 @@ SILENT = 8.0
 
 
 class Worker:
-    """A process that runs what it is told.
+    """A worker process, with a pipe for its orders and reports.
 
     `hear` is called with this and each report, and with None once the process has
     ended, on a thread of its own. The more others there are, the nicer it is: the
@@ -46,16 +46,16 @@ class Worker:
 
     @property
     def hangs(self) -> bool:
-        """Whether it has given no sign of life for long."""
+        """Check whether the process has given no sign of life for long."""
         return time.monotonic() - self._heard > SILENT
 
     def send(self, order: Order) -> None:
-        """Give an order; a process that has ended takes none."""
+        """Send an order, which a process that has ended ignores."""
         with contextlib.suppress(OSError):
             self._connection.send(order)
 
     def end(self) -> None:
-        """End the process, whatever it is at; nothing is heard of it any more."""
+        """End the process at once; its later reports are dropped."""
         self._hear = None
         self._process.kill()
         self._process.join()

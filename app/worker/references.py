@@ -1,4 +1,4 @@
-"""References of the last problems that a process has solved."""
+"""A cache of the references of the last problems that a process has solved."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ ENTRIES = 8
 
 
 def has_reference(settings: Settings) -> bool:
-    """Whether a run is compared with an incremental solver."""
+    """Check whether a run is compared with the incremental solver."""
     return settings.jumps <= MOST_JUMPS
 
 
 class ReferenceCache:
-    """The references last used, without their problems, whose matrices take most memory."""
+    """The references last used, without their problems: matrices take most memory."""
 
     def __init__(self) -> None:
         self._kept: OrderedDict[bytes, Reference] = OrderedDict()
@@ -33,7 +33,7 @@ class ReferenceCache:
     def of(
         self, settings: Settings, problem: Problem, stop: Callable[[], bool]
     ) -> Reference | None:
-        """The reference of a problem, or None where there is none; one that collapses is told.
+        """Reference of a problem, with a collapse if it has one; None without any.
 
         Raises
         ------
@@ -50,7 +50,9 @@ class ReferenceCache:
         if reference is None:
             return None
         if not reference.converged.all():
-            return reference if reference.collapse is not None else None
+            if reference.collapse is None:
+                return None
+            return reference
         self._kept[key] = replace(reference, problem=None)
         if len(self._kept) > ENTRIES:
             self._kept.popitem(last=False)

@@ -1,4 +1,4 @@
-"""A run in the worker process: one small piece of work when it is due, and frames of it."""
+"""A run in the worker process: its pieces of work when they are due, and its frames."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Pacing:
 
 
 class Runner:
-    """One run: its first iteration, then the reference, then the others as they are due.
+    """A run: its first iteration, the reference, then iterations as they are due.
 
     It is `interrupted` where an order waits that ends it; where one waits that halts it
     a status step is given up until it goes on. The problem is shown by `sampler`; it
@@ -114,16 +114,19 @@ class Runner:
 
     @property
     def hurries(self) -> bool:
-        """Whether it goes on to its end before it is shown."""
+        """Check whether the run goes on before it is shown."""
         return self.status is None and time.monotonic() < self._hurries_until
 
     @property
     def is_presentable(self) -> bool:
-        """Whether there is something new to show."""
+        """Check whether there is something new to show."""
         return self.has_news and self.iterate is not None and not self.hurries
 
     def rest(self, is_seen: bool = True) -> float | None:
-        """Seconds until there is something to do; None waits for an order, or to be seen."""
+        """Seconds until the next piece of work.
+
+        None waits for an order, or to be seen.
+        """
         is_to_be_seen = self.is_dragged and (self.has_news or not is_seen)
         if (
             self.iterate is None
@@ -143,7 +146,7 @@ class Runner:
             self._iterate()
 
     def frame(self, needs: Needs) -> Frame:
-        """The newest iterate as it is shown."""
+        """Frame of the newest iterate."""
         self.has_news = False
         return self.sampler.frame(self.iterate, self.history, self.status, needs)
 
@@ -158,7 +161,7 @@ class Runner:
         self.history.append(record(iterate, decision, self._distance))
 
     def _compare(self) -> None:
-        """Find the reference, and the errors of what was recorded before it."""
+        """Find the reference, and the errors of the iterate recorded before it."""
         problem = self.sampler.problem
         try:
             reference = self._references.of(self.settings, problem, self._interrupted)

@@ -1,4 +1,4 @@
-"""From an iterate to the frame that the page is sent."""
+"""The sampler: makes of an iterate the frame that the page is sent."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
-from app.worker.extras import EXTRAS
+from app.worker.extras import EXTRAS, Sampled
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
 from app.worker.strand import DrawnRope
 from solver.arrays import Array
@@ -20,6 +20,7 @@ from solver.discrete.problem import nothing_acts
 from solver.discrete.structure import LoopFields
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.end.status import CANCELLED
+from solver.reference.closed_forms import ExactCurve
 from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Reference
 from solver.scenes.remarks import remarks_on
@@ -29,21 +30,21 @@ from solver.study.quantities.finished import FinishedRun
 
 MOST_INSTANTS = 401
 MOST_POINTS = 401
-"""Instants, and points of an interface, that a frame has at most."""
+"""Largest numbers of instants, and of points of an interface, in a frame."""
 MOST_VALUES = 100_000
 """Values of a field up to which a frame has the contact of all interfaces, and not of
-one."""
+the selected one alone."""
 MOST_ITERATIONS = 1000
-"""Entries of the history that a frame has at most."""
+"""Largest number of entries of the history in a frame."""
 SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("modes", "is_answer"))
 
 
 class Sampler:
-    """Thin the fields of one problem, and turn nodal forces into forces per length or area.
+    """Frames of one problem: thinned fields, with forces per length or area.
 
-    `run` is what all frames share, to which `complete` adds the reference. Of what is
-    solved, `columns` are the instants, and `rows` the points by interface, that are
-    shown; `drawn` is the bodies as they are drawn.
+    `run` is the part that all frames share, to which `complete` adds the reference.
+    `columns` are the indices of the instants that are shown, shape (n_shown,), and
+    `rows` those of the points, by interface; `drawn` has the geometry of the drawing.
     """
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
@@ -55,6 +56,7 @@ class Sampler:
             for name, law in problem.rubbing.items()
         }
         self.loop = settings.structure().loop(problem)
+        self._sampled = Sampled(problem, settings, self.loop, self.columns)
         kind = {"plane": DrawnMesh, "helices": DrawnRope}.get(settings.kind, DrawnRods)
         self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(
             problem, settings, self.columns
@@ -72,14 +74,9 @@ class Sampler:
         )
 
     def complete(self, reference: Reference | None) -> None:
-        """Add what is known without the search: the reference, and closed forms."""
+        """Add the reference and the closed forms to the run."""
         curves = self.settings.exact(self.problem, reference)
-        exact = tuple(
-            replace(curve, across=curve.across[self.columns], up=curve.up[self.columns])
-            if curve.up.ndim == 1
-            else replace(curve, up=curve.up[:, self.columns])
-            for curve in curves
-        )
+        exact = tuple(self._at_columns(curve) for curve in curves)
         known: dict[str, Any] = {"exact": exact, "is_compared": True}
         if reference is not None:
             known["reference"] = self._contact(reference, self.problem.rubbing)
@@ -88,7 +85,7 @@ class Sampler:
         self.run = replace(self.run, **known)
 
     def collapse(self, collapse: Collapse) -> None:
-        """Add the mechanism by which the structure begins to fail, and when."""
+        """Add the mechanism of a structure that collapses, and the time of collapse."""
         moved = self.drawn.nodes_of(
             collapse.mechanism * self.problem.scales.displacement
         )
@@ -103,14 +100,13 @@ class Sampler:
         status: Status | None,
         needs: Needs,
     ) -> Frame:
-        """What is shown of an iterate, with the extras that views need."""
+        """Frame of an iterate, with the extras that views in sight need."""
         needs = replace(needs, interface=self.run.interface(needs.interface))
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, made_loop=self.loop)
-        kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
-        scalars = {
-            n: floats(np.array([getattr(each, n) for each in kept])) for n in SCALARS
-        }
+        remarks: tuple[str, ...] = ()
+        if status:
+            remarks = tuple(remarks_on(self.settings, iterate))
         return Frame(
             run=self.run,
             iteration=iterate.iterations,
@@ -118,25 +114,31 @@ class Sampler:
             contact=self._contact(iterate, self._names(needs)),
             deformed=self.drawn.deformed(iterate),
             loop=self._loop(iterate),
-            history=scalars,
+            history=_scalars(history),
             status=status,
             energy=float(run.dissipated.sum()),
             residual=iterate.residual,
-            remarks=tuple(remarks_on(self.settings, iterate)) if status else (),
+            remarks=remarks,
             extras=self._extras(iterate, needs),
             readings={name: reading(name)(run) for name in needs.readings},
         )
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        known = {
-            name: partial(extra, self) for name, extra in EXTRAS.items()
-        } | self.drawn.extras
+        known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}
+        known |= self.drawn.extras
         return {
             name: known[name](iterate, needs) for name in needs.extras & known.keys()
         }
 
+    def _at_columns(self, curve: ExactCurve) -> ExactCurve:
+        """A closed form at the instants that are shown."""
+        if curve.up.ndim == 1:
+            across = curve.across[self.columns]
+            return replace(curve, across=across, up=curve.up[self.columns])
+        return replace(curve, up=curve.up[:, self.columns])
+
     def _names(self, needs: Needs) -> tuple[str, ...]:
-        """Interfaces whose contact a frame has."""
+        """Names of the interfaces whose contact a frame has."""
         size = sum(len(rows) for rows in self.rows.values()) * len(self.columns)
         if size <= MOST_VALUES:
             return tuple(self.rows)
@@ -152,11 +154,8 @@ class Sampler:
             highest = law.by_point(law.tangential.highest)[rows]
             if highest.shape[1] > 1:
                 highest = highest[:, self.columns]
-            else:
-                highest = highest
-            bound = floats(
-                highest * self.problem.scales.force / self._lengths(name)[:, None]
-            )
+            force = highest * self.problem.scales.force
+            bound = floats(force / self._lengths(name)[:, None])
         cuts = law.positions[np.bincount(law.points) > 1]
         positions = floats(law.positions[rows])
         return FrictionInterface(
@@ -164,7 +163,7 @@ class Sampler:
         )
 
     def _lengths(self, name: str) -> Array:
-        """Length or area that each shown point of an interface stands for."""
+        """Length, m, or area, m², of each shown point of an interface, (n_points,)."""
         law = self.problem.rubbing[name]
         return np.asarray(law.by_point(law.weights)[self.rows[name]])
 
@@ -176,13 +175,25 @@ class Sampler:
             nodal = shown.contact(name)
             lengths = self._lengths(name)[:, None]
             kept = np.ix_(self.rows[name], self.columns)
-            pressure = nodal.normal_force
+            pressure = None
+            if nodal.normal_force is not None:
+                pressure = floats(nodal.normal_force[kept] / lengths)
             contact[name] = InterfaceFields(
                 floats(nodal.tangential_force[kept] / lengths),
-                None if pressure is None else floats(pressure[kept] / lengths),
+                pressure,
                 np.ascontiguousarray(nodal.status[kept]),
             )
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
+        """Displacement and force of the loop at shown instants, (2, n_shown), SI."""
         return floats(np.stack(self.loop.along(shown))[:, self.columns])
+
+
+def _scalars(history: Sequence[Record]) -> dict[str, Floats]:
+    """Scalars of the records of a history, thinned, shape (n_records,) each."""
+    kept = [history[number] for number in thinned(len(history), MOST_ITERATIONS)]
+    return {
+        name: floats(np.array([getattr(record, name) for record in kept]))
+        for name in SCALARS
+    }

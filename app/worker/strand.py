@@ -1,4 +1,4 @@
-"""A strand that is bent: as it is seen from the side, and what views of its wires need.
+"""A bent strand: its wires as seen from the side, and the extras of its views.
 
 From the side one sees the wires in front of its outer layer: one looks across the plane
 of bending onto the cylinder that they share. Each has its strip of it, and half of them
@@ -70,70 +70,75 @@ class DrawnRope:
         turns = description.length * np.tan(abs(self._lay)) / (2 * np.pi * self._helix)
         n_steps = int(np.clip(A_TURN * turns, FEWEST, MOST))
         self._z = np.linspace(0.0, description.length, n_steps + 1)
-        numbers, steps, grids = zip(*self._strips(), strict=True)
-        mesh = mesh_of(grids, numbers)
-        middles = np.concatenate(
-            [0.5 * (self._z[own[1:]] + self._z[own[:-1]]) for own in steps]
-        )
-        self._quad_wires, _, self._quad_points, _ = self._nearest(
-            mesh["parts"], middles
-        )
-        rows = np.concatenate([np.tile(own, 2) for own in steps])
-        self._nodes_moved = self._moved(rows, mesh["nodes"][:, 1])
+        mesh = self._mesh()
         rows, heights, chains, self._points, self._sides = self._lines()
         self._points_moved = self._moved(rows, np.nan_to_num(heights))
         points = floats(np.stack([self._z[rows], heights], axis=1))
         self.geometry = Geometry(
             description=description, points=points, chains=chains, **mesh
         )
-        self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
-        self.extras["section"] = self._section
+        self.extras: Extras = {
+            "stress": self._stress,
+            "axial force": self._axial_force,
+            "section": self._section,
+        }
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How the strand is bent, which is given, and where its wires slip."""
-        status = (
-            iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
-        )
-        return DeformedGeometry(
-            self._nodes_moved, self._points_moved, status.astype(np.int8)
-        )
+        """The given bending of the strand, and the status of its wires."""
+        slips = iterate.status[np.ix_(self._points, self._columns)]
+        status = (slips * self._sides[:, None]).astype(np.int8)
+        return DeformedGeometry(self._nodes_moved, self._points_moved, status)
+
+    def _mesh(self) -> dict[str, Any]:
+        """The mesh of the strips; sets wires and points of quads, and moves nodes."""
+        numbers, steps, grids = zip(*self._strips(), strict=True)
+        mesh = mesh_of(grids, numbers)
+        z = self._z
+        middles = [0.5 * (z[strip[1:]] + z[strip[:-1]]) for strip in steps]
+        nearest = self._nearest(mesh["parts"], np.concatenate(middles))
+        self._quad_wires, _, self._quad_points, _ = nearest
+        # Each strip has two rows of nodes.
+        rows = np.concatenate([np.tile(strip, 2) for strip in steps])
+        self._nodes_moved = self._moved(rows, mesh["nodes"][:, 1])
+        return mesh
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
-        """Mean stress over the section of every wire."""
+        """Mean stress over the section of every wire, (n_quads, n_instants), Pa."""
         stress = wire_stresses(self._rope, iterate.displacement, self._columns)
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
     def _angle(self, wire: Array, place: Array) -> Array:
-        """Polar angle of outer wires by their number, and at places along the strand."""
+        """Polar angle of outer wires, rad, by number and position along the strand, m."""
         turned = place * np.tan(self._lay) / self._helix
         return np.asarray(2.0 * np.pi * wire / self._count + turned)
 
     def _height(self, angle: Array) -> Array:
+        """Height of outer wires above the foot, m, at polar angles, rad."""
         return np.asarray(self._radius * (1.0 - np.cos(angle)))
 
     def _strips(self) -> Iterator[tuple[int, Indices, Array]]:
-        """Number, steps and grid of nodes of each stretch of a wire that is in front."""
+        """Number, steps and grid of nodes of each stretch of a wire in front."""
         half = np.pi / self._count
         for number in range(self._count):
             middle = self._angle(number, self._z)
             for turn in np.unique(np.floor((middle + half) / (2.0 * np.pi))):
                 edges = middle - 2.0 * np.pi * turn + np.array([[-half], [half]])
                 edges = np.clip(edges, 0.0, np.pi)
-                # It begins and ends a step behind what is seen.
+                # The strip begins and ends a step behind its visible part.
                 steps = np.flatnonzero(binary_dilation(np.ptp(edges, axis=0) > 1e-9))
                 if len(steps):
                     z = np.broadcast_to(self._z[steps], (2, len(steps)))
-                    yield (
-                        number,
-                        steps,
-                        np.stack([z, self._height(edges[:, steps])], axis=-1),
-                    )
+                    heights = self._height(edges[:, steps])
+                    yield number, steps, np.stack([z, heights], axis=-1)
 
     def _nearest(
         self, numbers: Array, place: Array
     ) -> tuple[Indices, Indices, Indices, Bytes]:
-        """Wire, contact point, node and sign of slip at places on outer wires."""
+        """Wire, contact point, node and sign of slip at places on outer wires.
+
+        Numbers of wires and places along the strand, m, have shape (n,), as all results.
+        """
         wires = self._first + numbers
         sides = np.ones(len(place), dtype=np.int8)
         share = place / self._z[-1]
@@ -145,17 +150,17 @@ class DrawnRope:
         return wires, *self._points_at(wires, share), sides
 
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
-        """The nearest contact points, and their nodes, at shares of the length of wires."""
+        """Nearest contact points and nodes, (n,), at shares of the wires' lengths, (n,)."""
         elements = self._rope.elements
-        node = np.clip(
-            np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1)
-        )
+        nearest = np.round(share * elements).astype(np.intp)
+        node = np.clip(nearest, 1, max(elements - 1, 1))
         return wires * (elements - 1) + node - 1, node
 
     def _lines(self) -> tuple[Indices, Array, Indices, Indices, Bytes]:
-        """Contact points along the wires in front, broken by NaN: their steps, heights and wires.
+        """Contact points along the wires in front: steps, heights with NaN, and wires.
 
-        And the point and the sign of slip that each has the status of.
+        Further the number of the point that each has the status of, and its sign of
+        slip. All have shape (n,).
         """
         numbers = np.repeat(np.arange(self._count), len(self._z))
         rows = np.tile(np.arange(len(self._z)), self._count)
@@ -167,17 +172,17 @@ class DrawnRope:
         return rows[kept], heights[kept], wires, points, sides
 
     def _moved(self, rows: Indices, heights: Array) -> Floats:
-        """Displacement of heights at steps, (n, 2, n_instants): sections stay plane and normal."""
+        """Displacement of points at heights, (n, 2, n_instants), m.
+
+        Sections stay plane.
+        """
         up, slope = self._bent
-        return floats(
-            np.stack(
-                [slope[rows] * (self._radius - heights)[:, None], up[rows]], axis=1
-            )
-        )
+        along = slope[rows] * (self._radius - heights)[:, None]
+        return floats(np.stack([along, up[rows]], axis=1))
 
     @cached_property
     def _bent(self) -> tuple[Array, Array]:
-        """Height and slope of the axis, (n_steps, n_instants), from the clamp or the middle."""
+        """Height, m, and slope of the axis, (n_steps, n_instants) each."""
         rope = self._rope
         z = self._z
         if rope.is_clamped:
@@ -197,7 +202,7 @@ class DrawnRope:
         return up, slope
 
     def _axial_force(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """Axial force in the selected wire, as in rods, and what it would be if nothing slipped."""
+        """Axial force in the selected wire as in rods, and in a wire that sticks."""
         rope = self._rope
         columns = self._columns
         names = [wire.name for wire in rope.wires]
@@ -215,7 +220,7 @@ class DrawnRope:
         }
 
     def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
-        """All wires that a section at the selected place cuts, or at the clamp; first the core.
+        """All wires in a section at the selected position or the clamp, core first.
 
         "place" along the strand, m; "wires", the interface of each, -1 for the core,
         (n,); "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean
