@@ -13,7 +13,6 @@ import pytest
 from app.frame import Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver import solve
@@ -96,7 +95,6 @@ def test_a_law_is_a_local_stage(capsys: pytest.CaptureFixture[str]) -> None:
     assert float(moved) == pytest.approx(4.5e-4, rel=0.01)
 
 
-@pytest.mark.skipif(not hasattr(View, "make"), reason="View.make has another name")
 def test_a_view_is_a_figure_and_its_filling() -> None:
     (program,) = blocks("view")
     known: dict[str, Any] = {}
