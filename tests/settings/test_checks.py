@@ -95,13 +95,13 @@ ALLOWED = [(kind, value) for kind, fine, _ in KINDS.values() for value in fine]
 REFUSED = [(kind, value) for kind, _, wrong in KINDS.values() for value in wrong]
 
 
-@pytest.mark.parametrize(("kind", "value"), ALLOWED, ids=repr)
+@pytest.mark.parametrize(("kind", "value"), ALLOWED)
 def test_what_is_allowed_has_no_flaw(kind: Kind, value: Any) -> None:
     assert kind.flaw(value) is None
     check_value("Rope.length", value, kind)
 
 
-@pytest.mark.parametrize(("kind", "value"), REFUSED, ids=repr)
+@pytest.mark.parametrize(("kind", "value"), REFUSED)
 def test_what_is_not_is_refused_in_a_line_with_the_name_and_what_is_allowed(
     kind: Kind, value: Any
 ) -> None:
