@@ -268,7 +268,7 @@ def test_a_law_that_is_not_known_here_is_not_passed_over():
     name, load = next(
         (name, law) for name, law in problem.interfaces.items() if type(law) is Neumann
     )
-    own = LoadOfOnesOwn(load.rows, load.values)
+    own = LoadOfOnesOwn(load.rows, load.values, load.macro)
     foreign = dataclasses.replace(problem, interfaces={**problem.interfaces, name: own})
     with pytest.raises(TypeError, match=f"{name}, LoadOfOnesOwn"):
         law_residuals(found, foreign)
