@@ -313,30 +313,6 @@ def test_growth_is_told_of_a_setting_over_decades_for_every_name() -> None:
     assert growth(tiny(["elements=10,20,40"], ["iterations"]), rows[:3]) == []
 
 
-def test_an_interrupt_from_a_terminal_ends_a_sweep_in_a_line(tmp_path: Path) -> None:
-    folder = tmp_path / "out"
-    command = [sys.executable, "-m", "solver", "sweep", "bar", "--out", str(folder)]
-    command += [
-        "--vary",
-        "friction=0.1:0.6:5000",
-        "--of",
-        "dissipation",
-        "--on",
-        "processes:1",
-    ]
-    options = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL}
-    with started(command, start_new_session=True, **options) as process:
-        table = folder / "sweep.csv"
-        wait_for(lambda: table.exists() and len(table.read_text().splitlines()) > 20)
-        # A terminal sends it to all processes of the command.
-        os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate()
-    assert process.returncode == 130
-    *progress, last = said.decode().splitlines()
-    assert last == "slipfront: stopped; the same command goes on from here"
-    assert all(line.endswith(" s left") for line in progress)
-
-
 INTERRUPTED_IMPORT = """
 import os, runpy, signal, sys
 
