@@ -1,4 +1,6 @@
-"""The scripts of benchmarks count the iterations of runs, and other programs agree with us."""
+"""The scripts of benchmarks count the iterations of runs,
+and other programs agree with us.
+"""
 
 from __future__ import annotations
 

@@ -434,8 +434,8 @@ class Problem:
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces, and the macro forces from outside, scaled.
 
-        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; MATHEMATICS.md,
-        2).
+        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1;
+        MATHEMATICS.md, 2).
         """
         parts = [part for law in self.interfaces.values() for part in law.macro_parts()]
         bases = sparse.block_diag([sparse.coo_array(part.basis) for part in parts])

@@ -1,4 +1,6 @@
-"""A reference is used again only where the problem asks for just that, and kept only as it pays."""
+"""A reference is used again only where the problem asks for just that,
+and kept only as it pays.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Uniform states, resultants, sliding everywhere, and any decomposition: exact on every mesh."""
+"""Uniform states, resultants, sliding everywhere,
+and any decomposition: exact on every mesh.
+"""
 
 from __future__ import annotations
 
@@ -67,7 +69,7 @@ def test_a_stuck_block_without_lateral_strain_is_sheared_uniformly(decomposition
     assert not fields.status[:, -1].any()
 
 
-def test_a_block_dragged_far_enough_slides_everywhere_and_its_reaction_balances_friction():
+def test_a_block_dragged_far_slides_everywhere_and_its_reaction_balances_friction():
     iterate = solved(
         "block",
         gap="flat",

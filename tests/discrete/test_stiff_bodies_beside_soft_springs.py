@@ -1,4 +1,5 @@
-"""A stiff body beside a soft spring, and the other way round: rigid motion hides no deformation.
+"""A stiff body beside a soft spring, and the other way round: rigid motion hides no
+deformation.
 
 Balance and closed forms: MATHEMATICS.md, 9.
 """
@@ -22,7 +23,9 @@ STEEL = 2.1e11
 
 
 class Slope:
-    """A slope and the forces on its block: of the ground at all nodes, and of the spring."""
+    """A slope and the forces on its block:
+    of the ground at all nodes, and of the spring.
+    """
 
     def __init__(self, found, values):
         self.angle = np.radians(values.path("slope_load"))
@@ -135,7 +138,9 @@ def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiff
 
 @pytest.mark.parametrize("method", ["paper", "fast"])
 def test_the_iteration_itself_does_not_see_how_soft_the_spring_is(method):
-    """What the body's own deformation takes is all: a shift of the whole body takes nothing."""
+    """What the body's own deformation takes is all:
+    a shift of the whole body takes nothing.
+    """
     own = {**SMALL, "young": STEEL, "method": method, "finish": "none"}
     soft, steel, hard = (
         errors(InclineSettings.checked({**own, "spring": spring}), 100)

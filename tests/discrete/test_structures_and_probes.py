@@ -1,4 +1,6 @@
-"""Structures need no scene: their probes give what the inside gives, their loops balance."""
+"""Structures need no scene:
+their probes give what the inside gives, their loops balance.
+"""
 
 from __future__ import annotations
 
@@ -60,7 +62,9 @@ def whole(problem: Problem, iterate: Iterate) -> tuple[np.ndarray, np.ndarray]:
 def test_mean_displacement_of_a_side_is_that_of_the_recovered_nodes(
     side: str, component: int
 ) -> None:
-    """Also where nothing is prescribed, and loads inside move the side beside the skeleton."""
+    """Also where nothing is prescribed,
+    and loads inside move the side beside the skeleton.
+    """
     _, iterate = iterate_of("block", {**SMALL, **PULLED, **HEAVY}, 4)
     nodes, found = whole(iterate.problem, iterate)
     axis = 1 if side == "top" else 0
@@ -162,7 +166,9 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 
 def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
-    """Of an extreme s over three heights h each: 3 s h^2 / 6, against the clock where s is up."""
+    """Of an extreme s over three heights h each:
+    3 s h^2 / 6, against the clock where s is up.
+    """
     problem = BEAMS.discretise()
     still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
     force = BEAMS.loop(problem).force(still)

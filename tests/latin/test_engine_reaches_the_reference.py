@@ -1,4 +1,6 @@
-"""Driven on, the iteration reaches the incremental reference, whatever path it takes there."""
+"""Driven on, the iteration reaches the incremental reference,
+whatever path it takes there.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,17 @@ PATHS = ["ramp", "triangle", "cycle", "sine", "decaying", "random"]
 
 
 def balanced(substructures, **values):
-    """Give options whose friction k is 100 ES/L^2 per length for any number of substructures."""
+    """Give options whose friction k is 100 ES/L^2 per
+    length for any number of substructures.
+    """
     factor = 100.0 / substructures**2
     return options(substructures=substructures, k_scale=factor, **values)
 
 
 def driven(chosen):
-    """Iterate until the LATIN indicator, looked at now and then, is below the tolerance."""
+    """Iterate until the LATIN indicator,
+    looked at now and then, is below the tolerance.
+    """
     problem = discretise(chosen)
     for iterate in islice(
         iterations(problem, method_of(chosen)), LOOK - 1, chosen.max_iterations, LOOK

@@ -1,4 +1,6 @@
-"""`method` sets the parts of the method at once; what is set by hand beside it is kept."""
+"""`method` sets the parts of the method at once;
+what is set by hand beside it is kept.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""LATIN in the plane comes to the incremental reference, soon, and whatever the decomposition."""
+"""LATIN in the plane comes to the incremental reference,
+soon, and whatever the decomposition.
+"""
 
 from __future__ import annotations
 

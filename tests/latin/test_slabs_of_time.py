@@ -1,4 +1,6 @@
-"""Slabs of time have the solution of the whole interval, and settle where a load repeats itself."""
+"""Slabs of time have the solution of the whole interval,
+and settle where a load repeats itself.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Local stages obey their laws along E+, compliant laws tend to rigid ones, cuts change no k."""
+"""Local stages obey their laws along E+,
+compliant laws tend to rigid ones, cuts change no k.
+"""
 
 from __future__ import annotations
 

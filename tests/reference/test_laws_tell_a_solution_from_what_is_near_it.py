@@ -1,4 +1,6 @@
-"""Balance and the laws of contact alone tell a solution from an answer that is nearly one."""
+"""Balance and the laws of contact alone tell a solution
+from an answer that is nearly one.
+"""
 
 from __future__ import annotations
 
@@ -96,7 +98,9 @@ def spoiled(answer, *, displacement=None, force=None):
 
 
 def largest_work(problem, answer):
-    """Place of the friction force that takes most, at which instant, and the sliding node."""
+    """Place of the friction force that takes most,
+    at which instant, and the sliding node.
+    """
     along = ~rules_of(problem).normal
     all_jumps = jumps(problem)
     slip = np.diff(all_jumps @ answer.displacement, axis=1, prepend=0.0)

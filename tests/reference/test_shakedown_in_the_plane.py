@@ -35,7 +35,9 @@ FREE = {
 
 
 def path(swing: float, first: float = 0.0) -> tuple[tuple[float, float], ...]:
-    """Give cycles of a load after a push or none, so long that all turns are instants."""
+    """Give cycles of a load after a push or none,
+    so long that all turns are instants.
+    """
     turns = ((3.0 + 0.5 * n, swing * (-1.0) ** n) for n in range(2 * N_CYCLES + 2))
     return ((1.0, 0.0), (1.5, first), (2.0, 0.0), *turns, (8.0, 0.0))
 
@@ -79,7 +81,9 @@ SMALL = 1e-4
 def test_two_equal_layers_cease_to_slip_below_the_limit_from_any_start_and_not_above(
     first: float,
 ) -> None:
-    """The friction between them is mirrored, and so presses nothing: Melan's theorem holds."""
+    """The friction between them is mirrored,
+    and so presses nothing: Melan's theorem holds.
+    """
     swing = SMALL * factor(ran("layers", TWINS, SMALL))
     for share, expected in ((0.995, False), (1.005, True)):
         run = ran("layers", TWINS, share * swing, first * swing)

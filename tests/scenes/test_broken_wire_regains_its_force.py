@@ -1,4 +1,6 @@
-"""A broken wire regains its force from its neighbours as friction allows, and no faster."""
+"""A broken wire regains its force from its neighbours
+as friction allows, and no faster.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Kinds of values: what is allowed passes, and of the rest the message names value and remedy."""
+"""Kinds of values: what is allowed passes,
+and of the rest the message names value and remedy.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""What a path over time or a table along a body has, a run sees, or says that it does not."""
+"""What a path over time or a table along a body has,
+a run sees, or says that it does not.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ SCENES_AND_PATHS = [
 
 
 def drawn(scene: str, name: str, seed: int) -> Any:
-    """Settings with a table of wide and narrow swings, of which the instants know nothing."""
+    """Settings with a table of wide and narrow swings,
+    of which the instants know nothing.
+    """
     random = np.random.default_rng([seed, *name.encode()])
     if scene == "strand":
         grip = {"grip": "displacement"}

@@ -1,4 +1,6 @@
-"""The general friction law by its settings, and mu by place (MATHEMATICS.md, 8 and 14)."""
+"""The general friction law by its settings,
+and mu by place (MATHEMATICS.md, 8 and 14).
+"""
 
 from __future__ import annotations
 
@@ -154,7 +156,8 @@ def test_softening_on_a_spring_is_certified(scene, stiffness, cohesion):
 
 
 def test_a_bonded_bar_softens_as_in_closed_form():
-    """theory: a zone of length s softens, P = N_0 cos(beta s) + (tau / beta) sin(beta s).
+    """theory: a zone of length s softens, P = N_0 cos(beta s) + (tau / beta) sin(beta
+    s).
 
     The strength is a factor over the slider's slip; over the bond's, the spring adds
     its own.

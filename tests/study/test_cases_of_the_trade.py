@@ -1,4 +1,6 @@
-"""Cases of the trade are runs whose known number comes out, and files that anybody may write."""
+"""Cases of the trade are runs whose known number comes out,
+and files that anybody may write.
+"""
 
 from __future__ import annotations
 

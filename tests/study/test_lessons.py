@@ -1,4 +1,6 @@
-"""Lesson files are read as they are meant, or refused in one line, and say what the engine does."""
+"""Lesson files are read as they are meant,
+or refused in one line, and say what the engine does.
+"""
 
 from __future__ import annotations
 
