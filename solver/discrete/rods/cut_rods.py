@@ -83,12 +83,15 @@ class _Piece(NamedTuple):
     def springs(self, rods: Rods) -> dict[int, End]:
         """Ends of the rod that springs hold, by their node in this piece."""
         ends = {0: rods.left, rods.elements: rods.right}
-        last = self.first + self.size
         return {
             node - self.first: end
             for node, end in ends.items()
-            if end.is_on_spring and self.first <= node <= last
+            if self._is_held(node, end)
         }
+
+    def _is_held(self, node: int, end: End) -> bool:
+        """Check whether an end of the rod, at a node, is in the piece and on a spring."""
+        return end.is_on_spring and self.first <= node <= self.first + self.size
 
 
 class CutRods:
