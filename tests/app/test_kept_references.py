@@ -55,7 +55,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
 
 
 def made(scene: str, **changes: Any) -> tuple[Settings, Problem]:
-    settings = CATALOGUE[scene].checked({**SMALL[scene], **changes})
+    settings = CATALOGUE[scene].checked(SMALL[scene] | changes)
     return settings, discretise(settings)
 
 

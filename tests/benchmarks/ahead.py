@@ -64,7 +64,7 @@ def _block(elements: int) -> Problem:
         "substructures": elements // CELL,
         "substructures_up": elements // 2 // CELL,
     }
-    return "block", {**sizes, **cuts}
+    return "block", sizes | cuts
 
 
 def _strand(wires: int) -> Problem:

@@ -111,7 +111,7 @@ def settings_of(name: str, cycles: int) -> Settings:
         }
     modes = {"pgd_modes": MODES[scene == "wall"], **changes}
     times = {"instants": INSTANTS * cycles + 1, "duration": float(cycles)}
-    return CATALOGUE[scene].checked({**modes, **times, **load})
+    return CATALOGUE[scene].checked(modes | times | load)
 
 
 def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -87,9 +87,9 @@ def made_loop(names: tuple[str, ...], seed: int) -> MadeLoop:
         true["friction"] * true.get("pressure", bar.values()["pressure"]) * bar.length
     )
     settings = BarSettings.checked(
-        {
-            **KINDS[names],
-            **true,
+        KINDS[names]
+        | true
+        | {
             "load": "cycle",
             "peak": rng.uniform(0.2, 0.98) * largest,
             "elements": int(rng.choice(ELEMENTS)),

@@ -85,7 +85,7 @@ NOTES = (
 def settings_of(courses: int, changes: dict[str, Any]) -> Settings:
     """Settings of a wall of as many bricks a course."""
     size = {"bricks": courses, "courses": courses}
-    return CATALOGUE["wall"].checked({**WALL, **size, **changes})
+    return CATALOGUE["wall"].checked(WALL | size | changes)
 
 
 def counts_of(courses: int) -> tuple[int, dict[str, int]]:

@@ -174,7 +174,7 @@ def small(scene: str, law: str) -> Settings:
         sizes = {**SMALL_ROPE, "elements": 6, "instants": 7}
     if scene == "wall":
         del sizes["substructures"]
-    return CATALOGUE[scene].checked({**sizes, **law_of(kind, law)})
+    return CATALOGUE[scene].checked(sizes | law_of(kind, law))
 
 
 @pytest.mark.parametrize("law", [*LAWS, "general"])
@@ -254,9 +254,9 @@ def test_a_block_balances_whatever_is_at_its_sides(
         }.items()
     }
     settings = CATALOGUE["block"].checked(
-        {
-            **sides,
-            **given_there,
+        sides
+        | given_there
+        | {
             "top_normal_load": "hold",
             "gap": "flat",
             "body_force_y": -1e6 * abs(sizes[5]),
@@ -266,8 +266,8 @@ def test_a_block_balances_whatever_is_at_its_sides(
             "instants": 7,
             "substructures": 2,
             "substructures_up": 1,
-            **law_of("plane", law),
         }
+        | law_of("plane", law)
     )
     problem = discretise(settings)
     reference = reference_of(problem)

@@ -55,7 +55,7 @@ def test_pressing_without_friction_leaves_a_uniform_stress(decomposition, plane)
 
 @pytest.mark.parametrize("decomposition", DECOMPOSITIONS)
 def test_a_stuck_block_without_lateral_strain_is_sheared_uniformly(decomposition):
-    case = {**PATCH, **SHEARED, **cut(decomposition), "violation": 1e-13}
+    case = PATCH | SHEARED | cut(decomposition) | {"violation": 1e-13}
     iterate = solved("block", friction=1.0, poisson=0.0, **case)
     fields = iterate.contact("support")
     friction = fields.tangential_force[:, -1:] / lengths(iterate)

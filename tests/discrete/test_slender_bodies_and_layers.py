@@ -32,7 +32,7 @@ def layers_of(ratio, **values):
         "pressure": 2e6 * (50 / ratio) ** 2,
         "instants": 33,
     }
-    return problem_of("layers", **{**own, **values})
+    return problem_of("layers", **(own | values))
 
 
 def error_after(most, settings, problem):

@@ -69,7 +69,7 @@ contrasts = st.fixed_dictionaries(
 @settings(max_examples=25)
 @given(contrasts)
 def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
-    values = InclineSettings.checked({**SMALL, **values})
+    values = InclineSettings.checked(SMALL | values)
     problem = discretise(values)
     found = reference_of(problem)
     forces = Slope(found, values)
@@ -102,7 +102,7 @@ HARD = {
 
 @pytest.mark.parametrize("case", HARD)
 def test_a_run_ends_certified_and_its_forces_balance(case):
-    values = InclineSettings.checked({**SMALL, **HARD[case]})
+    values = InclineSettings.checked(SMALL | HARD[case])
     run = solved(values)
     assert run.is_certified
     assert run.records[-1].error_force < 1e-9
@@ -130,7 +130,7 @@ def test_a_run_ends_certified_and_its_forces_balance(case):
 def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiffness):
     law = {"friction_law": "compliant", "contact_stiffness": stiffness}
     sizes = {"elements": 8, "substructures": 2, "instants": 13}
-    problem = discretise(CATALOGUE[scene].checked({**sizes, **law, **changes}))
+    problem = discretise(CATALOGUE[scene].checked(sizes | law | changes))
     found = reference_of(problem)
     assert found.converged.all()
     assert kkt_residual(found, problem) < 1e-10

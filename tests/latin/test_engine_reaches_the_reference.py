@@ -94,7 +94,7 @@ def test_every_load_path_reaches_the_reference(load):
     ids=str,
 )
 def test_every_kind_of_bar_reaches_the_reference(change):
-    assert_reached(options(**{**SMALL, **change}))
+    assert_reached(options(**(SMALL | change)))
 
 
 @pytest.mark.parametrize("substructures", [1, 7, 50])
@@ -166,7 +166,7 @@ SCENES: dict[str, dict[str, Any]] = {
 )
 @pytest.mark.parametrize("scene", SCENES)
 def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(scene, changes):
-    settings = CATALOGUE[scene].checked({**SCENES[scene], **changes})
+    settings = CATALOGUE[scene].checked(SCENES[scene] | changes)
     problem = discretise(settings)
     solution = solve(problem, method_of(settings), watch=False)
     assert solution.status.ending == "converged"

@@ -36,7 +36,7 @@ ROUNDING = 1e-9
 
 
 def small(scene: str, **changes: Any) -> Any:
-    return CATALOGUE[scene].checked({**SMALL[scene], **changes})
+    return CATALOGUE[scene].checked(SMALL[scene] | changes)
 
 
 @pytest.mark.parametrize("scene", SMALL)
@@ -166,8 +166,8 @@ FEW = {"bricks": 3, "courses": 3, "displacement": 5e-5}
 
 
 def options(scene: str = "bar", **changes: Any) -> Settings:
-    sizes = {**SHORT, **(FEW if scene == "wall" else {})}
-    return CATALOGUE[scene].checked({**sizes, "finish": "accuracy", **changes})
+    sizes = SHORT | (FEW if scene == "wall" else {})
+    return CATALOGUE[scene].checked(sizes | {"finish": "accuracy"} | changes)
 
 
 @cache

@@ -22,7 +22,7 @@ FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested
 
 
 def options(**changes: object) -> BarSettings:
-    return BarSettings.checked({"method": "paper", **FAST, **changes})
+    return BarSettings.checked({"method": "paper"} | FAST | changes)
 
 
 def within(solution, level: float) -> int:

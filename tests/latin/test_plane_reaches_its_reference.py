@@ -28,7 +28,7 @@ def errors_of(scene, most, **values):
         size = SMALL
     else:
         size = {"instants": 41}
-    return errors(settings_of(scene, **{**size, **values}), most)
+    return errors(settings_of(scene, **(size | values)), most)
 
 
 def within(found, level):

@@ -101,7 +101,7 @@ def test_an_overlap_between_rollers_presses_as_uniaxial_strain_does(
     size: float, friction: float
 ) -> None:
     held = dict.fromkeys(("left", "right", "top"), "roller")
-    values = {**PLANE, **held, "gap": gap(-size, -size), "friction": friction}
+    values = PLANE | held | {"gap": gap(-size, -size), "friction": friction}
     problem = discretise(CATALOGUE["block"].checked(values))
     found = reference_of(problem)
     modulus = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))

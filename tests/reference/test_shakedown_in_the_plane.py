@@ -27,10 +27,13 @@ N_CYCLES = 4
 LOADS = {"layers": "bend_load", "block": "top_tangential_load"}
 MESH = {"substructures": 1, "substructures_up": 1, "duration": 8.0, "instants": 129}
 TWINS = {**MESH, "layers": 2, "elements": 12, "elements_up": 1, "pressure": 2e6}
-FREE = {
-    **MESH,
-    **{"gap": "flat", "elements": 12, "elements_up": 6, "friction": 0.2},
-    **{"top": "traction", "top_normal_load": ((0.0, -1e8),)},
+FREE = MESH | {
+    "gap": "flat",
+    "elements": 12,
+    "elements_up": 6,
+    "friction": 0.2,
+    "top": "traction",
+    "top_normal_load": ((0.0, -1e8),),
 }
 
 
@@ -121,7 +124,7 @@ def test_just_below_the_limit_a_coupled_block_ceases_or_not_by_its_start() -> No
     ],
 )
 def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> None:
-    given = {**FREE, "elements": 4, "elements_up": 2, **changes}
+    given = FREE | {"elements": 4, "elements_up": 2} | changes
     settings = CATALOGUE["block"].checked({**given, LOADS["block"]: path(1e-6)})
     assert not QUANTITIES["shakedown_factor"].applies(settings)
     with pytest.raises(NoReferenceError):

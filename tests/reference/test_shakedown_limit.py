@@ -55,7 +55,7 @@ def test_just_below_the_limit_slip_ceases_and_just_above_it_goes_on(
     loads = [name for name in ("peak", "body_force") if name in changes]
     for share, goes_on in ((0.995, False), (1.005, True)):
         scaled = {name: share * factor * changes[name] for name in loads}
-        assert slips(scene, **SMALL, **{**changes, **scaled}) is goes_on, share
+        assert slips(scene, **SMALL, **(changes | scaled)) is goes_on, share
 
 
 def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:
@@ -115,7 +115,7 @@ def test_what_the_theorem_does_not_cover_is_refused() -> None:
 def test_where_slip_presses_nothing_the_program_of_the_plane_gives_it_too(
     scene: str, changes: dict[str, Any]
 ) -> None:
-    rods = CATALOGUE[scene].checked({**SMALL, **changes})
+    rods = CATALOGUE[scene].checked(SMALL | changes)
     ends = ends_of(rods)
     some = slice(ends[-2], ends[-1] + 1)
     theorem = shakedown_limit(discretise(rods), some)

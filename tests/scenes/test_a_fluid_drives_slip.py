@@ -36,7 +36,7 @@ SMALL = {"elements": 48, "elements_up": 24, "instants": 31}
 
 
 def solved(**changes: Any) -> tuple[FaultSettings, Problem, Reference]:
-    settings = FaultSettings.checked({**SMALL, **changes})
+    settings = FaultSettings.checked(SMALL | changes)
     problem = discretise(settings)
     return settings, problem, reference_of(problem)
 
@@ -156,7 +156,7 @@ def test_a_barrier_stops_the_front() -> None:
     ids=lambda changes: str(changes),
 )
 def test_no_closed_form_is_drawn_where_none_holds(changes: dict[str, Any]) -> None:
-    settings = FaultSettings.checked({**SMALL, **changes})
+    settings = FaultSettings.checked(SMALL | changes)
     assert list(settings.exact(discretise(settings))) == []
 
 
@@ -213,7 +213,7 @@ def test_a_joint_slips_by_shear_over_stiffness_between_both_of_its_sides() -> No
 
 def test_quantities_of_a_fault_are_those_between_both_of_its_sides() -> None:
     """A point over that across from it, which moves as much the other way."""
-    run = finished_run(FaultSettings.checked({**SMALL, **JOINT}), errors=False)
+    run = finished_run(FaultSettings.checked(SMALL | JOINT), errors=False)
     inside = run.problem.inside
     moved = inside.displacement(run.iterate.displacement, slice(None))[:, 0]
     contact = run.iterate.contact("support")

@@ -23,7 +23,7 @@ class Run:
     """A run on a slope: angle, spring force and displacement over time."""
 
     def __init__(self, **values):
-        self.settings = InclineSettings.checked({**SMALL, **values})
+        self.settings = InclineSettings.checked(SMALL | values)
         self.solution = solved(self.settings)
         iterate = self.solution.iterate
         problem = iterate.problem

@@ -20,7 +20,7 @@ COMPLIANT = {"friction_law": "compliant"}
 
 
 def run(scene="bar", **values):
-    return solved(settings_of(scene, **{**SMALL[scene], **COMPLIANT, **values}))
+    return solved(settings_of(scene, **(SMALL[scene] | COMPLIANT | values)))
 
 
 def pulled(force, stiffness):

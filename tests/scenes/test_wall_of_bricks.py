@@ -253,7 +253,7 @@ def test_loads_of_which_no_share_is_carried_are_told_as_they_are():
     any share of what presses holds.
     """
     at_once = {"pressure_load": ((0.0, 1e6),), "top_load": ((0.0, 5e5),), "instants": 1}
-    problem = discretise(CATALOGUE["wall"].checked({**PILE, **at_once}))
+    problem = discretise(CATALOGUE["wall"].checked(PILE | at_once))
     words = known_reference(problem).doubt
     assert "no equilibrium with pressure_load = 1e6 Pa (1 times" in words
     assert "and top_load = 500000 Pa (1 times" in words
@@ -280,7 +280,7 @@ def test_the_limit_of_a_wall_is_said_to_be_its_meshs_and_rises_with_its_elements
             "elements_up": max(elements // 2, 2),
             "instants": 2,
         }
-        values = {**PILE, "bond": "running", "bricks": 3, "traction": 1e6, **size}
+        values = PILE | {"bond": "running", "bricks": 3, "traction": 1e6} | size
         problem = discretise(
             CATALOGUE["wall"].checked({**values, "top_load": "delayed"})
         )

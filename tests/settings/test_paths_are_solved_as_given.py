@@ -78,7 +78,7 @@ def of_preset(scene: str, name: str, preset: str, **changes: Any) -> Any:
         grip = {"grip": "displacement"}
     else:
         grip = {}
-    return CATALOGUE[scene].checked({name: preset, "seed": 3, **grip, **changes})
+    return CATALOGUE[scene].checked({name: preset, "seed": 3} | grip | changes)
 
 
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
@@ -269,7 +269,7 @@ NOTCHED = [[0.0, 1.0], [0.51, 1.0], [0.511, 0.01], [0.512, 0.01], [0.513, 1.0]]
 
 
 def varying(**changes):
-    return BarSettings.checked({"method": "paper", **SMALL, **changes})
+    return BarSettings.checked({"method": "paper"} | SMALL | changes)
 
 
 @pytest.mark.parametrize("table", [GRADED, NOTCHED], ids=["graded", "notched"])

@@ -23,14 +23,15 @@ RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "8"))
 SMALLEST = 1e-12
 """Of a number whose range begins at zero, or below."""
 MOST = {
-    **{
-        "elements": 12,
-        "elements_up": 3,
-        "instants": 10,
-        "cycles": 2,
-        "max_iterations": 100,
-    },
-    **{"wires": 5, "layers": 3, "bricks": 3, "courses": 3},
+    "elements": 12,
+    "elements_up": 3,
+    "instants": 10,
+    "cycles": 2,
+    "max_iterations": 100,
+    "wires": 5,
+    "layers": 3,
+    "bricks": 3,
+    "courses": 3,
 }
 """Bounds that keep a run short."""
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}

@@ -43,7 +43,7 @@ USUAL = {
 
 def written(folder: Path, **changes: str) -> Path:
     path = folder / "mine.toml"
-    path.write_text(OWN.format(**{**USUAL, **changes}), encoding="utf-8")
+    path.write_text(OWN.format(**(USUAL | changes)), encoding="utf-8")
     return path
 
 

@@ -199,7 +199,7 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
     ],
 )
 def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> None:
-    settings = scene_settings("bar").checked({**law, **start})
+    settings = scene_settings("bar").checked(law | start)
     found = fit(settings, made(true, settings), list(true))
     assert found.nearest.values == pytest.approx(list(true.values()), rel=1e-6)
     assert found.settings.friction == found.nearest.values[0]
@@ -265,7 +265,7 @@ def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
 def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
     law = {"friction_law": "general", "tangential_stiffness": 1e8, "cohesion": 600.0}
     settings = scene_settings("bar").checked(
-        {**BAR, **law, "elements": 6, "instants": 13, "substructures": 2}
+        BAR | law | {"elements": 6, "instants": 13, "substructures": 2}
     )
     found = fit(settings, made({"friction": 0.37}, settings), ["friction", "cohesion"])
     assert np.isinf(found.errors).all()

@@ -92,7 +92,7 @@ WITHIN = 0.2
 
 
 def options(**values):
-    return BarSettings.checked({"method": "paper", **BENCHMARK, **values})
+    return BarSettings.checked({"method": "paper"} | BENCHMARK | values)
 
 
 @pytest.fixture(scope="module")

@@ -239,7 +239,7 @@ def test_the_spring_carries_a_weight_that_nothing_else_holds() -> None:
 def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
     scene: str, changes: dict[str, Any]
 ) -> None:
-    run = ran(scene, errors=True, **{**SMALL, **changes})
+    run = ran(scene, errors=True, **(SMALL | changes))
     for name, quantity in QUANTITIES.items():
         needed = quantity.parameter is not None and quantity.parameter.needed
         value = taken(f"{name}@0.1" if needed else name, run)
@@ -296,7 +296,7 @@ def of(
         "before": np.ones(len(slips)),
         "is_repeated": True,
     }
-    return LoadCycles(**{**values, **more})
+    return LoadCycles(**(values | more))
 
 
 STEADY = [[2, 2, 2]]
