@@ -25,10 +25,10 @@ LOST = 5.0
 PAINTED = (
     "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
 )
-"""Says what is on the screen once it is: tasks follow what is painted in a frame of the
-browser."""
+"""Script that reports a picture once it is on the screen: a task set within an
+animation frame runs after that frame is painted."""
 SHORTEST = 0.02
-"""Seconds of a pause between pictures that is kept."""
+"""Shortest pause between pictures that is kept, s."""
 LASTS = 1.0
 """Seconds after which a value that was shown no longer comes back."""
 TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
@@ -64,10 +64,10 @@ class Pulse(DataModel):
 
 
 class Display:
-    """Paints the views in sight, each picture once the browser has painted the last.
+    """Display of the views in sight: a picture once the browser has painted the last.
 
-    `views` are those in sight; `also` is called with each picture, inside its hold: for
-    what is not a view, as the status line.
+    `views` are those in sight. `also` is called with each picture, inside its hold, for
+    parts that are not views, such as the status line.
     """
 
     def __init__(
@@ -144,7 +144,7 @@ class Display:
     def _on_painted(self) -> None:
         """Go on after a pause in which other pages can paint.
 
-        All share the server's thread.
+        All pages share the server's thread.
         """
         pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
         if pause < SHORTEST:
@@ -162,8 +162,9 @@ class Display:
 class Browser(DataModel):
     """The window of the browser, and keys that are pressed in it.
 
-    The height in pixels, and whether it is narrow; the last key and a count of them;
-    the address that one has gone back, or on, to; and the link that is to be copied.
+    The window has a `height` in px and may be narrow. `pressed` is the last key, and
+    `count` grows with every key. `search` is the address to which the browser went back
+    or on, `copied` a link that it is to copy.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -178,7 +179,7 @@ class Browser(DataModel):
     ) -> None:
         """Call actions of keys, by their names in the browser, unless a field takes them.
 
-        The state has the size of the window.
+        The state follows the size of the window.
         """
         for size in ("height", "is_narrow"):
             self.on_change(
@@ -194,8 +195,8 @@ class Browser(DataModel):
 class Echoes:
     """Values that the page gave a widget lately, to tell them from those of a person.
 
-    Panel's React wrapper sends a value back after it has shown it. Where the next one
-    came meanwhile, that looks like a choice of the last but one
+    Panel's React wrapper sends a value back after it has shown it. Where the page gave
+    the next value meanwhile, that looks as if a person had chosen the one before
     (panel/models/react_component.ts, `useState`).
     """
 

@@ -1,7 +1,4 @@
-"""The controls at the side.
-
-A widget of Panel's for each setting, from its definition.
-"""
+"""The controls at the side: a Panel widget for each setting, by its definition."""
 
 from __future__ import annotations
 
@@ -51,7 +48,7 @@ GROUPS = (
 
 
 class SettingControl:
-    """The widget of one setting: it shows the value of the state and changes it.
+    """The widget of a setting, which shows the value in the state and changes it.
 
     `field` takes the value; for a number it is a text field with a `slider`. Both stand
     in `view`.
@@ -145,16 +142,13 @@ class SettingControl:
         return slider
 
     def _to_slider(self, value: float) -> float:
-        """Position of a value on the slider.
-
-        In the unit of the field, or its logarithm.
-        """
+        """Position of a value on the slider: in the field's unit, or its logarithm."""
         if self._is_logarithmic:
             return math.log10(max(value, 1e-300))
         return float(f"{value / self._unit.factor:.10g}")
 
     def _from_slider(self, position: float) -> float:
-        """Value of a position of the slider, rounded to what a hand can choose."""
+        """Value at a position of the slider, rounded to digits that a hand can choose."""
         if self._is_logarithmic:
             value = 10.0**position
             digits = 3

@@ -100,10 +100,7 @@ class Page:
         self._guide.show()
 
     def loaded(self) -> None:
-        """Show the figures once a browser is there.
-
-        Go on with the run, or follow a class.
-        """
+        """Show the figures once a browser is there, and go on or follow a class."""
         self._supervisor.open()
         self._live.open(self._guide.kinds)
         if not self.state.room:
@@ -195,7 +192,7 @@ class Page:
     def _place(self) -> None:
         """Put visible parts alone on the page.
 
-        Beside hidden ones figures are not painted.
+        Beside hidden parts the browser does not paint figures.
         """
         # The text and the line of the class are appended, and put in front by the style
         # sheet: a column whose children change their order loses some of them.

@@ -1,7 +1,4 @@
-"""Refusals in the words of the page.
-
-Titles in place of names, values in the units of fields.
-"""
+"""Refusals in the words of the page: titles for names, values in units of fields."""
 
 from __future__ import annotations
 
@@ -14,9 +11,9 @@ from solver.settings.definitions import CurveParameter, about, allowed, title_of
 from solver.settings.scene import Settings
 
 EXACT = 10
-"""Digits of what is refused: a value beside the end of a range is told from it."""
+"""Digits of a refused value: it differs from the end of a range even close to it."""
 LONGEST = 40
-"""Characters of a text that is refused."""
+"""Largest number of characters of a refused text that are shown."""
 NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 
 
@@ -25,7 +22,8 @@ def message_of(
 ) -> str:
     """A sentence on a refusal: the setting, the value, the reason, the allowed values.
 
-    Where the setting `name` was to change to `value`, another one may be refused.
+    Where the setting `name` was to change to `value`, the refusal may be of another
+    setting.
     """
     definitions = settings.definitions()
     remedy = _in_titles(settings, refusal.remedy)

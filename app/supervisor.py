@@ -1,7 +1,4 @@
-"""The supervisor of a page's worker.
-
-Starts it, and again when it ends, hangs or sticks.
-"""
+"""The supervisor of a page's worker, which is started anew if it ends or hangs."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ GIVEN_UP = (
 
 
 class Supervisor:
-    """Passes orders to the worker of a page and its reports to the state."""
+    """Link between a page and its worker: orders to the worker, reports to the state."""
 
     def __init__(self, state: PageState, document: Any) -> None:
         self._state = state

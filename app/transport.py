@@ -1,7 +1,4 @@
-"""Buttons and sliders of a run: start, pause, step.
-
-Pace; iterate; play through time.
-"""
+"""Buttons and sliders of a run: start, pause, step, pace, iterate, time."""
 
 from __future__ import annotations
 
@@ -253,7 +250,7 @@ class Transport:
     def _show(self) -> None:
         """Show the state of the run, but not while a slider is dragged.
 
-        It changes at once.
+        Each move begins a run that ends at once: the buttons would flicker.
         """
         state = self._state
         if state.is_dragged:

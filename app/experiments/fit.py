@@ -55,10 +55,7 @@ class FitTab(CommandTab):
 
     @property
     def command(self) -> Command | None:
-        """The fit of the ticked settings to the loop.
-
-        None without settings or a loop.
-        """
+        """The fit of the ticked settings to the loop; None without either."""
         names = ",".join(self.chosen.value)
         loop = self.measured
         if loop is None or not names:
@@ -108,10 +105,7 @@ class FitTab(CommandTab):
             self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
-        """The measured loop, and the nearest run so far.
-
-        None without a measured loop.
-        """
+        """Panel of the measured loop and the nearest run so far; None without a loop."""
         measured = self.measured
         if measured is None:
             return None

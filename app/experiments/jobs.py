@@ -1,7 +1,4 @@
-"""Long work of pages.
-
-Commands, one at a time for all pages, and sweeps, side by side.
-"""
+"""Long work of pages: commands, one at a time for all, and sweeps side by side."""
 
 from __future__ import annotations
 
@@ -52,7 +49,8 @@ def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
 def executor() -> Executor:
     """The executor of the commands of all pages: one process at a time on this machine.
 
-    Two at a time would spoil each other's measurements, and thirty the server.
+    Two commands at a time would spoil each other's measurements of time, and thirty
+    would leave the server no processor.
     """
     stack = ExitStack()
     atexit.register(stack.close)

@@ -1,7 +1,4 @@
-"""Questions of the tab What if.
-
-A quantity over one or two settings, and their fields.
-"""
+"""Questions of the tab What if: a quantity over one or two settings."""
 
 from __future__ import annotations
 
@@ -115,7 +112,7 @@ def question_of(text: str, settings: Settings) -> Question:
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
-    """Settings that may vary: they do something here and have several values."""
+    """Settings that may vary, as they do something here and have several values."""
     known = {}
     for name, definition in settings.definitions().items():
         is_number = isinstance(definition, param.Number)
@@ -183,7 +180,7 @@ def _iterations(settings: Settings, accuracy: float, *vary: str) -> Question:
 def _bricks(settings: Settings) -> Question | None:
     """Iterations over the number of courses, with and without the macro problem.
 
-    The load passes from course to course; None without courses.
+    The load passes from course to course. Without courses there is no question (None).
     """
     if "courses" not in variable(settings):
         return None
@@ -196,8 +193,8 @@ def _bricks(settings: Settings) -> Question | None:
 def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     """Energy over the load and other settings, from a tenth of their sliders' ends.
 
-    None where no number sets the size of the load, or another setting does nothing.
-    The values of a load alone that is positive have even ratios.
+    There is no question (None) where no number sets the size of the load, or another
+    setting does nothing. A positive load that varies alone has values of even ratios.
     """
     known = variable(settings)
     numbers = [name for name in known if isinstance(known[name], param.Number)]
@@ -229,7 +226,7 @@ def _load_of(settings: Settings, numbers: list[str]) -> str | None:
 TEXTS = tomllib.loads(
     (Path(__file__).parent / "texts.toml").read_text(encoding="utf-8")
 )
-"""A word on each question and report, by the label of its button."""
+"""Sentences on each question and report, by the label of its button."""
 READY: dict[str, Callable[[Settings], Question | None]] = {
     # For small amplitudes the energy in rods grows with their third power (Masing).
     "Energy over amplitude": lambda given: _energy(given, VALUES),

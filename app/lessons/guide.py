@@ -35,7 +35,7 @@ from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
 
 WITHOUT = -1
-"""The prediction of a person who wants to see the answer without predicting."""
+"""Prediction that stands for a wish to see the answer without predicting."""
 text_button = partial(button, margin=(3, 8, 3, 0))
 
 
@@ -286,10 +286,7 @@ class Guide:
         ]
 
     def _choice(self, number: int, label: str, lesson: Lesson) -> pmui.Button:
-        """The button of a choice.
-
-        Filled where it was predicted, green where it is right.
-        """
+        """The button of a choice: filled if it was predicted, green if it is right."""
         is_asked = self._state.is_asked
         variant = "outlined"
         if number == self._state.prediction:
@@ -307,10 +304,7 @@ class Guide:
         )
 
     def _of_class(self, poll: Poll | None) -> list[Any]:
-        """Parts below the choices.
-
-        The number of predictions, and buttons to the answer.
-        """
+        """Parts below the choices: number of predictions, and buttons to the answer."""
         is_asked = self._state.is_asked
         answer = partial(self.predict, WITHOUT)
         if poll is None:

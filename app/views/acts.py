@@ -171,10 +171,7 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
-    """As `anchor_of`, for a load on the top or bottom.
-
-    Beside its arrows, or over them.
-    """
+    """Anchor as `anchor_of`, of a load on the top or bottom: beside or over its arrows."""
     act = arrows.act
     up = act.away[1]
     is_left = float(np.mean(act.places[:, 0])) < 0.45
@@ -214,10 +211,7 @@ def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
 
 
 def text_of(act: Act, column: int) -> str:
-    """A symbol and its value at an instant.
-
-    Both end values where it varies on a side.
-    """
+    """Symbol and value of a load at an instant, or the values at both ends of a side."""
     unit = unit_of(act)
     now = np.atleast_1d(act.values.T[column])
     peak = float(np.abs(act.values).max())
@@ -278,9 +272,9 @@ def hatched(edge: Array, away: Array) -> Array:
 
 
 def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> Array:
-    """Line of a support below an edge, (2, 2), px, with its gap, (n_gaps,), m.
+    """Line, (n, 2), px, of a support below an edge, (2, 2), px.
 
-    (n, 2).
+    A support with a gap, (n_gaps,), m, stands away from the edge.
     """
     if layout.description.height is None:
         below = (PITCH - THICKNESS) * layout.description.length * layout.scale[1]
@@ -294,10 +288,7 @@ def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> A
 
 
 def _rollers(edge: Array, away: Array) -> Array:
-    """Rollers at an edge, (2, 2), and a line behind them, px.
-
-    NaN behind each, (n, 2).
-    """
+    """Rollers at an edge, (2, 2), and a line behind them, px, as lines with NaN, (n, 2)."""
     count = max(int(np.hypot(*(edge[1] - edge[0])) / 30.0), 2)
     shares = (np.arange(count) + 0.5) / count
     centres = edge[0] + shares[:, None] * (edge[1] - edge[0]) + RADIUS * away

@@ -1,7 +1,4 @@
-"""Layout of the scene.
-
-Position and scale of the bodies, magnification of displacements.
-"""
+"""Layout of the scene: position and scale of bodies, size of displacements."""
 
 from __future__ import annotations
 
@@ -150,10 +147,7 @@ def is_opposite(act: Act, other: Act) -> bool:
 def layout_of(
     geometry: Geometry, is_bare: bool, type_size: float, width: float, height: float
 ) -> Layout:
-    """The larger of two layouts in a figure in px.
-
-    Keys below the bodies, or at their left.
-    """
+    """The layout with larger bodies in a figure in px: keys below, or at the left."""
     rows = 1
     if width < NARROW:
         rows = 2

@@ -146,10 +146,7 @@ class Picture:
         return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
-        """Outline of bodies that begin to collapse.
-
-        Nodes move by `moved`, (n_nodes, 2).
-        """
+        """Outline of bodies that begin to collapse, whose nodes move by (n_nodes, 2), m."""
         size = float(np.abs(moved).max(initial=0.0))
         if size == 0.0:
             size = 1.0
@@ -190,10 +187,7 @@ class Picture:
 
     @cached_property
     def _at_break(self) -> Array:
-        """Numbers of the nodes on both sides of a break, (2, 2).
-
-        (0, 2) without a break.
-        """
+        """Numbers of the nodes on both sides of a break, (2, 2); (0, 2) without one."""
         if self._described.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
         body, position = self._described.broken
@@ -285,10 +279,7 @@ class Picture:
 def _inside(
     layout: Layout, texts: list[str], anchors: list[Array], aligns: list[str]
 ) -> tuple[Array, Array]:
-    """Anchors, (2,) each, px, moved inwards where their texts would be cut.
-
-    X and y, (n,).
-    """
+    """X and y, (n,), px, of anchors, (2,) each, moved inwards where texts would be cut."""
     x, y = np.reshape(anchors, (-1, 2)).T
     widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
     left = widths * [LEFT_OF[align] for align in aligns]

@@ -1,7 +1,4 @@
-"""The figure of the scene, which the pointer drags and selects in.
-
-Stress and thrust.
-"""
+"""The figure of the scene, in which the pointer drags and selects; stress; thrust."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ SHORT = 200
 """Length of a curve up to which it is sent as a list: faster there than an array."""
 TEXT = "12px"
 WORDS = "14px"
-"""Type sizes of plots, and of words at arrows."""
+"""Type sizes of plots, and of words at arrows, as CSS has them."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Keeps sizes that are not the theme's, as the browser sets these when it draws a
 figure."""
@@ -227,7 +227,7 @@ class View:
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
         """Add marks to the legend only, by name.
 
-        They share a glyph, as each costs time.
+        The marks share a glyph, as each glyph costs time.
         """
         nowhere = [np.nan] * len(colors)
         columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
@@ -277,10 +277,7 @@ class View:
                 item.label = value(wanted)
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
-        """Fill a source.
-
-        The legend has its entry, by a title, if the source has data.
-        """
+        """Fill a source; show its entry in the legend, by a title, if it has data."""
         target = self.sources[name]
         columns = {column: _sent(values) for column, values in columns.items()}
         new = [
@@ -310,10 +307,7 @@ class View:
         ys: Sequence[ArrayLike],
         titles: Sequence[str],
     ) -> None:
-        """Draw curves over the same x, shape (n,), in SI.
-
-        Empty the names that are left.
-        """
+        """Draw curves over the same x, shape (n,), in SI; empty names without a curve."""
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
                 self.draw(name, [], [])
@@ -382,10 +376,7 @@ def hover(
 
 
 def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
-    """Properties of a kind of glyph.
-
-    `color`, `width` etc. hold for its line and fill.
-    """
+    """Properties of a kind of glyph; `color`, `width` etc. are of its line and fill."""
     names = kind.properties()
     properties = {}
     for trait, given in look.items():
@@ -399,10 +390,7 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _sent(values: Any) -> Any:
-    """Values with short curves as lists.
-
-    An array is sent by itself, in two messages.
-    """
+    """Values with short curves as lists: an array is sent in two further messages."""
     if isinstance(values, list):
         return [_sent(each) for each in values]
     is_curve = isinstance(values, np.ndarray) and values.ndim == 1

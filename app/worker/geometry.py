@@ -103,7 +103,7 @@ class Drawn:
 def _dofs_of(problem: Problem, law: Contact, pairs: Indices) -> Indices:
     """Degrees of freedom of pairs of an interface, along and across it, (n_points, 2).
 
-    Where bodies do not open, none is across: `NONE`.
+    Where bodies do not open, the degree of freedom across is `NONE`.
     """
     components = [law.tangent]
     if law.normal:
@@ -283,7 +283,7 @@ class DrawnMesh(Drawn):
     def nodes_of(self, displacement: Array) -> Floats:
         """Displacement of nodes, (n_nodes, 2), m, of all degrees of freedom, (n_dofs,)."""
         moved = self._inside.displacement(displacement[:, None], [0])
-        # Displacements that are given are no part of it.
+        # Given displacements are added to all, and are no part of a motion.
         still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])
         return floats((moved - still)[self._nodes, :, 0])
 
@@ -297,10 +297,7 @@ class DrawnMesh(Drawn):
 
 
 def _kept_lines(grid: Indices, share: float, most: int) -> tuple[Indices, Indices]:
-    """Rows and columns of a grid of nodes that are drawn.
-
-    A share, `most` cells at most.
-    """
+    """Rows and columns of a grid of nodes that are drawn: a share, in `most` cells."""
     n_rows, n_columns = np.subtract(grid.shape, 1)
     rows = max(int(share * n_rows), 1)
     columns = max(min(int(share * n_columns), most // rows), 1)

@@ -1,4 +1,4 @@
-"""The sampler: makes of an iterate the frame that the page is sent."""
+"""The sampler, which makes the frames of the page from iterates."""
 
 from __future__ import annotations
 

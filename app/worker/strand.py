@@ -1,8 +1,8 @@
 """A bent strand: its wires as seen from the side, and the extras of its views.
 
-From the side one sees the wires in front of its outer layer: one looks across the plane
-of bending onto the cylinder that they share. Each has its strip of it, and half of them
-are hidden behind it at any place; the outermost fibre is below.
+The view is across the plane of bending onto the cylinder of the outer layer. Each wire
+has a strip of the cylinder, and half of the wires are hidden behind it at any place; the
+outermost fibre is below.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ from solver.settings.scene import Settings
 A_TURN = 20
 FEWEST = 40
 MOST = 100
-"""Steps along the strand for each turn of an outer wire, and their number in any
-case."""
+"""Steps along the strand for each turn of an outer wire; least and largest number of
+steps."""
 SHOWN_SHARE = 0.12 * np.pi
-"""Angle from the edges of what is in front within which a wire has no line of
-contact."""
+"""Angle from the edges of the visible half within which a wire has no line of contact,
+rad."""
 
 
 class DrawnRope:
@@ -159,8 +159,8 @@ class DrawnRope:
     def _lines(self) -> tuple[Indices, Array, Indices, Indices, Bytes]:
         """Contact points along the wires in front: steps, heights with NaN, and wires.
 
-        Further the number of the point that each has the status of, and its sign of
-        slip. All have shape (n,).
+        The last two are the number of the point whose status each shows, and the sign
+        of its slip. All have shape (n,).
         """
         numbers = np.repeat(np.arange(self._count), len(self._z))
         rows = np.tile(np.arange(len(self._z)), self._count)
@@ -172,10 +172,7 @@ class DrawnRope:
         return rows[kept], heights[kept], wires, points, sides
 
     def _moved(self, rows: Indices, heights: Array) -> Floats:
-        """Displacement of points at heights, (n, 2, n_instants), m.
-
-        Sections stay plane.
-        """
+        """Displacement of points at heights, (n, 2, n_instants), m: sections stay plane."""
         up, slope = self._bent
         along = slope[rows] * (self._radius - heights)[:, None]
         return floats(np.stack([along, up[rows]], axis=1))
