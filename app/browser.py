@@ -32,23 +32,33 @@ SHORTEST = 0.02
 LASTS = 1.0
 """Seconds after which a value that was shown no longer comes back."""
 TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
-"""Elements that take keys for themselves."""
+"""Elements that take keys for themselves (a CSS selector)."""
 COPY = """
-if (browser.copied) {
-  navigator.clipboard?.writeText(browser.copied).catch(() => prompt("The link", browser.copied))
+const link = browser.copied
+if (link) {
+  navigator.clipboard?.writeText(link).catch(() => prompt("The link", link))
 }
 """
 LISTEN = """
-const measure = () => { browser.setv({height: innerHeight, is_narrow: innerWidth < 900}) }
+const measure = () => {
+  browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
+}
 measure()
 addEventListener("resize", measure)
-// One may come back to the same address again, and to that which says nothing.
-addEventListener("popstate", () => { browser.search = ""; browser.search = location.search || "?" })
+// A property that keeps its value tells nothing: the same address may come back twice,
+// and an address may be empty.
+addEventListener("popstate", () => {
+  browser.search = ""
+  browser.search = location.search || "?"
+})
 document.addEventListener("keydown", (event) => {
   const target = event.composedPath()[0]
-  const takes = target.closest?.(taken) || (event.key == " " && target.closest?.("button"))
-  const name = (event.shiftKey && event.key.startsWith("Arrow") ? "Shift+" : "") + event.key
-  if (takes || event.ctrlKey || event.metaKey || event.altKey || !names.includes(name)) { return }
+  const isPressing = event.key == " " && target.closest?.("button")
+  const isTaken = target.closest?.(taken) || isPressing
+  const isBrowsers = event.ctrlKey || event.metaKey || event.altKey
+  const isShifted = event.shiftKey && event.key.startsWith("Arrow")
+  const name = (isShifted ? "Shift+" : "") + event.key
+  if (isTaken || isBrowsers || !names.includes(name)) { return }
   event.preventDefault()
   browser.pressed = name
   browser.count += 1
@@ -78,7 +88,8 @@ class Display:
         self._also = also
         self.views: list[View] = []
         self._is_due = False
-        self._sent_at = self._took = 0.0
+        self._sent_at = 0.0
+        self._took = 0.0
         self.pulse = Pulse(name="pulse")
         self.pulse.js_on_change(
             "sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED)
@@ -106,6 +117,7 @@ class Display:
                 self._count()
 
     def _is_waiting(self) -> bool:
+        """Check whether the browser still paints a picture, and it is not lost."""
         is_sent = self.pulse.painted < self.pulse.sent
         return is_sent and time.monotonic() < self._sent_at + LOST
 
@@ -116,6 +128,7 @@ class Display:
             self._paint()
 
     def _paint(self) -> None:
+        """Send the newest frame to all views in sight as one message."""
         state = self._state
         frame = self._state.frame
         self._is_due = False
@@ -138,6 +151,7 @@ class Display:
             state.send(Ready())
 
     def _count(self) -> None:
+        """Count a picture last of all: the browser tells the number once it is painted."""
         self._sent_at = time.monotonic()
         self.pulse.sent += 1
 
@@ -146,6 +160,7 @@ class Display:
 
         All pages share the server's thread.
         """
+        # Each of the other pages may take as long as this one took.
         pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
         if pause < SHORTEST:
             self._go_on()
@@ -177,9 +192,9 @@ class Browser(DataModel):
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
     ) -> None:
-        """Call actions of keys, by their names in the browser, unless a field takes them.
+        """Call actions of keys by their names in the browser; note the window's size.
 
-        The state follows the size of the window.
+        Keys that an element takes for itself (`TAKEN`) call nothing.
         """
         for size in ("height", "is_narrow"):
             self.on_change(

@@ -54,23 +54,24 @@ def sizes_of(unit: str) -> dict[str, float]:
     if unit == "s":
         return TIMES
     if unit in PREFIXED:
-        return {p + name: f for p, f in PREFIXES.items()}
+        return {prefix + name: size for prefix, size in PREFIXES.items()}
     return {name: 1.0}
 
 
 def unit_for(size: float, unit: str) -> Unit:
     """The unit in which values up to a size in SI are read."""
-    units = [Unit(name, factor) for name, factor in sizes_of(unit).items()]
     if math.isfinite(size) and size > 0.0:
+        # As it is read: 0.9999 is 1.
         size = float(f"{size:.3g}") * (1.0 + 1e-9)
     else:
         size = 1.0
-    fitting = [
-        unit for unit in units if unit.factor * LATER.get(unit.name, 1.0) <= size
-    ]
-    if fitting:
-        return fitting[-1]
-    return units[0]
+    units = sizes_of(unit).items()
+    chosen, factor = next(iter(units))
+    for name, unit_size in units:
+        if unit_size * LATER.get(name, 1.0) <= size:
+            chosen = name
+            factor = unit_size
+    return Unit(chosen, factor)
 
 
 def unit_of(definition: Parameter) -> Unit:
@@ -92,6 +93,7 @@ def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit
     default = CATALOGUE[scene].checked({})
     columns = zip(*default.points(name), strict=True)
     sizes = [max(map(abs, column)) for column in columns]
+    # A default load in m, say, tells nothing of a load in Pa.
     if default.curve_units(name) != units:
         sizes[1] = OTHER_SIZES.get(units[1], 1.0)
     return tuple(unit_for(size, unit) for size, unit in zip(sizes, units, strict=True))

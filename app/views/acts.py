@@ -171,7 +171,7 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
-    """Anchor as `anchor_of`, of a load on the top or bottom: beside or over its arrows."""
+    """Anchor, as `anchor_of`, beside or over the arrows of a load on top or bottom."""
     act = arrows.act
     up = act.away[1]
     is_left = float(np.mean(act.places[:, 0])) < 0.45
@@ -211,7 +211,7 @@ def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
 
 
 def text_of(act: Act, column: int) -> str:
-    """Symbol and value of a load at an instant, or the values at both ends of a side."""
+    """Symbol and value of a load at an instant, or its values at both ends of a side."""
     unit = unit_of(act)
     now = np.atleast_1d(act.values.T[column])
     peak = float(np.abs(act.values).max())
@@ -288,7 +288,7 @@ def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> A
 
 
 def _rollers(edge: Array, away: Array) -> Array:
-    """Rollers at an edge, (2, 2), and a line behind them, px, as lines with NaN, (n, 2)."""
+    """Rollers at an edge, (2, 2), and a line behind them, px; NaN between, (n, 2)."""
     count = max(int(np.hypot(*(edge[1] - edge[0])) / 30.0), 2)
     shares = (np.arange(count) + 0.5) / count
     centres = edge[0] + shares[:, None] * (edge[1] - edge[0]) + RADIUS * away

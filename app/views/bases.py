@@ -147,7 +147,7 @@ class ClipErrors(ExtraView):
         lines = []
         for name, color in STORED.items():
             lines.append(self.add(name, color=color, width=2.5))
-        # The size of the clips alone, without those that are left out.
+        # The clips alone, without singular vectors of the rest.
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         lines.append(self.add("alone", "Scatter", size=11, **ring))
         # By this name the entry of the clips in the legend hides the ring, too.

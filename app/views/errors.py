@@ -76,7 +76,7 @@ class Convergence(ErrorPlot):
         self.add("newest", "Scatter", color=ERROR, size=8)
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         self.add("answer", "Scatter", size=11, **ring)
-        # In the legend the first stands first.
+        # Curves were added from below; the legend has the uppermost first.
         titles = dict(reversed(titles.items()))
         self.legend(**titles, answer="answer", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})

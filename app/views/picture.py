@@ -146,7 +146,7 @@ class Picture:
         return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
-        """Outline of bodies that begin to collapse, whose nodes move by (n_nodes, 2), m."""
+        """Outline of bodies that begin to collapse, by moved nodes, (n_nodes, 2), m."""
         size = float(np.abs(moved).max(initial=0.0))
         if size == 0.0:
             size = 1.0
@@ -279,7 +279,7 @@ class Picture:
 def _inside(
     layout: Layout, texts: list[str], anchors: list[Array], aligns: list[str]
 ) -> tuple[Array, Array]:
-    """X and y, (n,), px, of anchors, (2,) each, moved inwards where texts would be cut."""
+    """X and y, (n,), px, of anchors, (2,) each, moved so that no text is cut."""
     x, y = np.reshape(anchors, (-1, 2)).T
     widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
     left = widths * [LEFT_OF[align] for align in aligns]

@@ -62,7 +62,8 @@ HIDE = """
 const [shown] = cb_obj.item.renderers
 const is_mark = shown.name == null
 const others = (each) => each.name == shown.name && each != shown
-for (const each of is_mark ? [shown] : plot.renderers.filter(others)) each.visible = !each.visible
+const hidden = is_mark ? [shown] : plot.renderers.filter(others)
+for (const each of hidden) each.visible = !each.visible
 """
 """Hides the glyph whose copy in the legend is clicked, or shows it again; marks stay as
 they are."""
@@ -307,7 +308,7 @@ class View:
         ys: Sequence[ArrayLike],
         titles: Sequence[str],
     ) -> None:
-        """Draw curves over the same x, shape (n,), in SI; empty names without a curve."""
+        """Draw curves over one x, shape (n,), in SI; empty the names without a curve."""
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
                 self.draw(name, [], [])
