@@ -103,7 +103,7 @@ class Display:
         """Set the views in sight."""
         if views != self.views:
             self.views = views
-            self._state.needs = frozenset(need for view in views for need in view.needs)
+            self._state.needs = frozenset().union(*[view.needs for view in views])
             self._update()
 
     def catch_up(self) -> None:
@@ -222,8 +222,10 @@ class Echoes:
         """Note a value and the one that it replaces; return the value."""
         now = time.monotonic()
         if value != before:
-            # What is empty was never shown.
-            self._given.extend((now, each) for each in (before, value) if each != "")
+            for each in (before, value):
+                # An empty value was never shown, and so does not come back.
+                if each != "":
+                    self._given.append((now, each))
         return value
 
     def has(self, value: Any) -> bool:

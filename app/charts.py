@@ -196,6 +196,7 @@ def overlay(chart: Chart) -> hv.Overlay:
         y_limits = edges(ys, chart.y)[[0, -1]]
     else:
         elements = _of_panel(chart)
+        # Without curves there is nothing else to join.
         xs = np.concatenate([[], *[curve.x for curve in chart.curves]])
         ys = np.concatenate([[], *[curve.y for curve in chart.curves]])
         x_limits = chart.x.limits or (None, None)
@@ -228,7 +229,7 @@ def overlay(chart: Chart) -> hv.Overlay:
 def edges(values: Array, axis: PanelAxis) -> Array:
     """Ends of cells about n ascending values, half way between them, shape (n + 1,).
 
-    On a logarithmic axis the ratios are halved in place of distances.
+    On a logarithmic axis a cell ends half way between logarithms.
     """
     at = values
     if axis.logarithmic:
@@ -363,10 +364,7 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
 
 
 def contours(chart: Map) -> list[dict[str, Any]]:
-    """Contour lines of a map at round values.
-
-    "x" and "y", (n,) each, and the value "z".
-    """
+    """Contour lines of a map at round values, each with "x" and "y", (n,), and "z"."""
     known = chart.z[np.isfinite(chart.z)]
     low = known.min(initial=np.inf)
     high = known.max(initial=-np.inf)

@@ -81,6 +81,7 @@ class Classroom:
 
     def end(self) -> None:
         """End the class; followers keep the last picture."""
+        # As if the leader had gone long ago: nobody waits.
         self._let_go(-math.inf)
         self.notify()
 
@@ -94,6 +95,7 @@ class Classroom:
         last = self.state
         kept = {name: getattr(last, name) for name in (*SHARED, "prediction")}
         self.state = PageState(**kept)
+        # These are no parameters, so the copy does not have them.
         self.state.history = last.history
         self.state.number = last.number
 
@@ -193,6 +195,7 @@ class ClassMember(param.Parameterized):
                     f"There is no class {code[:20]}: ask for it; it may have ended."
                 )
             self.state.room = self._address()
+        # In constant time: a key is not found letter by letter.
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.state
             self.state.param.update(**{name: getattr(last, name) for name in RESUMED})
@@ -209,6 +212,7 @@ class ClassMember(param.Parameterized):
             return
         forget()
         code = ""
+        # A code that is taken would be that of another class.
         while not code or code in CLASSROOMS:
             code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
         CLASSROOMS[code] = Classroom(code, self)
@@ -308,6 +312,7 @@ class ClassMember(param.Parameterized):
         }
         state.param.update(**changed)
         self.message = self._sentence(room)
+        # Nobody else tells a page that the class of an absent leader is over.
         if room.is_alone and not room.is_over:
             self._document.add_timeout_callback(self._take, int(1000 * KEPT) + 1000)
 

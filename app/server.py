@@ -62,6 +62,7 @@ def most_pages() -> int:
     if text := os.environ.get("SLIPFRONT_PAGES"):
         return max(int(text), 1)
     memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    # A container may have less memory than its machine.
     limit = Path("/sys/fs/cgroup/memory.max")
     if limit.exists() and (text := limit.read_text(encoding="ascii").strip()) != "max":
         memory = min(memory, float(text))
@@ -107,6 +108,7 @@ class PageServer(HTTPServer):
         if isinstance(request_callback, Application):
             request_callback.add_transform(Compressed)
             request_callback.add_transform(Guarded)
+            # As the first rule, it comes before all pages.
             request_callback.wildcard_router.rules.insert(
                 0, Rule(Refused(), ErrorHandler)
             )
@@ -159,6 +161,7 @@ class OneLine(logging.Filter):
         if record.exc_info is None or record.levelno < logging.ERROR:
             return True
         record.exc_info = record.exc_text = None
+        # Whoever speaks another language at this port would fill the log.
         now = time.monotonic()
         is_due = now - self._last > QUIET
         self._last = max(self._last, now)

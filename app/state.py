@@ -79,6 +79,8 @@ class History:
                 self._frames.pop()
         self._frames.append(frame)
         while len(self._frames) > 2 and self._nbytes() > LIMIT:
+            # Every other frame goes, but neither the first nor the last one, which is
+            # seen.
             self._frames = [*self._frames[:-1:2], self._frames[-1]]
 
     def at(self, iteration: int) -> Frame:
@@ -222,11 +224,13 @@ class PageState(param.Parameterized):
         If it is refused, the last allowed value is run.
         """
         self.change(**{name: value})
+        # The value was refused if the last run ordered is still that of a drag.
         if self.is_dragged:
             self.run()
 
     def adopt(self, settings: Settings) -> None:
         """Take settings over and run them."""
+        # They are found again when the scene is chosen again.
         self._left[self.settings.scene] = self.settings
         self.param.update(settings=settings, refusal="", running=True)
         self.run()
@@ -366,10 +370,12 @@ class PageState(param.Parameterized):
                 self.message = text
 
     def _show(self, frame: Frame) -> None:
+        # A frame of a run before: its worker waits for an answer all the same.
         if frame.run.number != self.number:
             self.send(Ready())
             return
         last = self.history.newest
+        # The first frame of a run: the run before becomes the one to compare with.
         if last is None or last.run.number != self.number:
             if self.pinned is not self.history:
                 self._last_run = last

@@ -47,7 +47,7 @@ def status_line(state: PageState) -> str:
 
 
 def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
-    """What the run is at, and its iterations and error."""
+    """State of the run in bold, and its iterations and error."""
     wrong = percent(frame.error)
     counted = f"iteration {frame.iteration}"
     if frame is not newest:
@@ -86,6 +86,7 @@ def _details(frame: Frame) -> list[str]:
         f"{number(frame.last('seconds'))} s; incremental solver "
         f"{number(frame.run.reference_seconds)} s",
     ]
+    # Of a run that failed the advice stands on the page itself, beside the details.
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
         sentences.append(amounts_in_titles(settings, frame.status.advice))
     if not _is_lost(frame):

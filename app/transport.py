@@ -166,6 +166,7 @@ class Transport:
                 shown = (first + passed / PLAYED_IN) % until
                 self._state.select(phase=shown)
 
+        # Instants come from the clock, so that a busy page skips some.
         self._playing = self._document.add_periodic_callback(play_on, TICK)
         self.play_button.icon = "pause_circle"
 
@@ -231,6 +232,7 @@ class Transport:
 
     def _seek(self, back: int) -> None:
         """Show the iterate to which a person moved the slider, from the newest back."""
+        # The browser sends back what the page had set: nobody moved the slider.
         if self._echoes.has(back):
             return
         self._moved_at = time.monotonic()

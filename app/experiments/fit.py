@@ -81,6 +81,7 @@ class FitTab(CommandTab):
         settings = self.state.settings
         definitions = settings.definitions()
         titles = {title_of(definitions[name]): name for name in fittable(settings)}
+        # Settings that do nothing any more are no longer ticked.
         kept = [name for name in self.chosen.value if name in titles.values()]
         if self.chosen.options != titles or self.chosen.value != kept:
             self.chosen.param.update(options=titles, value=kept)
@@ -113,6 +114,7 @@ class FitTab(CommandTab):
             PanelCurve("measured", measured.displacement, measured.force, 5, "points")
         ]
         if self.job is not None:
+            # The command writes it anew whenever it has come nearer.
             file = self.job.folder / OUT / LOOP
             if file.exists():
                 _, across, up = pd.read_csv(file).to_numpy().T
@@ -125,6 +127,7 @@ class FitTab(CommandTab):
     def use(self) -> None:
         """Run the fitted settings on the live tab, rounded to six digits."""
         found = settings_from_toml(self.written[SETTINGS].decode())
+        # More digits would only fill fields and addresses.
         rounded = {
             name: float(f"{getattr(found, name):.6g}") for name in fittable(found)
         }

@@ -117,6 +117,7 @@ class Job:
         if self._future.exception() is not None:
             return "Its process stopped unexpectedly; start it again."
         has_output = bool(self.files or self.lines)
+        # 0 and 1 are results: a report of runs some of which fail ends with 1.
         if self._future.result() not in (0, 1) or not has_output:
             return "\n".join(self.lines[-3:])
         return ""
@@ -178,6 +179,7 @@ class Sweep:
     def _go(self) -> None:
         self._under_way.add(self)
         named = os.environ.get(VARIABLE) or PROCESSES
+        # Sweeps that are under way share the processors from here on.
         share = share_of(named, len(self._under_way))
         try:
             with opened(share, patience(LIMIT)) as where:

@@ -81,6 +81,7 @@ class Question:
             return settings
         if not self.of.startswith("iterations"):
             return answer(settings)
+        # A quantity that does not exist is refused by `plan`.
         with contextlib.suppress(RefusedError):
             accuracy = settings.accuracy
             threshold = reading(self.of).at
@@ -102,6 +103,7 @@ def question_of(text: str, settings: Settings) -> Question:
     """The question of a text; where settings do not have it, the first ready one."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
+    # The text may come from an address, or from a scene that has other settings.
     names = {setting.partition("=")[0] for setting in vary}
     quantity = of.partition("@")[0]
     if names <= variable(settings).keys() and quantity in quantities(settings):
@@ -204,6 +206,7 @@ def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     vary = []
     for name in (*others, load):
         low, high = known[name].softbounds
+        # Towards the end of the slider that has the sign of the present value.
         if getattr(settings, name) >= 0.0:
             end = high
         else:
@@ -265,6 +268,7 @@ class Span:
     def show(self, settings: Settings, text: str) -> None:
         """Show a setting and its values in the unit of its control; "" shows none."""
         self._settings = settings
+        # Fields report these changes, too, as if a person had made them.
         self._is_updating = True
         name, _, values = text.partition("=")
         options = dict(self._nothing)
@@ -304,7 +308,7 @@ class Span:
         return f"{name}={values.replace(' ', '')}"
 
     def _on_field(self, event: param.parameterized.Event) -> None:
-        """Tell that the question has changed; another setting brings its own values."""
+        """Report that a field has changed; another setting brings its own values."""
         if self._is_updating:
             return
         if event.obj is self.name:

@@ -116,6 +116,7 @@ class CommandTab(ABC):
         self.progress.object = progress
         if not job.is_over:
             return
+        # A report that failed leaves the one before in its place.
         if not job.failure:
             self._done[self._started] = job.files
         self.end()
@@ -123,6 +124,7 @@ class CommandTab(ABC):
 
     def show(self) -> None:
         """Show the chosen command, and its report if there is one."""
+        # What is hidden is shown when it is opened.
         if self.state.tab != self._tab:
             return
         is_busy = self.job is not None

@@ -79,10 +79,10 @@ def plot_table(view: View, frame: Frame) -> str:
     names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
     tables = []
     for key, source in view.sources.items():
-        table = pd.DataFrame(
-            {name: list(column) for name, column in source.data.items()}
-        )
-        paths = [name for name in table if any(np.ndim(cell) for cell in table[name])]
+        columns = {name: list(column) for name, column in source.data.items()}
+        table = pd.DataFrame(columns)
+        paths = [name for name, cells in columns.items() if any(map(np.ndim, cells))]
+        # A cell of a path has all its points: they become rows.
         if paths:
             table[paths] = table[paths].map(np.ravel)
             table = table.explode(paths).rename_axis("path").reset_index()
@@ -175,6 +175,7 @@ def _document(
 
 def _copies(views: Sequence[View]) -> list[View]:
     """Views of the same kinds with new figures, in which nothing is dragged."""
+    # Models of a figure cannot stand in two documents.
     copies = [type(view)(view.state) for view in views]
     for view in copies:
         plot = view.figure

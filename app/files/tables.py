@@ -43,6 +43,7 @@ def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
 def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
     """Warnings where a loop is some thousand times off the run that is shown."""
     frame = state.frame
+    # Without a run of the same quantities there is nothing to compare with.
     if frame is None or (frame.run.across[1], frame.run.up[1]) != loop.units:
         return []
     return [f"{doubt}." for doubt in loop.unit_doubts(*frame.loop)]
@@ -59,6 +60,7 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     sentences = [f"{title_of(definition)}: {message}."]
     for doubt in path_doubts(table, settings, name, points):
         sentences.append(f"{doubt}.")
+    # A table of time sets the length of the run; other curves, as over slip, do not.
     if definition.abscissa == "time":
         end = max(ends_of_tables(changed).values(), default=0.0)
         if end > 0.0:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from itertools import chain
 from pathlib import Path
 
 from app.frame import Frame
@@ -17,13 +18,11 @@ from solver.study.lessons import SUBJECTS, Lesson, lesson_from_file
 from solver.study.quantities import reading
 from solver.study.trade_case import Case, all_cases
 
-_READ = map(lesson_from_file, Path(__file__).parent.glob("*.toml"))
-LESSONS = {
-    lesson.name: lesson
-    for lesson in sorted(
-        _READ, key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order)
-    )
-}
+_IN_ORDER = sorted(
+    map(lesson_from_file, Path(__file__).parent.glob("*.toml")),
+    key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order),
+)
+LESSONS = {lesson.name: lesson for lesson in _IN_ORDER}
 """Lessons by name, in order, those of a subject together."""
 CASES = {case.name: case for case in all_cases()}
 """Cases by name, in order."""
@@ -33,7 +32,7 @@ VALUE = re.compile(r"\{value:(.*?)\}")
 """Pattern of a quantity in the text of a lesson."""
 PENDING = "…"
 """Text in place of a quantity that only the rest of the run will tell."""
-KINDS = {kind.name: kind for card in CARDS for kind in card}
+KINDS = {kind.name: kind for kind in chain.from_iterable(CARDS)}
 """Classes of the plots, by name."""
 
 
@@ -57,17 +56,16 @@ def plots_of(case: str) -> list[str]:
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
-    """The plots beside a lesson: before the choice those that do not show the answer."""
-    return tuple(
-        KINDS[name] for name in (lesson.views if is_answered else lesson.beside)
-    )
+    """The plots beside a lesson: before the choice those without the answer."""
+    names = lesson.views if is_answered else lesson.beside
+    return tuple(KINDS[name] for name in names)
 
 
 def readings_of(lesson: Lesson) -> list[str]:
     """Names of the quantities in the texts of a lesson."""
-    return list(
-        dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation))))
-    )
+    names = VALUE.findall(" ".join((*lesson.text, *lesson.explanation)))
+    # Each once, in their order.
+    return list(dict.fromkeys(names))
 
 
 def parts_of(paragraph: str) -> list[str]:

@@ -80,6 +80,7 @@ class Guide:
         self.dialogs[kind].open = False
         opened = {"lesson": "", "case": "", kind: name}
         plots = plots_of(opened["case"])
+        # In one step: else the text would be built once with the scene before.
         with param.parameterized.batch_call_watchers(self._state):
             self._state.param.update(**opened, prediction=None, plots=plots)
             self._state.adopt(settings_of(KNOWN[kind][name]))
@@ -88,6 +89,7 @@ class Guide:
         """Show the list of all lessons, or of all cases."""
         listed = self.dialogs[kind]
         begin = partial(self.open, kind)
+        # Filled when it is first opened: a page begins without all these buttons.
         if not listed.objects:
             listed[:] = [gallery(begin) if kind == "case" else _titles(begin)]
         listed.open = True
@@ -149,6 +151,7 @@ class Guide:
         state.readings = readings
         self.view.param.update(objects=parts, visible=bool(parts))
         self._changed()
+        # At last, as it plays what the plots beside show.
         if lesson is not None:
             self._look(lesson)
 

@@ -48,6 +48,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
         measured.reveal()
         figures |= {"blank": blank.figure, "curve": measured.figure}
         plots.insert(0, "curve")
+    # The template finds figures by these names, which become parts of its HTML.
     for name, figure in figures.items():
         figure.name = re.sub(r"\W", "-", name)
     return file_html(

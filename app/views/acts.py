@@ -171,12 +171,15 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
-    """Anchor, as `anchor_of`, beside or over the arrows of a load on top or bottom."""
+    """Anchor, (2,), px, and side, as in `anchor_of`, of a load on the top or bottom.
+
+    The words stand beside its arrows where there is room, else over them.
+    """
     act = arrows.act
     up = act.away[1]
     is_left = float(np.mean(act.places[:, 0])) < 0.45
-    place = arrows.places[0 if is_left else -1]
-    ends = np.append(arrows.lines[:, :, 0], place[0])
+    nearest = arrows.places[0 if is_left else -1]
+    ends = np.append(arrows.lines[:, :, 0], nearest[0])
     if is_aside(act):
         above = beside(layout.description, side)
     else:
@@ -184,9 +187,9 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     if not _has_room(act, layout, is_left):
         middle = 0.5 * (ends.min() + ends.max())
         heights = up * arrows.lines[:, :, 1].ravel()
-        top = up * max(heights, default=up * place[1] + above)
+        top = up * max(heights, default=up * nearest[1] + above)
         return np.array([middle, top + up * (6.0 + layout.letter)]), "center"
-    y = place[1] + above * up
+    y = nearest[1] + above * up
     if is_left:
         return np.array([ends.min() - 10.0, y]), "right"
     return np.array([ends.max() + 10.0, y]), "left"

@@ -77,6 +77,7 @@ class Axis:
             self.span(10.0**first, 10.0**last)
             return
         factor = self._unit.factor
+        # A single value has one unit of room on either side.
         free = factor
         if high > low:
             free = margin * (high - low)

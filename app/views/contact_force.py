@@ -44,6 +44,7 @@ class ContactForce(View):
     def make(self) -> None:
         """Draw curves of LATIN, the reference, the bound and other results."""
         plot = self.begin(("x", "m"), ("force", "N/m"))
+        # From the bottom to the top: LATIN's curves lie on all others.
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
         self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.add("exact", color=EXACT, width=8, alpha=0.35)
@@ -78,6 +79,7 @@ class ContactForce(View):
         run = frame.run
         name = selection.interface_of(run)
         fields = frame.contact.get(name)
+        # Where fields are large a frame has the interface that was selected then.
         if fields is None:
             return
         interface = run.interfaces[name]
@@ -134,6 +136,7 @@ class ContactForce(View):
         bound = interface.bound
         if bound is None:
             bound = interface.coefficient * np.maximum(fields.pressure, 0.0)
+        # A bound that does not change has a single column.
         bound = bound[:, min(column, bound.shape[1] - 1)]
         positions = interface.positions
         self.draw("bound", *joined([(positions, bound), (positions, -bound)]))
@@ -163,6 +166,7 @@ class ContactForce(View):
         elif known is None:
             known = fields
         low, high = extent([*_given(known), *exact, *bounds])
+        # An iterate may be far off: it must not press all others flat.
         largest = MOST * max(abs(low), abs(high))
         iterate = np.clip(extent(_given(fields)), -largest, largest)
         self.x.hold(key, run.interfaces[name].positions)

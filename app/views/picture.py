@@ -88,9 +88,11 @@ class Picture:
     @property
     def draggable(self) -> list[Arrows]:
         """The arrows whose load is a setting."""
-        return [
-            arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)
-        ]
+        draggable = []
+        for arrows in self.arrows:
+            if arrows.setting and len(arrows.handles):
+                draggable.append(arrows)
+        return draggable
 
     def columns(self) -> dict[str, Columns]:
         """Columns of all sources, by their names."""
@@ -128,9 +130,10 @@ class Picture:
         return strokes
 
     def _heads(self) -> Strokes:
-        return [
-            (gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows
-        ]
+        heads: Strokes = []
+        for arrows in self.arrows:
+            heads.append((gapped(arrows.heads), color_of(arrows.act), 1.0))
+        return heads
 
     def _marks(self) -> Columns:
         """The handles of arrows that can be dragged."""
@@ -198,13 +201,14 @@ class Picture:
 
     def _columns(self, strokes: Strokes) -> Columns:
         """Columns of strokes on the page: binary arrays go fast to the browser."""
-        pages = [self.page(line).T.astype(np.float32) for line, _, _ in strokes]
-        return {
-            "xs": [x for x, _ in pages],
-            "ys": [y for _, y in pages],
-            "line_color": [color for _, color, _ in strokes],
-            "line_width": [width for _, _, width in strokes],
-        }
+        columns: Columns = {"xs": [], "ys": [], "line_color": [], "line_width": []}
+        for line, color, width in strokes:
+            x, y = self.page(line).T.astype(np.float32)
+            columns["xs"].append(x)
+            columns["ys"].append(y)
+            columns["line_color"].append(color)
+            columns["line_width"].append(width)
+        return columns
 
     def _holds(self) -> Array:
         """Strokes of the supports, and a horizontal where bodies tilt, (n, 2), px."""
@@ -225,8 +229,10 @@ class Picture:
         lines = bands(self.points, chains, status)
         height = self.layout.size[1] * self.layout.scale[1] / self._described.bodies
         width = min(BAND, 0.35 * height)
+        # Broad bands of many interfaces, as in a wall, would cover the bodies.
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
+        # A dark rim below all colours, but for open stretches.
         closed = [line for kind, line in lines.items() if kind != OPEN]
         rims = np.concatenate([np.zeros((0, 2)), *closed])
         strokes: Strokes = [(rims, EDGE, width + 2.0)]
@@ -246,6 +252,7 @@ class Picture:
         colors = []
         for arrows in self.arrows:
             act = arrows.act
+            # Pressures from both sides have one text.
             if self._is_repeated(act):
                 continue
             anchor, align = anchor_of(arrows, layout)

@@ -144,6 +144,7 @@ class Scene(View):
         if shown is None or shown.run.settings.scene != frame.run.settings.scene:
             self._factor = None
             self._peaks = {}
+        # Along the time of a frame the scale stays, so that motions can be compared.
         if self._factor is None or shown is not frame:
             largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
             self._factor = layout.fitting(largest, self._factor)
@@ -175,6 +176,7 @@ class Scene(View):
             self._peaks[act.where] = peak
 
     def _resize(self, name: str, old: float, new: float) -> None:
+        # A figure that is out of sight reports a size of zero.
         self._size[name] = max(float(new), 60.0)
         if self._shown is not None:
             with pn.io.hold():
@@ -210,6 +212,7 @@ class Scene(View):
         present = float(getattr(picture.frame.run.settings, arrows.setting))
         dragged = arrows.scaled(present, picture.to_local(event.x, event.y))
         low, high = self.state.settings.definitions()[arrows.setting].softbounds
+        # A value that was typed may lie outside of the range of the slider.
         clipped = np.clip(dragged, min(low, present), max(high, present))
         return float(f"{clipped:.3g}")
 
@@ -225,6 +228,7 @@ class Scene(View):
         chosen: dict[str, Any] = {"substructure": int(run.geometry.parts[nearest])}
         away = np.hypot(*(picture.points - at).T)
         if np.any(away <= CLOSE):
+            # Points are NaN where a line of them is broken.
             chain = int(run.geometry.chains[int(np.nanargmin(away))])
             chosen["interface"] = list(run.interfaces)[chain]
         self.state.select(**chosen)
@@ -274,6 +278,7 @@ class Stress(ExtraScene):
         largest = float(np.abs(values).max())
         unit = unit_for(largest, si)
         high = rounded_up(0.999 * largest / unit.factor, STRESS_STEPS)
+        # Tension and compression have a scale with white in the middle.
         if float(values.min()) < -1e-3 * largest:
             self.colors.update(palette=RdBu11, low=-high, high=high)
         else:

@@ -33,6 +33,7 @@ class StatusMap(View):
         plot = self.begin(("x", "m"), ("t", "s"))
         plot.center = []
         self.mark(KEYS)
+        # A colour for each status from -1 to 2.
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
         image = self.add("status", "Image", "image x y dw dh", color_mapper=colors)
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.6, line_width=1)
@@ -64,6 +65,8 @@ class StatusMap(View):
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
+        # Of another run only the boundaries are drawn: two images would hide each
+        # other.
         lines = np.zeros((4, 0))
         if ghost is not None:
             lines = _boundary(ghost, selection)
@@ -75,6 +78,7 @@ class StatusMap(View):
         self, run: Run, interface: FrictionInterface, fields: InterfaceFields
     ) -> None:
         """Show the status as an image whose cells lie about points and instants."""
+        # The first and the last cell stand out by half a cell.
         left, right = self.x(edges(interface.positions)[[0, -1]])
         low, high = self.y(edges(run.instants)[[0, -1]])
         self.fill(

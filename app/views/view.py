@@ -217,6 +217,7 @@ class View:
             glyph,
             name=name,
             view=CDSView(filter=self._filter),
+            # By default Bokeh makes further glyphs for selections, which none here has.
             selection_glyph=None,
             nonselection_glyph=None,
             muted_glyph=None,

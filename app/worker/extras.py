@@ -125,6 +125,7 @@ def cycles(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     found = cycles_of(sampled.settings, iterate)
     if not len(found):
         return None
+    # Where nothing slips, no cycle differs from the next.
     slipped = bool(found.slip.any() or found.before.any())
     return {
         "columns": np.searchsorted(sampled.columns, found.ends),
@@ -236,6 +237,7 @@ def beside(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     if isinstance(brought, MeasuredLoop):
         if brought.units != (loop.across[1], loop.up[1]):
             return None
+        # Loops that share too few points have no distance.
         with suppress(SettingError):
             distance = LoopComparison(brought, loop, sampled.problem).of(iterate)
     elif brought is None or brought.scene != sampled.settings.scene:

@@ -1,8 +1,8 @@
 """A bent strand: its wires as seen from the side, and the extras of its views.
 
 The view is across the plane of bending onto the cylinder of the outer layer. Each wire
-has a strip of the cylinder, and half of the wires are hidden behind it at any place; the
-outermost fibre is below.
+has a strip of the cylinder, and half of the wires are hidden behind it at any position;
+the outermost fibre is below.
 """
 
 from __future__ import annotations
@@ -59,6 +59,7 @@ class DrawnRope:
         assert isinstance(rope, Rope)
         self._rope = rope
         self._columns = columns
+        # Only the outer layer is seen.
         description = rope.described()
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
@@ -108,17 +109,20 @@ class DrawnRope:
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
-    def _angle(self, wire: Array, place: Array) -> Array:
-        """Polar angle of outer wires, rad, by number and position along the strand, m."""
-        turned = place * np.tan(self._lay) / self._helix
+    def _angle(self, wire: Array, position: Array) -> Array:
+        """Polar angle of outer wires, rad, at positions along the strand, m.
+
+        Numbers of the wires and positions have the shape of the result, or are scalars.
+        """
+        turned = position * np.tan(self._lay) / self._helix
         return np.asarray(2.0 * np.pi * wire / self._count + turned)
 
     def _height(self, angle: Array) -> Array:
-        """Height of outer wires above the foot, m, at polar angles, rad."""
+        """Height of outer wires above the foot, m, at polar angles, rad, of one shape."""
         return np.asarray(self._radius * (1.0 - np.cos(angle)))
 
     def _strips(self) -> Iterator[tuple[int, Indices, Array]]:
-        """Number, steps and grid of nodes of each stretch of a wire in front."""
+        """Stretches of wires in front: number, steps, (n,), and nodes, (2, n, 2), m."""
         half = np.pi / self._count
         for number in range(self._count):
             middle = self._angle(number, self._z)
@@ -133,24 +137,26 @@ class DrawnRope:
                     yield number, steps, np.stack([z, heights], axis=-1)
 
     def _nearest(
-        self, numbers: Array, place: Array
+        self, numbers: Array, positions: Array
     ) -> tuple[Indices, Indices, Indices, Bytes]:
-        """Wire, contact point, node and sign of slip at places on outer wires.
+        """Wire, contact point, node and sign of slip at positions on outer wires.
 
-        Numbers of wires and places along the strand, m, have shape (n,), as all results.
+        Numbers of wires and positions along the strand, m, have shape (n,), as all
+        results.
         """
         wires = self._first + numbers
-        sides = np.ones(len(place), dtype=np.int8)
-        share = place / self._z[-1]
+        sides = np.ones(len(positions), dtype=np.int8)
+        share = positions / self._z[-1]
         if not self._rope.is_clamped:
-            turned = np.sign(self._lay) * self._angle(numbers, place)
-            wires = np.full(len(place), self._first)
+            # One wire stands for the layer: on its way back it slips the other way.
+            turned = np.sign(self._lay) * self._angle(numbers, positions)
+            wires = np.full(len(positions), self._first)
             share = np.arccos(np.cos(turned)) / np.pi
             sides = np.where(np.sin(turned) < 0.0, -1, 1).astype(np.int8)
         return wires, *self._points_at(wires, share), sides
 
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
-        """Nearest contact points and nodes, (n,), at shares of the wires' lengths, (n,)."""
+        """Nearest contact points and nodes, (n,), at shares of lengths of wires, (n,)."""
         elements = self._rope.elements
         nearest = np.round(share * elements).astype(np.intp)
         node = np.clip(nearest, 1, max(elements - 1, 1))
@@ -167,6 +173,7 @@ class DrawnRope:
         angle = np.remainder(self._angle(numbers, self._z[rows]), 2.0 * np.pi)
         is_seen = (angle >= SHOWN_SHARE) & (angle <= np.pi - SHOWN_SHARE)
         heights = np.where(is_seen, self._height(angle), np.nan)
+        # The point behind each stretch stays: its NaN ends the line.
         kept = is_seen | np.append(False, is_seen[:-1])
         wires, points, _, sides = self._nearest(numbers[kept], self._z[rows[kept]])
         return rows[kept], heights[kept], wires, points, sides
@@ -193,6 +200,7 @@ class DrawnRope:
         slope = cumulative_trapezoid(curvature, dx=z[1], axis=0, initial=0.0)
         up = cumulative_trapezoid(slope, dx=z[1], axis=0, initial=0.0)
         if not rope.is_clamped:
+            # A strand that nothing holds is drawn level in its middle.
             middle = len(z) // 2
             up = up - up[middle] - slope[middle] * (z - z[middle])[:, None]
             slope = slope - slope[middle]
@@ -230,6 +238,7 @@ class DrawnRope:
         lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
         points, _ = self._points_at(cut.wire, cut.arc / lengths)
         slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
+        # The core is only stretched, and does not slip.
         core = rope.section.core
         stretched = core.young / rope.section.stiffness * rope.tension[columns]
         stress = stress_at(
