@@ -151,7 +151,7 @@ class Display:
             state.send(Ready())
 
     def _count(self) -> None:
-        """Count a picture last of all: the browser tells the number once it is painted."""
+        """Count a picture, last of all: once it is painted its number comes back."""
         self._sent_at = time.monotonic()
         self.pulse.sent += 1
 

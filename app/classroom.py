@@ -100,7 +100,7 @@ class Classroom:
         self.state.number = last.number
 
     def poll_for(self, member: ClassMember) -> Poll | None:
-        """Predictions of the class as a page of it sees them; None without a question."""
+        """Predictions of the class as a page sees them; None without a question."""
         leader = self.state
         if leader.lesson not in LESSONS or self.is_over:
             return None
@@ -327,7 +327,7 @@ class ClassMember(param.Parameterized):
         return f"You follow class {room.code}. Change anything to go on by yourself."
 
     def _address(self) -> str:
-        """Part of the page's address: the code of the class, and for its leader the key."""
+        """Part of the address: the code of the class, and for its leader the key."""
         if self.room is None:
             return ""
         if self.leads:

@@ -150,7 +150,7 @@ class SettingControl:
         return float(f"{value / self._unit.factor:.10g}")
 
     def _from_slider(self, position: float) -> float:
-        """Value at a position of the slider, rounded to digits that a hand can choose."""
+        """Value at a position of the slider, rounded to what a hand can choose."""
         if self._is_logarithmic:
             value = 10.0**position
             digits = 3

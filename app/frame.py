@@ -206,7 +206,7 @@ class Frame:
 
     @property
     def error(self) -> float:
-        """Relative error of the contact force, which is estimated without a reference."""
+        """Relative error of the contact force; without a reference it is estimated."""
         measured = self.last("error_force")
         if np.isfinite(measured):
             return measured
@@ -223,7 +223,7 @@ class Selection:
     """Name of the selected interface."""
     substructure: int | None = None
     """Number of the selected substructure, from 0; None is the last."""
-    place: float | None = None
+    position: float | None = None
     """Position along the bodies that is marked, m."""
 
     def interface_of(self, run: Run) -> str:

@@ -49,7 +49,7 @@ class Needs:
     extras: frozenset[str] = frozenset()
     interface: str = ""
     substructure: int | None = None
-    place: float | None = None
+    position: float | None = None
     readings: tuple[str, ...] = ()
     brought: OtherResults | MeasuredLoop | None = None
 

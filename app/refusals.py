@@ -85,6 +85,22 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
     return re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", in_title, text)
 
 
+def advice_in_titles(settings: Settings, text: str) -> str:
+    """Advice on a run, with titles in place of names of settings."""
+    definitions = settings.definitions()
+    text = amounts_in_titles(settings, text)
+
+    def titled(match: re.Match[str]) -> str:
+        return title_of(definitions[match[0]])
+
+    # A name without an underscore is also a common word, unless it is to be changed.
+    names = "|".join(definitions)
+    changed = rf"(?<=\braise )({names})\b|(?<=\blower )({names})\b"
+    text = re.sub(rf"(?i:{changed})", titled, text)
+    keys = "|".join(name for name in definitions if "_" in name)
+    return re.sub(rf"\b({keys})\b", titled, text)
+
+
 def _in_titles(settings: Settings, text: str) -> str:
     """A text with titles for names of settings, and numbers as on the page."""
     definitions = settings.definitions()

@@ -88,7 +88,7 @@ class History:
         return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
 
     def after(self, iteration: int) -> int:
-        """Number of the next kept iterate of the search, or after the last of the answer."""
+        """Number of the next kept iterate of the search, or of the answer."""
         numbers = self._search()
         index = bisect_right(numbers, iteration)
         if index < len(numbers):
@@ -363,8 +363,8 @@ class PageState(param.Parameterized):
             case messages.Costly(number, text) if number == self.number:
                 self.is_costly = True
                 self.message = (
-                    f"This run would take about {text}: press Run to run it anyway, or choose "
-                    "fewer elements, instants or bodies."
+                    f"This run would take about {text}: press Run to run it anyway, "
+                    "or choose fewer elements, instants or bodies."
                 )
             case messages.Failed(number, text) if number == self.number:
                 self.message = text
@@ -399,7 +399,7 @@ class PageState(param.Parameterized):
             self.needs,
             selection.interface,
             selection.substructure,
-            selection.place,
+            selection.position,
             tuple(self.readings),
             self.brought,
         )

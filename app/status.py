@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from app.frame import Frame, Selection
-from app.refusals import amounts_in_titles
+from app.refusals import advice_in_titles
 from app.state import PageState
 from app.units import number, percent, unit_for
 from app.widgets import html
@@ -24,7 +24,7 @@ ENDINGS = {
 
 
 LOST = "no figures are told, as no solution is found at some instants"
-"""Hint over figures that are not told."""
+"""Hint over figures in place of which there is a dash."""
 
 
 def status_line(state: PageState) -> str:
@@ -88,7 +88,7 @@ def _details(frame: Frame) -> list[str]:
     ]
     # Of a run that failed the advice stands on the page itself, beside the details.
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
-        sentences.append(amounts_in_titles(settings, frame.status.advice))
+        sentences.append(advice_in_titles(settings, frame.status.advice))
     if not _is_lost(frame):
         for figure in _of_loop(frame):
             sentences.append(f"{figure.title}: {_over_time(frame, figure)}")
@@ -105,15 +105,15 @@ def _said(state: PageState) -> list[str]:
             remarks.insert(0, frame.status.advice)
         settings = frame.run.settings
         for remark in remarks:
-            messages.append(amounts_in_titles(settings, remark))
+            messages.append(advice_in_titles(settings, remark))
     return messages
 
 
 def figures_line(frame: Frame, selection: Selection) -> str:
     """Key figures of the structure at the selected instant, in a line (HTML).
 
-    Its largest and last values appear over each of them. Nothing is told of a run some
-    of whose instants are known to have no solution.
+    The largest and the last value appear over each of them. A run that is known to have
+    no solution at some instants has dashes in place of values.
     """
     run = frame.run
     column = run.column(selection.phase)

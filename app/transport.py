@@ -197,8 +197,8 @@ class Transport:
     def _touch(self, *events: Any) -> None:
         """Stop a page that plays by itself; with another scene it may play again.
 
-        Changed settings are shown at the initial instant; an arrow that is dragged at
-        the instant where it was taken hold of.
+        Changed settings are then shown at the initial instant. A dragged arrow stays at
+        the instant at which it was taken hold of.
         """
         changed = {event.name: event for event in events}
         settings = changed.get("settings")
@@ -270,7 +270,7 @@ class Transport:
             self._finish.value = state.settings.finish
 
     def _follow(self) -> None:
-        """Set the slider to the iterate that is shown, unless it was just moved by hand."""
+        """Set the slider to the shown iterate, unless it was just moved by hand."""
         frame = self._state.frame
         slider = self._iteration
         if self._state.is_over and not self._is_touched:

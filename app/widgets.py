@@ -86,10 +86,10 @@ def download(
         content = make()
         return io.BytesIO(content if isinstance(content, bytes) else content.encode())
 
-    made = pmui.FileDownload(label=label, filename=filename, callback=data, **look)
+    file = pmui.FileDownload(label=label, filename=filename, callback=data, **look)
     # Its constructor warns of a variant, whatever it is.
-    made.variant = "outlined"
-    return made
+    file.variant = "outlined"
+    return file
 
 
 def mask_of(emblem: Icon) -> dict[str, str]:

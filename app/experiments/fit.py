@@ -22,8 +22,8 @@ from solver.study.page import Panel, PanelAxis, PanelCurve
 
 MEASURED = "measured.csv"
 NO_LOOP = (
-    "Open a table of displacement and force, with time if you have it. It is drawn here, and on "
-    "the loop of the tab Live beside the run."
+    "Open a measured loop: a table of displacement and force, with time if you have "
+    "it. It is drawn here, and on the plot Loop of the tab Live beside the run."
 )
 NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
 
@@ -106,7 +106,7 @@ class FitTab(CommandTab):
             self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
-        """Panel of the measured loop and the nearest run so far; None without a loop."""
+        """Panel of the measured loop and the nearest run so far, if there is a loop."""
         measured = self.measured
         if measured is None:
             return None

@@ -33,8 +33,8 @@ from solver.study.sweep.plan import Plan, plan_of
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
 LOG = ":log"
 GRAMMAR = (
-    "FROM:TO:NUMBER are so many values in even steps, FROM:TO:NUMBER:log in even ratios; "
-    "others stand between commas."
+    "FROM:TO:NUMBER are so many values in even steps, FROM:TO:NUMBER:log in even "
+    "ratios; others stand between commas."
 )
 VALUES = 13
 COARSE = 10
@@ -289,7 +289,7 @@ class Span:
         self._is_updating = False
 
     def text(self) -> str:
-        """The setting and its values in SI, as in `Question.vary`; "" without a setting.
+        """Setting and values in SI, as in `Question.vary`; "" without a setting.
 
         Raises
         ------
@@ -304,7 +304,14 @@ class Span:
         if isinstance(definition, param.Number):
             unit = unit_of(definition)
             si = about(definition).unit
-            values = _converted(values, lambda text: f"{typed(text, unit, si):.12g}")
+            try:
+                values = _converted(
+                    values, lambda text: f"{typed(text, unit, si):.12g}"
+                )
+            except ValueError as problem:
+                label = self.values.label
+                text = f"{label} cannot be “{values[:40]}”: {problem}"
+                raise ValueError(text) from None
         return f"{name}={values.replace(' ', '')}"
 
     def _on_field(self, event: param.parameterized.Event) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import panel as pn
@@ -19,6 +20,7 @@ from app.experiments.questions import (
     quantities,
     question_of,
 )
+from app.refusals import advice_in_titles
 from app.state import PageState, answer
 from app.units import unit_for
 from app.widgets import PlainText, button, download
@@ -140,7 +142,12 @@ class WhatIf:
         # Its thread goes on to append to them.
         rows = list(self.sweep.rows)
         is_log = SCALES[self._scale.value]
-        return chart_of(plan, rows, 0, _amount, logarithmic=is_log)
+        chart = chart_of(plan, rows, 0, _amount, logarithmic=is_log)
+        if chart.runs is None:
+            return chart
+        # Advice on runs that failed names settings as scripts do.
+        said = [advice_in_titles(plan.settings, text) for text in chart.runs.said]
+        return replace(chart, runs=replace(chart.runs, said=said))
 
     def _show(self) -> None:
         """Show and run the question, or a ready one where the scene lacks it.

@@ -156,7 +156,7 @@ class Guide:
             self._look(lesson)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
-        """Make a figure to draw on for the question; in the answer add the measured curve."""
+        """Make a figure to draw on for a question; in its answer reveal the curve."""
         is_asked = self._state.is_asked
         if is_asked or self._curve is None or self._curve.lesson is not lesson:
             self._curve = None

@@ -102,7 +102,7 @@ class Convergence(ErrorPlot):
         self.draw("answer", answers, [foot] * len(answers))
 
     def _show_ghost(self, ghost: Frame | None, *, has_errors: bool) -> None:
-        """Show the errors of another run, or its estimates if this run has no errors."""
+        """Show the errors of another run; its estimates if this run has no errors."""
         past = {}
         if ghost is not None:
             past = _searched(ghost)

@@ -103,9 +103,9 @@ class Layout:
         self.origin = np.array([left, below]) + 0.5 * rest - low * scale
         self.motion = motion
 
-    def local(self, places: Array) -> Array:
-        """Places in px from the middle of the foot, of places in m, (..., 2) each."""
-        return np.asarray((places - self.size * [0.5, 0.0]) * self.scale)
+    def local(self, positions: Array) -> Array:
+        """Positions, px, from the middle of the foot, for positions, m, (..., 2)."""
+        return np.asarray((positions - self.size * [0.5, 0.0]) * self.scale)
 
     def fitting(self, largest: Array, factor: float | None) -> float:
         """Factor on displacements: the present one while motion is seen and has room.

@@ -123,7 +123,7 @@ class CyclePlot(ExtraView):
     )
 
     def _add_legend(self) -> None:
-        """Add a legend: the first cycle, the last one, and a text on how slip goes on."""
+        """Add a legend: first cycle, last cycle, and a text on how slip goes on."""
         self.mark({"first": SCALE[0], "last": SCALE[-1], "text": UNSEEN})
         self.legend(first="cycle 1", last="last", text="text")
 

@@ -81,8 +81,8 @@ class Picture:
         for act in self._described.acts:
             setting = behind.get(act.where)
             peak = self._peaks[act.where]
-            places = self._follow(act.places * layout.size)
-            arrows.append(Arrows(act, setting, places, layout, peak, self._now))
+            points = self._follow(act.places * layout.size)
+            arrows.append(Arrows(act, setting, points, layout, peak, self._now))
         return arrows
 
     @property

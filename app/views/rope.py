@@ -71,7 +71,7 @@ class WireSection(ExtraView):
         low, high = np.divide(extent([cut["stress"]]), unit.factor).tolist()
         # A scale of no length has no colours.
         self.colors.update(low=low, high=max(high, low + 1e-9))
-        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['place'])}"
+        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['position'])}"
         slips = cut["slips"][:, column]
         selected = list(run.interfaces).index(selection.interface_of(run))
         chosen = cut["wires"] == selected

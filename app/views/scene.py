@@ -30,9 +30,9 @@ CLOSE = 14.0
 KEPT = 0.3, 1.5
 """Largest values over full length between which arrows keep their scale."""
 WIDEST = 9.0
-LEAST = 0.01
-"""Width of the line of the largest thrust, px, and share of it below which no line is
-drawn."""
+FAINTEST = 0.01
+"""Width of the line of the largest thrust, px, and share of it below which a thrust has
+no line."""
 STRESS_STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 """Ends of the scale of stresses, times a power of ten: it seldom changes."""
 
@@ -309,7 +309,7 @@ class Thrust(ExtraScene):
     def _show(self, extra: Any, picture: Picture) -> None:
         largest = float(extra["forces"].max())
         share = extra["forces"][:, picture.column] / (largest or 1.0)
-        is_drawn = share > LEAST
+        is_drawn = share > FAINTEST
         lines = picture.layout.local(extra["lines"][is_drawn, :, :, picture.column])
         self.fill("thrust", **picture.many(lines), line_width=WIDEST * share[is_drawn])
         self.show("note", f"widest line {unit_for(largest, 'N')(largest)}")

@@ -40,7 +40,7 @@ class StatusMap(View):
         self.add("front", color=EXACT, width=3)
         self.add("ghost", "Segment", "x0 y0 x1 y1", color=GHOST, width=1.5)
         self.add("now", "HSpan", "y", color=ERROR, line_width=2)
-        self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
+        self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.legend(*KEYS, "ghost", front="closed form")
         hover(plot, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         plot.on_event(Tap, self._select)
@@ -59,9 +59,9 @@ class StatusMap(View):
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
         selected = []
-        if selection.place is not None:
-            selected = [selection.place]
-        self.fill("place", x=self.x(selected))
+        if selection.position is not None:
+            selected = [selection.position]
+        self.fill("position", x=self.x(selected))
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
@@ -96,7 +96,7 @@ class StatusMap(View):
             return
         end = float(frame.run.instants[-1])
         phase = min(max(self.y.si(event.y) / end, 0.0), 1.0)
-        self.state.select(phase=phase, place=self.x.si(event.x))
+        self.state.select(phase=phase, position=self.x.si(event.x))
 
 
 def _boundary(frame: Frame, selection: Selection) -> Floats:

@@ -45,17 +45,17 @@ TEXT = "12px"
 WORDS = "14px"
 """Type sizes of plots, and of words at arrows, as CSS has them."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
-"""Keeps sizes that are not the theme's, as the browser sets these when it draws a
-figure."""
+"""Script that keeps sizes that are not the theme's: the browser sets those of the theme
+as it draws a figure."""
 ABOVE = {"margin-left": "-60px", "top": "-1px"}
-"""Has a legend begin at the left end of the figure."""
+"""Style of a legend that begins at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 5px !important; }
 .bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
-"""Lets a legend of seven entries stand in one line; the theme keeps them farther
-apart."""
+"""Style sheet by which a legend of seven entries stands in one line; the theme keeps
+entries farther apart."""
 
 
 HIDE = """
@@ -65,8 +65,8 @@ const others = (each) => each.name == shown.name && each != shown
 const hidden = is_mark ? [shown] : plot.renderers.filter(others)
 for (const each of hidden) each.visible = !each.visible
 """
-"""Hides the glyph whose copy in the legend is clicked, or shows it again; marks stay as
-they are."""
+"""Script that hides the glyph whose copy in the legend is clicked, or shows it again;
+marks stay as they are."""
 
 
 class View:
@@ -78,9 +78,9 @@ class View:
     """
 
     name: ClassVar[str]
-    """Title of its tab."""
+    """Title of the view's tab."""
     needs: ClassVar[frozenset[str]] = frozenset()
-    """Names of the extras of a frame that it shows."""
+    """Names of the extras of a frame that the view shows."""
     applies: ClassVar[Callable[[Settings], bool]] = staticmethod(lambda settings: True)
     """Check whether the view applies to a run with some settings."""
 
@@ -309,7 +309,7 @@ class View:
         ys: Sequence[ArrayLike],
         titles: Sequence[str],
     ) -> None:
-        """Draw curves over one x, shape (n,), in SI; empty the names without a curve."""
+        """Draw curves over one x, shape (n,), in SI; empty names without a curve."""
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
                 self.draw(name, [], [])
@@ -332,12 +332,15 @@ class ExtraView(View):
 
 
 def bare(
-    least: int, across: tuple[float, float], up: tuple[float, float], **more: Any
+    min_height: int,
+    across: tuple[float, float],
+    up: tuple[float, float],
+    **more: Any,
 ) -> figure:
     """A figure without tools, frame and grid, with a least height, px, and limits."""
     plot = figure(
         sizing_mode="stretch_both",
-        min_height=least,
+        min_height=min_height,
         tools="",
         toolbar_location=None,
         title=None,

@@ -31,7 +31,7 @@ MOST_WIRES = 6
 MOST_QUADS = 400
 """Largest number of quadrilaterals that are drawn, or one for each body."""
 NONE = -1
-"""In place of a degree of freedom, and between two lines in a list of nodes."""
+"""Number in place of a missing degree of freedom, and between two lines of nodes."""
 StressField = tuple[str, str, Floats]
 """Title, SI unit, and values in the quadrilaterals, (n_quads, n_instants)."""
 Extras = dict[str, Callable[[Iterate, Needs], Any]]
@@ -43,9 +43,10 @@ def floats(values: NDArray[np.generic]) -> Floats:
     return values.astype(np.float32, order="C")
 
 
-def thinned(size: int, most: int) -> Indices:
-    """Indices of a thinned axis, first and last included, at most `most`."""
-    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(np.intp))
+def thinned(size: int, limit: int) -> Indices:
+    """Indices of a thinned axis, (n,), first and last included, n up to a limit."""
+    count = min(size, limit)
+    return np.unique(np.linspace(0, size - 1, count).round().astype(np.intp))
 
 
 class Drawn:
@@ -223,15 +224,15 @@ class DrawnMesh(Drawn):
         self.extras: Extras = {"stress": self._stress}
         if settings.has_joints:
             self.extras["thrust"] = self._thrust
-        # All grids are thinned alike, to a number of quadrilaterals each at most.
-        most = max(MOST_QUADS // len(inside.grids), 1)
+        # All grids are thinned alike, so that bodies of one size look alike.
+        limit = max(MOST_QUADS // len(inside.grids), 1)
         shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
-        share = min(np.sqrt(most / shapes.prod(axis=1).max()), 1.0)
+        share = min(np.sqrt(limit / shapes.prod(axis=1).max()), 1.0)
         grids = []
         quads = []
         first = 0
         for grid in inside.grids:
-            up, across = _kept_lines(grid, share, most)
+            up, across = _kept_lines(grid, share, limit)
             grids.append(grid[np.ix_(up, across)])
             quads.append(first + _quads_of(grid, up, across))
             first += (len(up) - 1) * (len(across) - 1)
@@ -278,7 +279,7 @@ class DrawnMesh(Drawn):
     def _resultant(
         self, iterate: Iterate, name: str, law: Contact
     ) -> tuple[Array, Array]:
-        """Point at which the resultant of a joint acts, (2, n_shown), m, and its size, N.
+        """Point at which the resultant of a joint acts, (2, n_shown), m; its size, N.
 
         The point is the mean of the contact points by their pressure, and the middle of
         a joint that is open.
@@ -306,7 +307,7 @@ class DrawnMesh(Drawn):
         return middles
 
     def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of nodes, (n_nodes, 2), m, of degrees of freedom, (n_dofs,), m."""
+        """Displacement of nodes, (n_nodes, 2), m, from all displacements, (n_dofs,), m."""
         moved = self._inside.displacement(displacement[:, None], [0])
         # Given displacements are added to all, and are no part of a motion.
         still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])
@@ -321,11 +322,14 @@ class DrawnMesh(Drawn):
         return floats(self._moved(iterate)[self._nodes])
 
 
-def _kept_lines(grid: Indices, share: float, most: int) -> tuple[Indices, Indices]:
-    """Rows and columns of a grid of nodes that are drawn: a share, in `most` cells."""
+def _kept_lines(grid: Indices, share: float, limit: int) -> tuple[Indices, Indices]:
+    """Rows and columns of a grid of nodes that are drawn, (n_up,) and (n_across,).
+
+    They are a share of all lines, and make no more cells than a limit.
+    """
     n_rows, n_columns = np.subtract(grid.shape, 1)
     rows = max(int(share * n_rows), 1)
-    columns = max(min(int(share * n_columns), most // rows), 1)
+    columns = max(min(int(share * n_columns), limit // rows), 1)
     return thinned(n_rows + 1, rows + 1), thinned(n_columns + 1, columns + 1)
 
 

@@ -20,12 +20,12 @@ from solver.scenes import discretise
 from solver.scenes.method import method_of
 
 HURRY = 0.1
-"""Time in which a run that follows a dragged slider may end before it is shown, s."""
+"""Longest time for which a run that follows a dragged slider is not shown, s."""
 WHOLE_LASTS = 3.0
 FIRST = 0.25
-"""Time of a search at the pace `WHOLE`, and time before its second iterate, s. Intervals
-shrink by one ratio: the first iterates are seen one by one, and a hundred iterations
-last as long as thirty."""
+"""Time of a search at the pace `WHOLE`, and time before its second iterate, s.
+Intervals shrink by one ratio: the first iterates are seen one by one, and a hundred
+iterations last as long as thirty."""
 LATE = 0.1
 """Longest delay, s, that iterations make up for. Pictures are painted between them."""
 
@@ -84,8 +84,8 @@ class Runner:
     each iterate, and at its end a `status`. `pacing` says when the next iteration is
     due, `has_news` whether anything changed since the last frame.
 
-    A run does its first iteration, hurries on for a moment if a slider is dragged, finds
-    the reference, and goes on at the pace until its end.
+    A run does its first iteration, hurries on for a moment if a slider is dragged,
+    finds the reference, and goes on at the pace until its end.
     """
 
     def __init__(
@@ -134,7 +134,7 @@ class Runner:
         return self.has_news and self.iterate is not None and not self.hurries
 
     def rest(self, is_seen: bool = True) -> float | None:
-        """Time until the next piece of work, s; None: not before an order or picture."""
+        """Time until the next piece of work, s; None: before an order there is none."""
         if self.iterate is None or self.hurries:
             return 0.0
         # The reference of a run that follows a slider waits until its picture is seen:

@@ -38,8 +38,8 @@ from solver.latin import Iterate
 from solver.settings.scene import Settings
 
 A_TURN = 20
-FEWEST = 40
-MOST = 100
+FEWEST_STEPS = 40
+MOST_STEPS = 100
 """Steps along the strand for each turn of an outer wire; least and largest number of
 steps."""
 SHOWN_SHARE = 0.12 * np.pi
@@ -69,7 +69,7 @@ class DrawnRope:
         self._radius = 0.5 * description.height
         self._count = sum(wire.stands_for for wire in wires)
         turns = description.length * np.tan(abs(self._lay)) / (2 * np.pi * self._helix)
-        n_steps = int(np.clip(A_TURN * turns, FEWEST, MOST))
+        n_steps = int(np.clip(A_TURN * turns, FEWEST_STEPS, MOST_STEPS))
         self._z = np.linspace(0.0, description.length, n_steps + 1)
         mesh = self._mesh()
         rows, heights, chains, self._points, self._sides = self._lines()
@@ -118,7 +118,7 @@ class DrawnRope:
         return np.asarray(2.0 * np.pi * wire / self._count + turned)
 
     def _height(self, angle: Array) -> Array:
-        """Height of outer wires above the foot, m, at polar angles, rad, of one shape."""
+        """Height of outer wires above the foot, m, at polar angles, rad, same shape."""
         return np.asarray(self._radius * (1.0 - np.cos(angle)))
 
     def _strips(self) -> Iterator[tuple[int, Indices, Array]]:
@@ -156,7 +156,7 @@ class DrawnRope:
         return wires, *self._points_at(wires, share), sides
 
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
-        """Nearest contact points and nodes, (n,), at shares of lengths of wires, (n,)."""
+        """Nearest contact points and nodes, (n,), at shares of the length, (n,)."""
         elements = self._rope.elements
         nearest = np.round(share * elements).astype(np.intp)
         node = np.clip(nearest, 1, max(elements - 1, 1))
@@ -179,7 +179,10 @@ class DrawnRope:
         return rows[kept], heights[kept], wires, points, sides
 
     def _moved(self, rows: Indices, heights: Array) -> Floats:
-        """Displacement of points at heights, (n, 2, n_instants), m: sections stay plane."""
+        """Displacement of points at heights, (n,), m: (n, 2, n_instants), m.
+
+        Sections stay plane.
+        """
         up, slope = self._bent
         along = slope[rows] * (self._radius - heights)[:, None]
         return floats(np.stack([along, up[rows]], axis=1))
@@ -227,14 +230,14 @@ class DrawnRope:
     def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         """All wires in a section at the selected position or the clamp, core first.
 
-        "place" along the strand, m; "wires", the interface of each, -1 for the core,
+        "position" along the strand, m; "wires", the interface of each, -1 for the core,
         (n,); "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean
         "stress", Pa, and "slips", its status, (n, n_instants).
         """
         rope = self._rope
         columns = self._columns
-        place = float(np.clip(needs.place or 0.0, 0.0, rope.seen_length))
-        cut = cut_at(rope, place)
+        position = float(np.clip(needs.position or 0.0, 0.0, rope.seen_length))
+        cut = cut_at(rope, position)
         lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
         points, _ = self._points_at(cut.wire, cut.arc / lengths)
         slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
@@ -246,7 +249,7 @@ class DrawnRope:
         )
         radii = [0.5 * rope.wires[number].made.diameter for number in cut.wire]
         return {
-            "place": place,
+            "position": position,
             "wires": np.append(-1, cut.wire),
             "centres": floats(
                 np.concatenate([[[0.0, 0.0]], cut.centres * (1.0, -1.0)])

@@ -179,7 +179,7 @@ class PlotSection:
 
 
 Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
-"""Function that draws sections: HTML for the head of their page, and of each section."""
+"""Function that draws sections: HTML for the head of a page, and of each section."""
 Shown = Mapping[str, tuple[str, int]]
 """Columns on a console: head and number of characters by name."""
 NUMBER = re.compile(r"-|-?\d[\d.e+-]*")

@@ -205,7 +205,7 @@ def write_proof(rows: Sequence[Row], folder: Path) -> None:
 
 
 def _by_case(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Cases of rows: their title and what else says which they are, and their `rows`."""
+    """Cases of rows: entries by the columns of `CASE`, and lines of texts (`rows`)."""
     digits = {"known": 6, "ours": 6}
     cases = []
     # Rows of a case follow each other.
