@@ -159,6 +159,6 @@ def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
 def _over_time(frame: Frame, figure: KeyFigure) -> str:
     """Largest value of a key figure with its instant, and its last value."""
     instants = frame.run.instants
-    told = _unit_of(figure)
+    unit = _unit_of(figure)
     when = unit_for(float(instants[-1]), "s")(float(instants[figure.instant]))
-    return f"largest {told(figure.largest)} at {when}, last {told(figure.last)}"
+    return f"largest {unit(figure.largest)} at {when}, last {unit(figure.last)}"

@@ -81,7 +81,7 @@ class Picture:
         for act in self._described.acts:
             setting = behind.get(act.where)
             peak = self._peaks[act.where]
-            points = self._follow(act.places * layout.size)
+            points = self._follow(act.points * layout.size)
             arrows.append(Arrows(act, setting, points, layout, peak, self._now))
         return arrows
 
