@@ -46,13 +46,13 @@ class Picture:
         self._factor = factor
         self._peaks = peaks
         self._geometry = frame.run.geometry
-        self._described = layout.description
+        self._description = layout.description
         # Values of a description are not thinned.
         instant = frame.run.instants[column]
-        self._now = int(np.argmin(np.abs(self._described.instants - instant)))
+        self._now = int(np.argmin(np.abs(self._description.instants - instant)))
         self.tilt = 0.0
-        if self._described.tilt is not None:
-            self.tilt = float(self._described.tilt[self._now])
+        if self._description.tilt is not None:
+            self.tilt = float(self._description.tilt[self._now])
 
     @cached_property
     def nodes(self) -> Array:
@@ -66,9 +66,9 @@ class Picture:
         """Contact points, px from the middle of the foot, shape (n_points, 2)."""
         positions = self._geometry.points
         local = self._moved(positions, self.frame.deformed.points[:, :, self.column])
-        if self._described.height is not None and self._described.bodies == 1:
+        if self._description.height is not None and self._description.bodies == 1:
             # The band lies below a single body. Rods leave room for it.
-            at_foot = positions[:, 1] <= 1e-6 * self._described.length
+            at_foot = positions[:, 1] <= 1e-6 * self._description.length
             local[at_foot, 1] -= 0.5 * BAND
         return local
 
@@ -78,7 +78,7 @@ class Picture:
         layout = self.layout
         behind = self.frame.run.settings.behind()
         arrows = []
-        for act in self._described.acts:
+        for act in self._description.acts:
             setting = behind.get(act.where)
             peak = self._peaks[act.where]
             points = self._follow(act.points * layout.size)
@@ -111,7 +111,7 @@ class Picture:
 
         Both are outlines with NaN behind each, shape (n, 2), px.
         """
-        if not any(hold.kind == "image" for hold in self._described.holds):
+        if not any(hold.kind == "image" for hold in self._description.holds):
             return np.zeros((0, 2))
         # As far as there is room.
         y = np.maximum(-bodies[:, 1], -IMAGE)
@@ -191,12 +191,12 @@ class Picture:
     @cached_property
     def _at_break(self) -> Array:
         """Numbers of the nodes on both sides of a break, (2, 2); (0, 2) without one."""
-        if self._described.broken is None:
+        if self._description.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
-        body, position = self._described.broken
+        body, position = self._description.broken
         x, y = self._geometry.nodes.T
-        is_there = np.abs(x - position) < 1e-4 * self._described.length
-        row = np.floor(y * self._described.bodies / self.layout.size[1])
+        is_there = np.abs(x - position) < 1e-4 * self._description.length
+        row = np.floor(y * self._description.bodies / self.layout.size[1])
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _columns(self, strokes: Strokes) -> Columns:
@@ -213,10 +213,10 @@ class Picture:
     def _holds(self) -> Array:
         """Strokes of the supports, and a horizontal where bodies tilt, (n, 2), px."""
         layout = self.layout
-        length = self._described.length
+        length = self._description.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
         strokes = strokes_of(layout, self._factor, self._now, feet)
-        if self._described.tilt is not None:
+        if self._description.tilt is not None:
             corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
@@ -227,10 +227,10 @@ class Picture:
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
-        height = self.layout.size[1] * self.layout.scale[1] / self._described.bodies
+        height = self.layout.size[1] * self.layout.scale[1] / self._description.bodies
         width = min(BAND, 0.35 * height)
         # Broad bands of many interfaces, as in a wall, would cover the bodies.
-        if chains.max() >= self._described.bodies:
+        if chains.max() >= self._description.bodies:
             width = min(width, 5.0)
         # A dark rim below all colours, but for open stretches.
         closed = [line for kind, line in lines.items() if kind != OPEN]
@@ -260,8 +260,8 @@ class Picture:
             anchors.append(self.page(anchor))
             aligns.append(align)
             colors.append(color_of(act))
-        if self._described.tilt is not None:
-            x = 0.5 * self._described.length * layout.scale[0] + 30.0
+        if self._description.tilt is not None:
+            x = 0.5 * self._description.length * layout.scale[0] + 30.0
             texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
             anchors.append(np.array([x, -14.0]) + layout.origin)
             aligns.append("left")
@@ -279,7 +279,7 @@ class Picture:
         """Check whether a load is a pressure from below that is named above already."""
         if not act.where.startswith("bottom"):
             return False
-        above = [act for act in self._described.acts if act.where.startswith("top")]
+        above = [act for act in self._description.acts if act.where.startswith("top")]
         return any(is_opposite(act, other) for other in above)
 
 

@@ -28,7 +28,9 @@ Callback = Callable[[], Any]
 
 
 class Document:
-    """A document whose next tick comes when it is called for, in the context that asked for it."""
+    """A document whose next tick comes when it is called for,
+    in the context that asked for it.
+    """
 
     def __init__(self) -> None:
         self.due: list[Callback] = []
@@ -41,7 +43,9 @@ class Document:
 
 
 class Worker:
-    """What stands for a page's supervisor: whether its process is there, and its orders."""
+    """What stands for a page's supervisor:
+    whether its process is there, and its orders.
+    """
 
     def __init__(self, state: PageState) -> None:
         self.state = state

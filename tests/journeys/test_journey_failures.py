@@ -1,4 +1,6 @@
-"""A person loses the network or the worker, reloads, goes back, or comes by a foolish address."""
+"""A person loses the network or the worker,
+reloads, goes back, or comes by a foolish address.
+"""
 
 from __future__ import annotations
 
