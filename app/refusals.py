@@ -91,14 +91,18 @@ def advice_in_titles(settings: Settings, text: str) -> str:
     text = amounts_in_titles(settings, text)
 
     def titled(match: re.Match[str]) -> str:
-        return title_of(definitions[match[0]])
+        words = f"{match[1]}{title_of(definitions[match[2]])}"
+        if match[3]:
+            words += f" or {title_of(definitions[match[3]])}"
+        return words
 
-    # A name without an underscore is also a common word, unless it is to be changed.
+    # Many names are common words: they mean the setting where it is to be changed.
     names = "|".join(definitions)
-    changed = rf"(?<=\braise )({names})\b|(?<=\blower )({names})\b"
-    text = re.sub(rf"(?i:{changed})", titled, text)
+    text = re.sub(
+        rf"\b((?i:raise|lower) )({names})\b(?: or ({names})\b)?", titled, text
+    )
     keys = "|".join(name for name in definitions if "_" in name)
-    return re.sub(rf"\b({keys})\b", titled, text)
+    return re.sub(rf"\b({keys})\b", lambda match: title_of(definitions[match[0]]), text)
 
 
 def _in_titles(settings: Settings, text: str) -> str:
