@@ -84,8 +84,11 @@ def port() -> int:
 
 
 def _address() -> SplitResult:
+    """Address of this page without its query; "" outside of a page."""
     location = pn.state.location
-    return urlsplit(location.href.partition("?")[0] if location is not None else "")
+    if location is None:
+        return urlsplit("")
+    return urlsplit(location.href.partition("?")[0])
 
 
 def configure() -> None:

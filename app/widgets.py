@@ -84,7 +84,9 @@ def download(
 
     def data() -> io.BytesIO:
         content = make()
-        return io.BytesIO(content if isinstance(content, bytes) else content.encode())
+        if isinstance(content, str):
+            content = content.encode()
+        return io.BytesIO(content)
 
     file = pmui.FileDownload(label=label, filename=filename, callback=data, **look)
     # Its constructor warns of a variant, whatever it is.

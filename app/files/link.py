@@ -151,11 +151,14 @@ def query_of(shown: Shown) -> str:
 
 def _beside_settings(shown: Shown) -> dict[str, str]:
     """Parts of an address beside settings, where they differ from a new page's."""
+    instant = Selection().phase
     lesson = LESSONS.get(shown.get("lesson", ""))
+    if lesson:
+        instant = lesson.instant
     first = DEFAULTS | {
         "plots": plots_of(shown.get("case", "")),
         "iteration": 0,
-        "instant": lesson.instant if lesson else Selection().phase,
+        "instant": instant,
     }
     pairs = {}
     for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view"):
@@ -219,10 +222,11 @@ def _checked(pairs: dict[str, str], refused: list[str]) -> Shown:
     for name, definition in _CHECKED.items():
         if name not in pairs:
             continue
-        text = pairs.pop(name)
+        value: Any = pairs.pop(name)
         try:
             # The choices of a selector are texts, which may look like numbers.
-            value = text if isinstance(definition, param.Selector) else parse(text)
+            if not isinstance(definition, param.Selector):
+                value = parse(value)
             allowed[name] = checked_value(definition, name, value)
         except RefusedError as refusal:
             refused.append(str(refusal))

@@ -128,7 +128,9 @@ class CurveDialog:
         """Points as CSV, whose head has the units."""
         heads = []
         for title, unit in zip(self._columns, self._units, strict=True):
-            heads.append(f"{title} [{unit.name}]" if unit.name else title)
+            if unit.name:
+                title += f" [{unit.name}]"
+            heads.append(title)
         return points.to_csv(header=heads, index=False, float_format="%.6g")
 
     def _on_drag(self) -> None:

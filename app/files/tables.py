@@ -99,7 +99,9 @@ def path_of(table: Table, settings: Settings) -> str:
     paths = paths_of(settings)
     chosen = list(paths.keys() & {column.key for column in table.columns})
     if not chosen:
-        chosen = list(paths) if len(paths) == 1 else _loads(paths)
+        chosen = list(paths)
+        if len(paths) > 1:
+            chosen = _loads(paths)
     if len(chosen) == 1:
         return chosen[0]
     if not paths:

@@ -91,7 +91,8 @@ class Guide:
         begin = partial(self.open, kind)
         # Filled when it is first opened: a page begins without all these buttons.
         if not listed.objects:
-            listed[:] = [gallery(begin) if kind == "case" else _titles(begin)]
+            offered = gallery if kind == "case" else _titles
+            listed[:] = [offered(begin)]
         listed.open = True
 
     def update(self) -> None:

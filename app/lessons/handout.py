@@ -31,6 +31,8 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
     `curve` was drawn by hand, in a lesson that asks for a curve.
     """
     address = address_for_others()
+    if address:
+        address += f"?lesson={lesson.name}"
     picture = _drawn(Scene(state), state, lesson, WIDTH, HEIGHT)
     kinds = [
         kind
@@ -68,7 +70,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
             ),
             "plots": [figures[name].name for name in plots],
             "has_curve": curve is not None,
-            "address": f"{address}?lesson={lesson.name}" if address else "",
+            "address": address,
         },
         suppress_callback_warning=True,
     )

@@ -126,11 +126,13 @@ def cycles(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     if not len(found):
         return None
     # Where nothing slips, no cycle differs from the next.
-    slipped = bool(found.slip.any() or found.before.any())
+    text = "nothing slips"
+    if found.slip.any() or found.before.any():
+        text = _fate_text(found)
     return {
         "columns": np.searchsorted(sampled.columns, found.ends),
         "energy": floats(found.energy),
-        "text": _fate_text(found) if slipped else "nothing slips",
+        "text": text,
     }
 
 

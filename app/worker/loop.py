@@ -68,7 +68,11 @@ class WorkerLoop:
     def serve(self) -> None:
         """Take orders, and work between them, without end."""
         while True:
-            self._receive(0.0 if self._orders else self._rest())
+            # Orders may have come while the last piece of work lasted.
+            timeout: float | None = 0.0
+            if not self._orders:
+                timeout = self._rest()
+            self._receive(timeout)
             while self._orders:
                 self._guard(self._obey, self._orders.popleft())
             if self._runner is not None and not self._is_unseen:
