@@ -19,10 +19,10 @@ from app.files.export import LOOK, offers
 from app.files.link import Link, read, show
 from app.lessons.guide import Guide
 from app.live import STYLE, Live, column
-from app.server import FULL, PAGES
+from app.server import PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import PlainText, button, dialog, looks, wrapped
+from app.widgets import PlainText, button, dialog, html, looks, wrapped
 
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
@@ -243,9 +243,8 @@ def open_page() -> pmui.Page:
     # Without notifications: each page's would stay in Panel's table of views for good.
     pn.extension(reconnect=True, respect_explicit_sizing=True)
     if not PAGES.enter():
-        full = pmui.Page(
-            title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])]
-        )
+        words = pn.pane.HTML(html("full.html"), css_classes=["full"])
+        full = pmui.Page(title="Slipfront", main=[words])
         follow_itself(full)
         return full
     query = ""

@@ -20,10 +20,6 @@ OF_A_PAGE = 150_000_000
 """Memory that a page may need, bytes, most of it in its worker and its history."""
 SHARE = 0.8
 """Share of the memory of the machine, or of its container, that all pages may take."""
-FULL = (
-    "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
-    "This page tries again by itself.</p><meta http-equiv=refresh content=20>"
-)
 LONGEST = 16_000
 """Largest number of characters of an address; a longer one is refused (414)."""
 RECEIVED = 1 << 20
