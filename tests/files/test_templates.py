@@ -1,5 +1,6 @@
 """HTML from templates: what is filled in is text, whatever it says."""
 
+import tomllib
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from solver.files.templates import templates_in
 from solver.study import page
 from solver.study.page import Panel, PanelAxis, PlotSection, write_page
 
+ROOT = Path(__file__).resolve().parents[2]
 STUDY = Path(page.__file__).parent
 MARKUP = "<img src=x onerror=go()> & \"'</pre><b>{{ 7 * 7 }}"
 REPORTS = {
@@ -124,6 +126,19 @@ def test_nothing_in_a_report_becomes_markup(
 @pytest.mark.parametrize("name", PARTS)
 def test_nothing_on_the_page_becomes_markup(name: str) -> None:
     read_as_text(app.widgets.html(name, **PARTS[name]))
+
+
+def test_every_template_is_installed_with_its_package() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    data = tomllib.loads(text)["tool"]["setuptools"]["package-data"]
+    for package in ("app", "solver"):
+        folder = ROOT / package
+        installed: set[Path] = set()
+        for pattern in data[package]:
+            installed.update(folder.glob(pattern))
+        templates = {*folder.rglob("*.html"), *folder.rglob("*.svg")}
+        assert templates
+        assert templates <= installed
 
 
 def test_every_report_has_its_values_here() -> None:
