@@ -264,7 +264,7 @@ def test_a_sweep_that_is_killed_goes_on(
     with started([sys.executable, "-m", "solver", *asked]):
         wait_for(lambda: rows_in_table(table) > 3)
     rows = table.read_text(encoding="utf-8").splitlines()
-    monkeypatch.setattr(report_commands, "write_page", lambda *given: None)
+    monkeypatch.setattr(report_commands, "write_sweep", lambda *given: None)
     assert main(asked) == 0
     assert rows_in_table(table) == 24
     assert {*rows[:-1]} <= {*table.read_text(encoding="utf-8").splitlines()}
