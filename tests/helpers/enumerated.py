@@ -48,7 +48,8 @@ def equilibria(problem, instant, before, accumulated_slip):
     bound[dofs] = rules.bound_at(instant)
     stiffness = assembled_stiffness(problem).toarray()
     force = external_force(problem)[:, instant] - stiffness @ before
-    rubbing = np.array([dof for dof in dofs if dof not in fixed and bound[dof] > 0.0])
+    free = np.setdiff1d(dofs, fixed)
+    rubbing = free[bound[free] > 0.0]
     pieces = range(len(strength.slips))
     each = [(0, 0), *product((-1, 1), pieces)]
     choices = np.array(list(product(each, repeat=len(rubbing))))
