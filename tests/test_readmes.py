@@ -1,4 +1,4 @@
-"""What the papers point to is there, and what they promise is tested."""
+"""Links of the papers lead somewhere, and what they promise is tested."""
 
 from __future__ import annotations
 

@@ -119,9 +119,7 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
 
 
 def _course(settings: Settings) -> tuple[bool, int, int, str]:
-    """When LATIN's own way is within the goal,
-    and when and by what it is known; 0 for never.
-    """
+    """Iterations until LATIN's own way is at the goal, and until it is known, or 0."""
     problem = discretise(settings)
     try:
         distance = distance_to(reference_of(problem), problem)

@@ -152,7 +152,7 @@ def room(root: Path, package: str, node: str) -> Box:
 
 
 def arrows_of(boxes: list[list[Box]], graph: Graph) -> list[tuple[Box, Box]]:
-    """Which box imports which below it, without what follows by detours."""
+    """Pairs of boxes of which one imports the other, without those by detours."""
     every = list(chain.from_iterable(boxes))
     below: dict[Box, set[Box]] = {}
     lower: list[Box] = []

@@ -70,18 +70,18 @@ class Public:
 
     @property
     def installed(self) -> bool:
-        """Whether it can be imported."""
+        """Check whether the package can be imported."""
         return importlib.util.find_spec(self.module) is not None
 
     @property
     def version(self) -> str:
-        """Which one is installed."""
+        """Installed version of the package."""
         return version(self.module)
 
 
 @dataclass(frozen=True, eq=False)
 class PublicFields:
-    """What a solver found, SI.
+    """Fields that a solver found, SI.
 
     Attributes
     ----------

@@ -84,9 +84,7 @@ def test_our_own_friction_times_a_factor_is_as_far_as_the_factor_says(
 
 
 def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
-    """It is given at places that are no nodes,
-    and at instants that are not those of the run.
-    """
+    """Results are given at places that are no nodes, and at other instants."""
     rng = np.random.default_rng(1)
     distances = []
     for elements in (20, 40, 80):

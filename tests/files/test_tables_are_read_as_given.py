@@ -62,7 +62,7 @@ class Written:
 
 @dataclass(frozen=True)
 class Dialect:
-    """How somebody writes numbers, and what beside them."""
+    """Way in which somebody writes numbers, and the remark beside them."""
 
     decimal: str
     thousands: str

@@ -1,6 +1,4 @@
-"""What a path over time or a table along a body has,
-a run sees, or says that it does not.
-"""
+"""Paths over time and tables along a body are solved as given, or a run says not."""
 
 from __future__ import annotations
 

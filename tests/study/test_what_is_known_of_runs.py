@@ -1,4 +1,4 @@
-"""What is known stands beside what is found: in the proof, and as curves under runs."""
+"""Known values stand beside found ones: in the proof, and as curves under runs."""
 
 from __future__ import annotations
 
