@@ -134,6 +134,18 @@ def field(page: Page, name: str) -> Locator:
     return page.get_by_role("textbox", name=re.compile(rf"^{re.escape(name)}"))
 
 
+def enter(page: Page, name: str, text: str, over: str) -> None:
+    """Type a value into a field, once it shows the one that it is to replace.
+
+    A figure may be there before a field has its new value, which then would be written
+    over what was selected.
+    """
+    typed = field(page, name)
+    expect(typed).to_have_value(over)
+    typed.fill(text)
+    typed.press("Enter")
+
+
 def button(page: Page, name: str) -> Locator:
     """The button in sight that a name begins with."""
     pattern = re.compile(rf"^{re.escape(name)}")

@@ -10,6 +10,7 @@ from pages import (
     Visit,
     button,
     drag,
+    enter,
     field,
     figure,
     figures,
@@ -107,22 +108,17 @@ def test_typed_values_run_or_are_refused_and_leave_the_pinned_run_and_the_views(
 ) -> None:
     page = visit(f"?{ANSWER}")
     is_solved(page)
-    typed = field(page, "Peak load")
-    typed.fill("1.2 kN")
-    typed.press("Enter")
-    expect(typed).to_have_value("1200")
+    enter(page, "Peak load", "1.2 kN", over="900")
+    expect(field(page, "Peak load")).to_have_value("1200")
     expect(figures(page)).to_contain_text("Force −1.2 kN")
-    friction = field(page, "Friction coefficient")
-    friction.fill("-1")
-    friction.press("Enter")
+    enter(page, "Friction coefficient", "-1", over="0.3")
     expect(page.get_by_text("cannot be −1").first).to_be_visible()
-    expect(friction).to_have_value("0.3")
+    expect(field(page, "Friction coefficient")).to_have_value("0.3")
     expect(figures(page)).to_contain_text("Force −1.2 kN")
 
     button(page, "Keep this run").click()
-    for value in ("1000", "1100"):
-        typed.fill(value)
-        typed.press("Enter")
+    for before, value in (("1200", "1000"), ("1000", "1100")):
+        enter(page, "Peak load", value, over=before)
         expect(figures(page)).to_contain_text(f"Force −{int(value) / 1000:g} kN")
     legend = "model('pulse').document._all_models"
     holds(
@@ -152,8 +148,7 @@ def test_typed_values_run_or_are_refused_and_leave_the_pinned_run_and_the_views(
         "'Title')"
     )
     holds(page, f"{titles}.some(m => m.text.startsWith('End displacement'))")
-    field(page, "Peak load").fill("1000")
-    field(page, "Peak load").press("Enter")
+    enter(page, "Peak load", "1000", over="1100")
     expect(figures(page)).to_contain_text("Force −1 kN")
     expect(page.get_by_role("tab", name="Loop")).to_have_attribute(
         "aria-selected", "true"
