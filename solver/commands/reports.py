@@ -13,6 +13,7 @@ from solver.commands.console import (
     INTERRUPTED,
     add_command,
     given,
+    postponed_interrupt,
     print_files,
     print_tables,
     warn,
@@ -232,7 +233,10 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
     """
     known = {row.number for row in rows.values() if row.ending not in (STUCK, LOST)}
     table = chosen.out / TABLE
-    with opened(chosen.on, patience(chosen.limit)) as executor:
+    with (
+        postponed_interrupt() as is_interrupted,
+        opened(chosen.on, patience(chosen.limit)) as executor,
+    ):
         # The table is written anew, as its last line may have been cut off.
         write(table, csv_of(plan, list(rows.values())))
         runs = sweep(
@@ -241,6 +245,7 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
             done=set(known),
             limit=chosen.limit,
             warm=not chosen.cold,
+            cancelled=is_interrupted,
         )
         progress = _Progress(plan.size, len(known))
         with table.open("a", encoding="utf-8", newline="") as lines:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -190,10 +191,10 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
     problem = runner.sampler.problem
     force = runner.iterate.contact(next(iter(problem.rubbing))).tangential_force
     density = force / law.by_point(law.weights)[:, None]
+    points = product(law.positions.tolist(), problem.instants.tolist())
     rows = [
-        f"{x!r},{t!r},{1.1 * density[i, j]!r}"
-        for i, x in enumerate(law.positions.tolist())
-        for j, t in enumerate(problem.instants.tolist())
+        f"{x!r},{t!r},{1.1 * value!r}"
+        for (x, t), value in zip(points, density.ravel(), strict=True)
     ]
     table = (
         "\n".join(["x,t,friction force", *rows])

@@ -5,6 +5,7 @@ and refuse at the control what does not hold.
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 from typing import Any
 
 import param
@@ -305,7 +306,8 @@ def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> No
 
     assert "3 points" in open_file("load.csv", "time,force\n0,0\n1,800\n2,0\n")
     assert state.settings.duration == 2.0
-    rows = "".join(f"{x},{t},{x * t}\n" for x in (0.2, 0.4) for t in (0.5, 1.0))
+    points = product((0.2, 0.4), (0.5, 1.0))
+    rows = "".join(f"{x},{t},{x * t}\n" for x, t in points)
     assert "4 points" in open_file("other.csv", f"x,t,friction force\n{rows}")
     assert state.brought is not None
     assert state.brought.source == "other.csv"

@@ -1,6 +1,4 @@
-"""What if: runs reach the chart as they come. Reports:
-commands are run in turn, and read.
-"""
+"""Runs of What if reach the chart as they come; Reports run commands in turn."""
 
 from __future__ import annotations
 
@@ -168,7 +166,7 @@ def test_pages_share_the_processes_of_a_server(
 
 @pytest.fixture
 def no_queue() -> Iterator[None]:
-    """Nothing else waits for its turn, and nothing is left running."""
+    """No other run waits for its turn, and no process is left running."""
     jobs.executor.cache_clear()
     yield
     jobs.executor().shutdown(cancel_futures=True)
@@ -216,7 +214,7 @@ class Done:
         }
 
     def close(self) -> None:
-        """Nothing is left."""
+        """No process is left."""
 
 
 @pytest.fixture

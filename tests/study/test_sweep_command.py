@@ -23,7 +23,7 @@ from solver.study.sweep.plan import Row, axis_of, plan_of
 from solver.study.sweep.report import chart_of, write_sweep
 from solver.study.sweep.run import snake
 
-SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
+SMALL = [f"--set={name}={value}" for name, value in TINY.items()]
 
 
 @pytest.fixture
