@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
+import numpy as np
 import param
 
 from app import messages
@@ -308,6 +309,27 @@ class PageState(param.Parameterized):
             self._awaits_local = not self.is_over
             self.param.update(running=False, iteration=None)
             self.send(Step())
+
+    def before_linear(self, frame: Frame) -> Frame:
+        """A frame with its bodies where the linear stage before the last one put them.
+
+        That of the iterate before, if it was kept; a search from nothing begins at
+        rest.
+        """
+        moved = None
+        if frame.iteration > 1:
+            before = self.history.at(frame.iteration - 1)
+            if before.iteration == frame.iteration - 1:
+                moved = before.deformed
+        elif frame.run.settings.start == SEARCH["start"]:
+            moved = replace(
+                frame.deformed,
+                nodes=np.zeros_like(frame.deformed.nodes),
+                points=np.zeros_like(frame.deformed.points),
+            )
+        if moved is None:
+            return frame
+        return replace(frame, deformed=replace(moved, status=frame.deformed.status))
 
     def show_stage(self, stage: str) -> None:
         """Show the iterate up to one of its stages."""

@@ -123,7 +123,10 @@ class Scene(View):
         plot.x_range.end = layout.width
         plot.y_range.end = layout.height
         column = run.column(selection.phase)
-        picture = Picture(frame, column, layout, self._factor, self._peaks)
+        shown = frame
+        if selection.stage == LOCAL:
+            shown = self.state.before_linear(frame)
+        picture = Picture(shown, column, layout, self._factor, self._peaks)
         self.picture = picture
         for name, columns in picture.columns().items():
             self.fill(name, **columns)

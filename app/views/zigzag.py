@@ -11,7 +11,6 @@ from bokeh.plotting import figure
 
 from app.frame import LINEAR, LOCAL, Floats, Frame, Selection
 from app.units import unit_for
-from app.views.axis import extent
 from app.views.colors import ERROR, EXACT, REFERENCE, STAGES, STICK
 from app.views.view import ExtraView, hover
 from solver.arrays import Array
@@ -20,10 +19,12 @@ ROOM = 0.08
 """Room at the ends of the axes, as a share of their length."""
 FARTHEST = 2.5
 """Largest value of an iterate that is in sight over the largest that is known."""
-FAINTEST = 0.2
+FAINTEST = 0.35
 """Opacity of the oldest iterate."""
 BEYOND = 3.0
 """Length of lines without end over that of the axes."""
+RING = {"size": 16, "line_width": 2.5, "fill_alpha": 0}
+"""Look of the ring about the newest stage."""
 MARKERS = {LOCAL: "circle", LINEAR: "square"}
 
 
@@ -56,8 +57,8 @@ class Zigzag(ExtraView):
         )
         self.add("dead", "HStrip", "y0 y1", fill_color=STICK, alpha=0.3, line_alpha=0)
         self.add("bounds", "HSpan", "y", color=REFERENCE, line_width=1)
-        self.add("law", color=STAGES[LOCAL], width=5, alpha=0.3)
-        self.add("balance", color=STAGES[LINEAR], width=5, alpha=0.25)
+        self.add("graph", color=STAGES[LOCAL], width=5, alpha=0.3)
+        self.add("line", color=STAGES[LINEAR], width=5, alpha=0.25)
         ways = {"along": "solid", "mixed": "dashed"}
         for name, dash in ways.items():
             self.add(
@@ -73,10 +74,10 @@ class Zigzag(ExtraView):
             look = {"marker": marker, "size": 7, "color": STAGES[stage]}
             columns = "x y fill_alpha line_alpha"
             points.append(self.add(stage, "Scatter", columns, also="iteration", **look))
-        ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
-        self.add("newest", "Scatter", size=15, **ring)
+        self.add("newest", "Scatter", "x y line_color", **RING)
         self.add("star", "Scatter", marker="star", size=18, color=EXACT)
-        self.legend(local="on the law", linear="in balance", star="solution")
+        self.mark({"law": STAGES[LOCAL], "balance": STAGES[LINEAR]})
+        self.legend(law="on law", balance="in balance", star="solution")
         tips = {"iteration": "@iteration", "slip": "@x{0.00}", "force": "@y{0.00}"}
         hover(plot, points, tips)
         self._grid = GridBox(
@@ -99,9 +100,7 @@ class Zigzag(ExtraView):
         self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         for stage in MARKERS:
             self.add(f"{stage} field", color=STAGES[stage], width=2)
-        self.add(
-            "marked", "Scatter", size=15, line_width=2.5, fill_alpha=0, color=ERROR
-        )
+        self.add("marked", "Scatter", "x y line_color", **RING)
         plot.on_event(Tap, self._select)
         self.across = self.x
         return plot
@@ -126,7 +125,7 @@ class Zigzag(ExtraView):
             self.y.rename("friction", "Pa")
         position = extra["position"]
         place = unit_for(float(np.abs(extra["x"]).max()), "m")(position)
-        self.x.rename(f"{extra['title']} of x = {place}", "m")
+        self.x.rename(f"slip at {place}", "m")
         slips, forces = way.points.T
         known_slip, known_force = way.star
         highest = max(float(extra["bound"].max()), abs(known_force))
@@ -153,7 +152,7 @@ class Zigzag(ExtraView):
         self.fill("bounds", y=self.y([-bound, bound]))
         give = extra["soft"] * bound
         self.draw(
-            "law",
+            "graph",
             [slider - width, slider - give, slider + give, slider + width],
             [bound, bound, -bound, -bound],
         )
@@ -168,7 +167,7 @@ class Zigzag(ExtraView):
             reach = min(width, height / max(slope, height / width))
             step = np.array([reach, reach * slope])
             line = np.stack([through - step, through + step], axis=1)
-        self.draw("balance", *line)
+        self.draw("line", *line)
 
     def _spans(self) -> tuple[float, float]:
         """Lengths of lines without end, in SI."""
@@ -201,8 +200,12 @@ class Zigzag(ExtraView):
                 y1=self.y(steps[:, 1, 1]),
                 line_alpha=alpha,
             )
-        newest = way.newest
-        self.draw("newest", newest[:1], newest[1:])
+        self.fill(
+            "newest",
+            x=self.x(way.newest[:1]),
+            y=self.y(way.newest[1:]),
+            line_color=[STAGES[way.stage]],
+        )
 
     def _show_field(self, extra: Any, stage: str, column: int) -> None:
         """Show the field of either stage, as far as it has come, and mark the point."""
@@ -217,7 +220,12 @@ class Zigzag(ExtraView):
         position = extra["position"]
         self.fill("position", x=self.across([position]))
         nearest = int(np.abs(x - position).argmin())
-        self._along("marked", [position], shown[[nearest]])
+        self.fill(
+            "marked",
+            x=self.across([position]),
+            y=self.y(shown[[nearest]]),
+            line_color=[STAGES[stage]],
+        )
 
     def _along(self, name: str, x: Any, force: Any) -> None:
         """Draw forces over positions, shape (n,) each, SI, in the field."""
@@ -228,8 +236,8 @@ class _Way:
     """The iterates of a point at one instant, up to a stage of the newest.
 
     `iterations` are their numbers, `stages` slip and force in SI by stage, (n, 2) each,
-    `points` all of them, `newest` the last one, and `star` the solution, (2,), 0 while
-    it is not known.
+    `points` all of them, `newest` the last one, of a `stage`, and `star` the solution,
+    (2,), 0 while it is not known.
     """
 
     def __init__(self, extra: Any, column: int, stage: str) -> None:
@@ -246,6 +254,7 @@ class _Way:
         every = np.concatenate(list(self.stages.values()))
         self.points = every[np.isfinite(every).all(axis=1)].astype(float)
         self.newest = self.stages[stage][-1]
+        self.stage = stage
 
     def segments(self) -> list[tuple[str, Array, Array]]:
         """Ways along k, and others: name, both ends, (n, 2, 2), and opacity, (n,)."""

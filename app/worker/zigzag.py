@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 
 LIMIT = 24_000_000
 """Largest memory of past iterates, bytes."""
-RECENT = 24
-MOST = 40
-"""Numbers of the newest iterates, none of which is left out, and of all that are
-kept."""
+FIRST = 16
+RECENT = 16
+MOST = 48
+"""Numbers of the first and of the newest iterates, none of which is left out, and of
+all that are kept."""
 LARGEST = 20_000
 """Largest number of degrees of freedom for which the stiffness at a point is found: its
 factor takes a third of a second."""
@@ -39,7 +40,7 @@ STRAIGHT = 1e-6
 
 
 class Trail:
-    """Past iterates of a run: the newest, and every other one of those before.
+    """Past iterates of a run: the first, the newest, and some of those between.
 
     `reference` is the incremental solver's solution, None until it is found, and
     `answer` the certified iterate, None as long as there is none.
@@ -58,8 +59,7 @@ class Trail:
         self.iterates.append(replace(iterate, bases=(), k_update=None))
         size = 4 * iterate.outgoing.nbytes
         if len(self.iterates) > MOST:
-            older = self.iterates[:-RECENT]
-            self.iterates = older[::2] + self.iterates[-RECENT:]
+            self.iterates[FIRST:-RECENT] = self.iterates[FIRST:-RECENT:2]
         del self.iterates[: -max(LIMIT // size, 1)]
 
     @property
@@ -160,15 +160,17 @@ class ContactPoint:
 def zigzag(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     """The way of one point of the selected interface, and the field of all its points.
 
-    Of the past iterates, at all shown instants: "iterations", their numbers, from 0
-    for a start from nothing; "local" and "linear", slip, m, and friction force on the body above per length or area, of
-    each stage, (n_iterates, 2, n_instants); "straight", whether the way to either stage
-    goes along k, (n_iterates, 2, n_instants); "k", the slope of this line. Of the
-    newest iterate: the law (`ContactPoint.law_at`), and "fields", friction in the local
-    and the linear stage at points "x", (2, n_points, n_instants). "position" is that of
-    the point, m; "star", slip and force of the solution, (2, n_instants), None while it
-    is not known; "title", the name of its slip; "balance", the stiffness at the point (`stiffness_at`), per length or
-    area, None where it is not found.
+    Of the past iterates, at all shown instants: "iterations", their numbers, from 0 for
+    a start from nothing; "local" and "linear", slip, m, and friction force on the body
+    above per length or area, of each stage, (n_iterates, 2, n_instants); "straight",
+    whether the way to either stage goes along k, same shape; "k", the slope of this
+    line. Of the newest iterate: the law (`ContactPoint.law_at`), and "fields", friction
+    in both stages at points "x", (2, n_points, n_instants).
+
+    "position" is that of the point, m; "star", slip and
+    force of the solution, (2, n_instants), None while it is not known; "balance", the
+    stiffness at the point (`stiffness_at`), per length or area, None where it is not
+    found.
     """
     problem = sampled.problem
     columns = sampled.columns
@@ -190,7 +192,6 @@ def zigzag(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     return {
         **_way(point, past, columns),
         **point.law_at(past[-1], columns),
-        "title": "displacement" if law.is_on_support else "slip",
         "position": float(law.positions[point.number]),
         "star": star,
         "balance": balance,
@@ -244,18 +245,20 @@ def _fields(
 def _chosen(trail: Trail, iterate: Iterate, law: Contact, needs: Needs) -> int:
     """Number of the selected point, or of one in the middle of what slips.
 
-    It is taken at the instant at which most points slip; where nothing slips it is that
-    of the largest friction.
+    It is taken at the instant at which friction takes most energy; where nothing slips
+    it is that of the largest friction.
     """
     if needs.position is not None:
         return int(np.abs(law.positions - needs.position).argmin())
     contact = (trail.solution or iterate).contact(needs.interface)
+    force = np.abs(contact.tangential_force)
     slips = np.abs(contact.status) % OPEN == 1
     # The two pairs of a point on a cut do not move as one before the end.
     slips[np.bincount(law.points, minlength=len(slips)) > 1] = False
-    if not slips.any():
-        return int(np.abs(contact.tangential_force).max(axis=1).argmax())
-    slipping = np.flatnonzero(slips[:, slips.sum(axis=0).argmax()])
+    energy = slips * force * np.abs(np.diff(contact.slip, axis=1, prepend=0.0))
+    slipping = np.flatnonzero(energy[:, energy.sum(axis=0).argmax()])
+    if not len(slipping):
+        return int(force.max(axis=1).argmax())
     return int(slipping[len(slipping) // 2])
 
 
