@@ -13,6 +13,7 @@ from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
 from app.worker.extras import EXTRAS, Sampled
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
+from app.worker.pieces import Cutter
 from app.worker.strand import DrawnRope
 from solver.arrays import Array
 from solver.discrete import Problem
@@ -63,6 +64,7 @@ class Sampler:
         self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(
             problem, settings, self.columns
         )
+        self._cutter = Cutter(problem, settings, self.columns)
         self.run = Run(
             number=number,
             settings=settings,
@@ -128,7 +130,7 @@ class Sampler:
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}
-        known |= self.drawn.extras
+        known |= self.drawn.extras | {"pieces": self._cutter.pieces}
         return {
             name: known[name](iterate, needs) for name in needs.extras & known.keys()
         }
