@@ -15,7 +15,7 @@ import pytest
 from runs import distance_of, solved
 
 from solver.commands.cli import main
-from solver.latin import Ending, Solution, StopState, iterations, judged
+from solver.latin import Answer, Ending, Solution, StopState, iterations, judged
 from solver.latin.end import status, stop
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -82,6 +82,7 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(
         assert solution.status.ending is Ending.CONVERGED
         assert solution.is_certified
         assert solution.records[-1].error_force < ROUNDING
+        assert isinstance(solution.iterate, Answer)
         assert solution.records[-1].estimated_error == solution.iterate.residual
 
 
@@ -138,7 +139,7 @@ def test_seconds_include_all_that_the_stop_rules_take(
     settings = small("bar")
     found = list(judged(discretise(settings), method_of(settings)))
     rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
-    assert found[-1][0].residual is not None
+    assert isinstance(found[-1][0], Answer)
     assert rules == pytest.approx(
         [100.0 * number for number in range(1, len(found) + 1)]
     )

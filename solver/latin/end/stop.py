@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from solver.checks import Number, check
-from solver.latin.end.certified import finished
+from solver.latin.end.certified import certified_answer, own_answer
 from solver.latin.end.cost import WAIT
 from solver.latin.end.estimate import LAST, SOLVED, ErrorEstimate
 from solver.latin.end.status import (
@@ -208,12 +208,7 @@ class StopState:
         self, iterate: Iterate, decision: Decision, residual: float
     ) -> Decision:
         """End a run with an iterate that is a solution, by its KKT residual."""
-        answer = replace(
-            iterate,
-            number=iterate.number + 1,
-            residual=residual,
-            is_answer=self._searches,
-        )
+        answer = own_answer(iterate, residual, is_beside=self._searches)
         last = replace(decision, estimated_error=residual)
         return replace(decision, status=None, finished=(answer, last))
 
@@ -223,8 +218,13 @@ class StopState:
         """End a run with its certified solution, as one more iterate."""
         began = time.perf_counter()
         error = certificate.distance.of_friction_force(iterate)
-        answer = finished(iterate.problem, iterate.k, certificate, iterate)
-        answer = replace(answer, is_answer=self._searches)
+        answer = certified_answer(
+            iterate.problem,
+            iterate.k,
+            certificate,
+            iterate,
+            is_beside=self._searches,
+        )
         advice = ""
         if decision.status is not None and _is_failure(decision.status):
             advice = decision.status.advice
