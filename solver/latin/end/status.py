@@ -85,7 +85,7 @@ PROVEN = Status(
 EXPECTED = Status(
     Ending.CONVERGED,
     "Accurate enough by estimate: the contact force hardly changes any more. Proof by "
-    "a status step would take half as long again, or longer.",
+    "a status step would take as long again, or longer.",
 )
 UNPROVABLE = Status(
     Ending.CONVERGED,

@@ -81,7 +81,7 @@ def status_step(
     solver: Incremental,
     problem: Problem,
     states: States,
-    most: int,
+    most: int | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> tuple[Reference, Certificate | None]:
     """Correct the states of an iterate to a solution, and certify that if it is one.
@@ -95,7 +95,7 @@ def status_step(
     states
         States to begin with, as of `states_of`, shape (n_forces, n_instants).
     most
-        Largest number of linear systems.
+        Largest number of linear systems; None sets no limit.
     stop
         Called before each system; returns True where the step is to be given up.
 
