@@ -130,7 +130,7 @@ def own_answer(iterate: Iterate, residual: float, *, is_beside: bool) -> Answer:
         local_displacement=iterate.local_displacement,
         local_incoming=iterate.local_incoming,
         bases=iterate.bases,
-        course=iterate.course,
+        k_update=iterate.k_update,
         residual=residual,
         force=read_only(iterate.boundary_force),
         is_beside=is_beside,
@@ -210,7 +210,7 @@ def known_forces(
         force[loaded.rows] = loaded.values
         is_known[loaded.rows] = True
     for name, law in problem.rubbing.items():
-        forces = problem.contact_places[name]
+        forces = problem.contact_slices[name]
         for numbers, component in zip(forces, law.components, strict=True):
             carried = law.shares[:, None] * contact_force[numbers][law.points]
             for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):

@@ -318,7 +318,7 @@ class StopState:
         if iterate.indicator > tolerance:
             return False
         enough = min(math.sqrt(tolerance), LARGEST_VIOLATION)
-        if iterate.behaviour <= enough:
+        if iterate.violation <= enough:
             return True
         return self.estimate.is_proven_within(enough, iterate)
 
