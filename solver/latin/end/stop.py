@@ -1,4 +1,8 @@
-"""Stop rules: criteria (`Stop`), and their state during a run (`StopState`)."""
+"""Stop rules: criteria (`Stop`), and their state during a run (`StopState`).
+
+A run is judged by one rule, at iterations that grow by a sixteenth. The rule, and what
+each constant of it buys, are in MATHEMATICS.md, 7.
+"""
 
 from __future__ import annotations
 
@@ -129,7 +133,7 @@ class StopState:
     falling, or when fields are no longer finite.
 
     Most of these numbers cost as much as an iteration. They are computed at iterations
-    that grow geometrically, and at the last one.
+    that grow by a sixteenth, and at the last one.
 
     Parameters
     ----------
