@@ -34,6 +34,8 @@ NUMBER = 3e-8
 is made from (measured)."""
 OF_SYSTEM = 2e-4
 """Seconds of a dense system, whatever its size (measured)."""
+OF_BAND = 3e-5
+"""Seconds of a system with a band matrix, whatever its size (measured)."""
 OF_ITERATION = 5e-4
 """Seconds of an iteration, whatever its size (measured)."""
 MOVING = 1.0 / 3.0
@@ -136,7 +138,7 @@ def costs_of(problem: Problem, states: States | None = None) -> Costs:
     """
     n_jumps = jumps_in(problem)
     condensing = 0.0
-    system = NUMBER * n_jumps
+    system = OF_BAND + NUMBER * n_jumps
     if not rubs_on_supports(problem):
         if states is None:
             moving = _expected_share(problem)
