@@ -28,9 +28,6 @@ instead of 8 (measured)."""
 OBEYED = 1e-10
 """KKT residual up to which an iterate is a solution of the discrete problem by itself,
 and root of the LATIN indicator up to which the first iterate promises to be one."""
-LATE = 100
-"""Iterations from which on a status step is tried at every doubling, whatever has
-changed: the relative change of a contact force that dies out stays large for ever."""
 AGAIN = 2
 """Ratio of the iterations at which a failed status step is tried again, and at which
 two rough numbers are computed anew, as both cost much beside a small iteration: the
@@ -113,7 +110,7 @@ class ErrorEstimate:
             return False
         # A run may begin with its solution, so that no change shows it.
         begins_solved = number == 1 and iterate.indicator <= OBEYED**2
-        if begins_solved or self._changes.whole <= SETTLED or number >= LATE:
+        if begins_solved or self._changes.whole <= SETTLED:
             return True
         return self._costs_of(iterate).is_small(number)
 

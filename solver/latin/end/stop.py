@@ -17,7 +17,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.checks import Number, check
 from solver.latin.end.certified import certified_answer, own_answer
-from solver.latin.end.estimate import AGAIN, LATE, OBEYED, ErrorEstimate
+from solver.latin.end.estimate import AGAIN, OBEYED, ErrorEstimate
 from solver.latin.end.status import (
     ABOVE,
     AT_LIMIT,
@@ -51,6 +51,8 @@ within 0.1 % (block, layers) to 2 % (40 wires) of the reference; with a limit 10
 as large it was up to 20 % off (measured)."""
 SHARE = 16
 """Part of the iterations so far after which a run is judged again: the sixteenth."""
+LATE = 100
+"""Iterations before which no run is called stalled."""
 
 
 @dataclass(frozen=True)
