@@ -269,7 +269,9 @@ class CutStack:
         """Outer sides of a substructure: free, loaded or prescribed.
 
         Of the top and the bottom those parts that no body covers. On the left and right
-        only those of bodies that reach farthest.
+        only those of bodies that reach farthest. A traction acts on all of them, as a
+        fluid would; a displacement is that of what lies farthest out, as a press or the
+        ground would touch.
         """
         rectangle = self._pieces[number].rectangle
         columns, _ = self.stack.grid
@@ -425,11 +427,20 @@ class CutStack:
                 for component, given in enumerate(stack.sides[span.side])
                 if given.prescribed
             )
-            if components:
+            if components and self._is_outermost(number, span):
                 traces[span] = _Trace(span.side, components, span.first, span.last + 1)
             elif span.side == "right" and stack.spring is not None and is_foot:
                 traces["spring"] = _Trace(span.side, (0, 1), 0, 1)
         return traces
+
+    def _is_outermost(self, number: int, span: Span) -> bool:
+        """Check whether a span of an outer side lies as far out as any of that side."""
+        rectangle = self._pieces[number].rectangle
+        if span.side == "bottom":
+            return rectangle.y == 0
+        if span.side == "top":
+            return rectangle.y + rectangle.rows == self.stack.grid[1]
+        return True
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
         """Nodal forces of tractions and weight, scaled, or None.
