@@ -206,8 +206,10 @@ class _Points:
             if along.cap is not None:
                 bound = np.minimum(bound, law.by_point(along.cap)[:, None])
         if along.strength is not None:
-            gone = np.cumsum(np.abs(slip), axis=1)
-            bound *= np.interp(gone, along.strength.slips, along.strength.factors)
+            accumulated_slip = np.cumsum(np.abs(slip), axis=1)
+            bound *= np.interp(
+                accumulated_slip, along.strength.slips, along.strength.factors
+            )
         return np.asarray(bound)
 
 
@@ -215,11 +217,13 @@ def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Po
     """Yield the points of every interface with contact."""
     held, _ = _prescribed(problem)
     for name, law in problem.rubbing.items():
-        places = problem.contact_places[name]
+        places = problem.contact_slices[name]
         friction = force[places[-1]]
         slider = jump = _jump(problem, law, law.tangent, displacement)
-        if law.tangential.softness is not None:
-            slider = jump + law.in_parallel(law.tangential.softness)[:, None] * friction
+        if law.tangential.compliance is not None:
+            slider = (
+                jump + law.in_parallel(law.tangential.compliance)[:, None] * friction
+            )
         opening = pressing = None
         is_given = np.zeros(len(law.positions), dtype=bool)
         jumps = [jump]
@@ -228,8 +232,8 @@ def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Po
             across = _jump(problem, law, law.normal.component, displacement)
             jumps.append(across)
             opening = across + law.mean_by_point(law.normal.gap)[:, None]
-            if law.normal.softness is not None:
-                opening += law.in_parallel(law.normal.softness)[:, None] * pressing
+            if law.normal.compliance is not None:
+                opening += law.in_parallel(law.normal.compliance)[:, None] * pressing
             is_given[law.points] = _is_held(problem, law.normal.component, held)
         yield _Points(law, slider, friction, opening, pressing, tuple(jumps), is_given)
 
@@ -256,7 +260,7 @@ def _contact_force(problem: Problem, force: Array) -> Array:
     for name, law in problem.rubbing.items():
         pairs = np.bincount(law.points)[law.points]
         for place, component in zip(
-            problem.contact_places[name], law.components, strict=True
+            problem.contact_slices[name], law.components, strict=True
         ):
             carried = force[place][law.points] / pairs[:, None]
             for side, sign in zip(component.sides, (1.0, -1.0), strict=False):

@@ -1,4 +1,4 @@
-"""Nothing of a page that was closed stays in the server: no state, no document, no process."""
+"""A closed page leaves nothing in the server: no state, document or process."""
 
 from __future__ import annotations
 
@@ -39,7 +39,9 @@ async def until(condition: Any) -> None:
 
 
 async def open_and_close(address: str) -> None:
-    """Open three pages one after the other, each until it has a picture, and close them."""
+    """Open three pages one after the other,
+    each until it has a picture, and close them.
+    """
     visitors = []
     tasks = []
     for query in QUERIES:

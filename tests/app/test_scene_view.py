@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import chain
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,7 +24,8 @@ from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
 SCENES = tuple(CATALOGUE)
-NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
+KINDS = tuple(chain.from_iterable(CARDS))
+NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
 SMALL = {"elements": 24, "instants": 21}
 PHASES = np.linspace(0.0, 1.0, 7)
 
@@ -245,8 +247,10 @@ def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:
     areas = 0.5 * np.abs(
         np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
     )
-    described = geometry.description
-    assert areas.sum() == pytest.approx(described.length * described.height, rel=1e-2)
+    description = geometry.description
+    assert areas.sum() == pytest.approx(
+        description.length * description.height, rel=1e-2
+    )
 
 
 def test_a_tap_selects_the_substructure_that_is_there() -> None:

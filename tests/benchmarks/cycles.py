@@ -1,4 +1,4 @@
-"""What many cycles of a load cost: LATIN and LATIN-PGD, at once and in slabs of a cycle.
+"""Cost of many cycles of a load: LATIN and LATIN-PGD, at once and in slabs.
 
 `python tests/benchmarks/cycles.py`, of one problem `cycles.py strand`; `--large` up to
 100 cycles. Iterations to 1 % of the contact force are counted without the clock, then
@@ -69,11 +69,13 @@ PROBLEMS: dict[str, tuple[str, dict[str, Any], int]] = {
 """Scene, settings but for the load, and most cycles that the limits on settings
 allow."""
 NOTES = (
-    f"Cycles of {INSTANTS} instants. Iterations and seconds of the processor until the contact "
-    f"force is within {GOAL:.0%} of the incremental solver's over all instants; share of the local "
-    "stage in them, most modes of a substructure, and MB that the state holds (of a slab, if in "
-    "slabs). S: time of the incremental solver over it, and of LATIN at once over it.",
-    f"- is not there after {MOST} iterations or {LONGEST:.0f} s, and not tried with more cycles.",
+    f"Cycles of {INSTANTS} instants. Iterations and seconds of the processor until the "
+    f"contact force is within {GOAL:.0%} of the incremental solver's over all "
+    "instants; share of the local stage in them, most modes of a substructure, and MB "
+    "that the state holds (of a slab, if in slabs). S: time of the incremental solver "
+    "over it, and of LATIN at once over it.",
+    f"- is not there after {MOST} iterations or {LONGEST:.0f} s, and not tried with "
+    "more cycles.",
 )
 
 
@@ -108,7 +110,7 @@ def settings_of(name: str, cycles: int) -> Settings:
         }
     modes = {"pgd_modes": MODES[scene == "wall"], **changes}
     times = {"instants": INSTANTS * cycles + 1, "duration": float(cycles)}
-    return CATALOGUE[scene].checked({**modes, **times, **load})
+    return CATALOGUE[scene].checked(modes | times | load)
 
 
 def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -164,7 +166,8 @@ def _course(
     counts = []
     while slab is not None:
         fields = (reference.displacement, reference.contact_force)
-        part = AtInstants(*(field[:, slab.instants] for field in fields))
+        inside = [field[:, slab.instants] for field in fields]
+        part = AtInstants(*inside)
         distance = distance_to(part, slab.problem)
         way_there = iterations(slab.problem, slab.latin, slab.start)
         for iterate in islice(way_there, MOST):
@@ -239,7 +242,8 @@ def main() -> None:
     print(machine())
     for name in [chosen.problem] if chosen.problem else PROBLEMS:
         scene, changes, most = PROBLEMS[name]
-        print("", scene, *(f"{key}={value}" for key, value in changes.items()))
+        assignments = [f"{key}={value}" for key, value in changes.items()]
+        print("", scene, *assignments)
         ways = list(WAYS)
         for cycles in MANY if chosen.large else FEW:
             if cycles <= most:

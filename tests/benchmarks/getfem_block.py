@@ -1,4 +1,5 @@
-"""A block on a rough support, solved by GetFEM: a program for whichever Python has that.
+"""A block on a rough support, solved by GetFEM: a program for whichever Python has
+that.
 
 It reads JSON and writes JSON, and imports nothing of this project. The elements are
 those of `solver.discrete.elements`, told in GetFEM's own language: bilinear, with the
@@ -37,9 +38,9 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
 
     Returns
     -------
-    Pressing forces `normal` and friction on the block `tangential` of the nodes of the support,
-    (n_instants, n_lowest) each, and how far all nodes have `moved`, row by row from below,
-    (n_instants, n_nodes, 2).
+    Pressing forces `normal` and friction on the block `tangential` of the nodes of the
+    support, (n_instants, n_lowest) each, and how far all nodes have `moved`, row by row
+    from below, (n_instants, n_nodes, 2).
     """
     model, mesh, nodes = _elastic(asked)
     lowest = nodes[: asked["elements"][0] + 1]
@@ -65,7 +66,9 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
 
 
 def _elastic(asked: dict[str, Any]) -> tuple[Any, Any, Any]:
-    """Make the block, moved at its top; with its displacements, x and y of nodes row by row."""
+    """Make the block, moved at its top;
+    with its displacements, x and y of nodes row by row.
+    """
     import getfem as gf
 
     gf.util("trace level", 0)
@@ -118,12 +121,12 @@ def _touching(model: Any, displaced: Any, lowest: Any, friction: float) -> None:
 
 def _work(elastic: Sequence[Sequence[float]], u: str, a: str) -> str:
     """Write the work of the stresses of a displacement with its bending modes."""
-    return "+".join(
-        f"({value!r})*{strain}*{test}"
-        for line, test in zip(elastic, _strains("Test_u", "Test_a"), strict=True)
-        for value, strain in zip(line, _strains(u, a), strict=True)
-        if value
-    )
+    terms = []
+    for line, test in zip(elastic, _strains("Test_u", "Test_a"), strict=True):
+        for value, strain in zip(line, _strains(u, a), strict=True):
+            if value:
+                terms.append(f"({value!r})*{strain}*{test}")
+    return "+".join(terms)
 
 
 def _strains(u: str, a: str) -> tuple[str, str, str]:

@@ -1,11 +1,10 @@
-"""What one iteration costs: by stage, and against the arithmetic that it cannot do without.
+"""Cost of an iteration by stage, beside the arithmetic that it cannot do without.
 
 `python tests/benchmarks/iteration_cost.py`, `iteration_cost.py 3` with medians of three
 """
 
 from __future__ import annotations
 
-import statistics
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -145,7 +144,8 @@ def print_iteration_cost(repeats: int) -> None:
         cells = " ".join(f"{1e3 * part:8.3f}" for part in parts)
         each = 1e9 * cost.iteration / (nodes * instants)
         print(
-            f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} {each:9.1f}"
+            f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} "
+            f"{each:9.1f}"
         )
 
 
@@ -159,7 +159,7 @@ OVERHEADS: tuple[tuple[str, dict[str, object]], ...] = (
 
 @dataclass(frozen=True)
 class Overhead:
-    """What a run pays beside both stages, as shares of an iteration's own work.
+    """Cost of a run beside both stages, as shares of an iteration's own work.
 
     Attributes
     ----------
@@ -185,7 +185,9 @@ class _Unproven(ErrorEstimate):
 
 
 def overhead(settings: Settings, repeats: int) -> Overhead:
-    """Measure a run up to its accuracy in three ways, interleaved: bare, with iterates, judged."""
+    """Measure a run up to its accuracy in three ways,
+    interleaved: bare, with iterates, judged.
+    """
     settings = settings.replace(finish="none")
     problem = discretise(settings)
     method = method_of(settings)
@@ -208,20 +210,18 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
             rules.judge(iterate)
 
     ways: list[Callable[[], object]] = [bare, kept, judged_without_step]
-    times = zip(*samples_of(ways, repeats), strict=True)
-    own, snapshot, stop = (
-        statistics.median(found)
-        for found in zip(
-            *((a, (b - a) / a, (c - b) / a) for a, b, c in times), strict=True
-        )
-    )
+    alone, watched, whole = np.array(samples_of(ways, repeats))
+    own = float(np.median(alone))
+    snapshot = float(np.median((watched - alone) / alone))
+    stop = float(np.median((whole - watched) / alone))
     return Overhead(own / number, snapshot, stop)
 
 
 def print_overheads(repeats: int) -> None:
     """Print what runs pay for their snapshots and their stop rules."""
     print(
-        f"\nbeside the stages, as shares of an iteration's own work; medians of {repeats}"
+        "\n"
+        f"beside the stages, as shares of an iteration's own work; medians of {repeats}"
     )
     print(f"{'scene':<8} {'method':<8} {'own, ms':>8} {'snapshot':>9} {'stop test':>9}")
     for scene, changes in OVERHEADS:

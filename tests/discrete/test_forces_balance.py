@@ -1,4 +1,6 @@
-"""All that acts, contact forces and reactions sum to zero at every instant, moments too."""
+"""All that acts, contact forces and reactions sum to
+zero at every instant, moments too.
+"""
 
 from __future__ import annotations
 
@@ -91,7 +93,9 @@ def assert_rods_balance(rods: Rods, problem: Problem, fields: LoopFields) -> Non
 
 
 def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
-    """Resultants of all loads, N, and their moment about the origin, N m, (n_instants,) each."""
+    """Resultants of all loads, N,
+    and their moment about the origin, N m, (n_instants,) each.
+    """
     assert problem.inside is not None
     force = external_force(problem) * problem.scales.force
     (x, y) = problem.positions.T
@@ -102,7 +106,9 @@ def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
 def on_supports(
     problem: Problem, fields: LoopFields
 ) -> tuple[list[Array], list[Array], list[Array]]:
-    """Forces along x and y of supports and springs, and their moments about the origin."""
+    """Forces along x and y of supports and springs,
+    and their moments about the origin.
+    """
     x = []
     y = []
     moments = []
@@ -125,7 +131,9 @@ def on_supports(
 
 
 def assert_bodies_balance(problem: Problem, fields: LoopFields) -> None:
-    """In the plane: sides, loads, supports and springs, along x and y, and about the origin."""
+    """In the plane: sides, loads, supports and springs,
+    along x and y, and about the origin.
+    """
     loads = loads_of(problem)
     every = [
         [load, *more]
@@ -168,7 +176,7 @@ def small(scene: str, law: str) -> Settings:
         sizes = {**SMALL_ROPE, "elements": 6, "instants": 7}
     if scene == "wall":
         del sizes["substructures"]
-    return CATALOGUE[scene].checked({**sizes, **law_of(kind, law)})
+    return CATALOGUE[scene].checked(sizes | law_of(kind, law))
 
 
 @pytest.mark.parametrize("law", [*LAWS, "general"])
@@ -235,22 +243,21 @@ def test_a_block_balances_whatever_is_at_its_sides(
     generator = np.random.default_rng(seed)
     sizes = generator.uniform(-1.0, 1.0, 8)
     sides = {"left": left, "right": right, "top": top}
-    given_there = {
-        f"{side}_{name}": value
-        for side in sides
-        for name, value in {
-            "normal_displacement": -1e-5 * abs(sizes[0]),
-            "tangential_displacement": 2e-5 * sizes[1],
-            "normal_traction": -1e6 * abs(sizes[2]),
-            "tangential_traction": 1e6 * sizes[3],
-            "normal_slope": sizes[4],
-            "normal_load": "sine",
-        }.items()
+    on_a_side = {
+        "normal_displacement": -1e-5 * abs(sizes[0]),
+        "tangential_displacement": 2e-5 * sizes[1],
+        "normal_traction": -1e6 * abs(sizes[2]),
+        "tangential_traction": 1e6 * sizes[3],
+        "normal_slope": sizes[4],
+        "normal_load": "sine",
     }
+    given_there: dict[str, Any] = {}
+    for side in sides:
+        given_there |= {f"{side}_{name}": value for name, value in on_a_side.items()}
     settings = CATALOGUE["block"].checked(
-        {
-            **sides,
-            **given_there,
+        sides
+        | given_there
+        | {
             "top_normal_load": "hold",
             "gap": "flat",
             "body_force_y": -1e6 * abs(sizes[5]),
@@ -260,8 +267,8 @@ def test_a_block_balances_whatever_is_at_its_sides(
             "instants": 7,
             "substructures": 2,
             "substructures_up": 1,
-            **law_of("plane", law),
         }
+        | law_of("plane", law)
     )
     problem = discretise(settings)
     reference = reference_of(problem)
@@ -314,7 +321,9 @@ def largest(name: str, run: FinishedRun) -> float:
 def test_the_force_of_an_end_is_that_of_its_closed_form_on_every_mesh(
     elements: int,
 ) -> None:
-    """900 N move the end of Table 1's bar by 0.409 mm, and whatever moves it so far needs 900 N."""
+    """900 N move the end of Table 1's bar by 0.409 mm,
+    and whatever moves it so far needs 900 N.
+    """
     path = [[0.0, 0.0], [1.0, 900.0**2 / (2.0 * 659_400.0 * 1500.0)]]
     held = {
         "right_end": "held",
@@ -359,7 +368,9 @@ def test_a_pushed_side_carries_all_friction() -> None:
 def test_a_clamp_carries_what_friction_leaves_of_a_pull_on_every_mesh(
     elements: int,
 ) -> None:
-    """1800 N pull Table 1's bar, of which friction holds 1500 N up to the clamp itself."""
+    """1800 N pull Table 1's bar,
+    of which friction holds 1500 N up to the clamp itself.
+    """
     pulled = {"load": [[0.0, 0.0], [1.0, 1800.0]], "instants": 5, "elements": elements}
     run = run_of("bar", **pulled)
     assert largest("left_force", run) == pytest.approx(-300.0, rel=1e-9)

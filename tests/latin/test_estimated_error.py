@@ -1,4 +1,6 @@
-"""A run knows its error, heeds the accuracy or the limit that is asked, and bills every second."""
+"""A run knows its error,
+heeds the accuracy or the limit that is asked, and bills every second.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,7 @@ ROUNDING = 1e-9
 
 
 def small(scene: str, **changes: Any) -> Any:
-    return CATALOGUE[scene].checked({**SMALL[scene], **changes})
+    return CATALOGUE[scene].checked(SMALL[scene] | changes)
 
 
 @pytest.mark.parametrize("scene", SMALL)
@@ -164,8 +166,8 @@ FEW = {"bricks": 3, "courses": 3, "displacement": 5e-5}
 
 
 def options(scene: str = "bar", **changes: Any) -> Settings:
-    sizes = {**SHORT, **(FEW if scene == "wall" else {})}
-    return CATALOGUE[scene].checked({**sizes, "finish": "accuracy", **changes})
+    sizes = SHORT | (FEW if scene == "wall" else {})
+    return CATALOGUE[scene].checked(sizes | {"finish": "accuracy"} | changes)
 
 
 @cache
@@ -218,11 +220,7 @@ SMALL_BAR = {"elements": 40, "instants": 21, "substructures": 4}
 def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    changes = [
-        word
-        for name, value in SMALL_BAR.items()
-        for word in ("--set", f"{name}={value}")
-    ]
+    changes = [f"--set={name}={value}" for name, value in SMALL_BAR.items()]
     file = tmp_path / "limited.npz"
     assert main(["run", "bar", *changes, "--limit", "1e-9", "--out", str(file)]) == 1
     out, err = capsys.readouterr()

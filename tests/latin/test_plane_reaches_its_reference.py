@@ -1,4 +1,6 @@
-"""LATIN in the plane comes to the incremental reference, soon, and whatever the decomposition."""
+"""LATIN in the plane comes to the incremental reference,
+soon, and whatever the decomposition.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ def errors_of(scene, most, **values):
         size = SMALL
     else:
         size = {"instants": 41}
-    return errors(settings_of(scene, **{**size, **values}), most)
+    return errors(settings_of(scene, **(size | values)), most)
 
 
 def within(found, level):
@@ -121,5 +123,5 @@ def test_only_forces_that_a_support_does_not_share_are_compared():
     for side, points in ((LEANING, 13), (wall, 12)):
         problem = block(left=side).discretise()
         assert len(problem.rubbing["support"].positions) == points
-        places = problem.contact_places["support"]
+        places = problem.contact_slices["support"]
         assert all(determinate_forces(problem)[place][:, 1:].all() for place in places)

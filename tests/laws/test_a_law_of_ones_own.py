@@ -1,4 +1,5 @@
-"""A law that no incremental solver knows: LATIN solves it, and nobody claims a proof of it.
+"""A law that no incremental solver knows: LATIN solves it, and nobody claims a proof of
+it.
 
 References here are dense time stepping that reads nothing of the engine but the
 stiffness.
@@ -66,7 +67,9 @@ def viscous(rows: Indices, damping: Array, force: Array, k: Array) -> Rule:
 
 @dataclass(frozen=True)
 class Dashpot(Interface):
-    """Viscous dampers that are pulled by forces: a law that consists of its local stage."""
+    """Viscous dampers that are pulled by forces:
+    a law that consists of its local stage.
+    """
 
     rows: Indices
     damping: Array
@@ -120,7 +123,8 @@ def damped(law: type[Interface], damping: float = 2.0, **rest: Any) -> Problem:
 
 
 def stepped(of: Problem, load: Array, damping: Array, bound: Array) -> Array:
-    """Dense time stepping, node by node until nothing changes, (n_dofs, n_instants), scaled.
+    """Dense time stepping, node by node until nothing changes, (n_dofs, n_instants),
+    scaled.
 
     The increment minimises an energy with a term |v| at each node, held at the first of
     them.
@@ -160,7 +164,7 @@ def exact_of_damped(damping: float = 2.0) -> Array:
 
 
 def is_honest(solution: Solution) -> bool:
-    """Whether a run has ended without claiming a proof."""
+    """Check whether a run has ended without claiming a proof."""
     assert not solution.is_certified
     assert "ertified" not in solution.status.advice
     return solution.status.ending in (
@@ -393,7 +397,7 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
 
 
 def test_bases_that_nothing_can_prove_do_not_converge() -> None:
-    """What is converged on a few modes need not be near the answer."""
+    """A run that has converged on a few modes need not be near the answer."""
     method = Latin(
         linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40)
     )

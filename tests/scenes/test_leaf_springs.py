@@ -1,4 +1,6 @@
-"""Layers may grow shorter, and a force may bend them: leaf springs, held to closed forms."""
+"""Layers may grow shorter, and a force may bend them:
+leaf springs, held to closed forms.
+"""
 
 from __future__ import annotations
 
@@ -82,7 +84,9 @@ def test_bent_the_other_way_the_longest_leaf_bends_alone() -> None:
 
 
 def test_many_leaves_tend_to_a_spring_of_uniform_strength() -> None:
-    """A triangle of n widths bends by F L^3 / (2 n E I), a leaf alone by F L^3 / (3 E I)."""
+    """A triangle of n widths bends by F L^3 / (2 n E I),
+    a leaf alone by F L^3 / (3 E I).
+    """
     off = []
     for count in (4, 16, 64):
         factor = leaf_spring(np.arange(count, 0, -1.0))
@@ -92,19 +96,30 @@ def test_many_leaves_tend_to_a_spring_of_uniform_strength() -> None:
     assert off[2] < 0.01
 
 
+def energy_lost(leaves: TwoLeaves, peak: float) -> float:
+    """Energy that two leaves lose in a cycle of a force up to a peak, J."""
+    stuck, apart = leaves.stiffnesses
+    slips = peak - leaves.first_slip
+    return 4.0 * leaves.first_slip * slips * (1.0 / apart - 1.0 / stuck)
+
+
 @pytest.mark.parametrize("share", [1.5, 2.5])
 def test_two_leaves_lose_the_energy_of_goodman_and_klumpp(share: float) -> None:
     leaves = TwoLeaves(LENGTH, HEIGHT, YOUNG, 0.0, 0.3 * PRESSURE)
     peak = share * leaves.first_slip
     there = [[0.0, 0.0], [0.25, 0.0], [0.4, peak], [0.7, -peak], [1.0, peak]]
     settings = settings_of(
-        **{**THIN, "thickness": HEIGHT, "poisson": 0.0, "instants": 41, "layers": 2},
         **{
+            **THIN,
+            "thickness": HEIGHT,
+            "poisson": 0.0,
+            "instants": 41,
+            "layers": 2,
             "bending": "force",
             "bend_load": there,
             "pressure": PRESSURE,
             "elements": 32,
-        },
+        }
     )
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
@@ -114,10 +129,7 @@ def test_two_leaves_lose_the_energy_of_goodman_and_klumpp(share: float) -> None:
     force = loop.force(solution.iterate)
     cycle = settings.times() >= 0.4
     energy = abs(float(np.trapezoid(force[cycle], bent[cycle])))
-    (stuck, apart) = leaves.stiffnesses
-    slips = peak - leaves.first_slip
-    lost = 4.0 * leaves.first_slip * slips * (1.0 / apart - 1.0 / stuck)
-    assert energy == pytest.approx(lost, rel=0.005)
+    assert energy == pytest.approx(energy_lost(leaves, peak), rel=0.005)
     (exact,) = settings.exact(problem)
     np.testing.assert_allclose(bent, exact.across, atol=0.005 * bent.max())
 
@@ -145,7 +157,7 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
     stack = settings.structure()
     assert isinstance(stack, Stack)
     assert stack.longest == 1
-    acts = {act.where: act.places for act in stack.described().acts}
+    acts = {act.where: act.points for act in stack.description().acts}
     np.testing.assert_allclose(acts["top y"][:, 1], [1.0, 2 / 3, 2 / 3])
     np.testing.assert_allclose(acts["bottom y"][:, 1], [0.0, 0.0, 1 / 3])
 

@@ -26,18 +26,24 @@ from solver.scenes.remarks import (
 from solver.study.quantities.finished import FinishedRun, finished_run
 
 TALL = {
-    **{"gap": "flat", "length": 0.05, "height": 0.1, "elements": 6, "elements_up": 12},
-    **{"top": "dragged", "top_normal_traction": -1e6, "instants": 21},
-    **{"top_tangential_displacement": 1e-4, "top_tangential_load": "ramp"},
+    "gap": "flat",
+    "length": 0.05,
+    "height": 0.1,
+    "elements": 6,
+    "elements_up": 12,
+    "top": "dragged",
+    "top_normal_traction": -1e6,
+    "instants": 21,
+    "top_tangential_displacement": 1e-4,
+    "top_tangential_load": "ramp",
 }
 PRESSED = {
-    **{
-        "gap": "parabola",
-        "radius": 30.0,
-        "friction": 0.5,
-        "top_normal_displacement": -2e-5,
-    },
-    **{"elements": 96, "elements_up": 16},
+    "gap": "parabola",
+    "radius": 30.0,
+    "friction": 0.5,
+    "top_normal_displacement": -2e-5,
+    "elements": 96,
+    "elements_up": 16,
 }
 
 
@@ -89,9 +95,7 @@ def test_a_contact_that_grows_by_leaps_has_friction_in_a_saw_and_says_so() -> No
 def test_the_command_prints_remarks_with_the_result(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    changes = [
-        text for name, value in TALL.items() for text in ("--set", f"{name}={value}")
-    ]
+    changes = [f"--set={name}={value}" for name, value in TALL.items()]
     command = ["run", "block", *changes, "--set", "friction=0.9", "--no-reference"]
     assert main(command) == 0
     shown = capsys.readouterr().out
@@ -118,7 +122,7 @@ SOFT = {
 
 
 def beyond(scene: str, changes: dict[str, object]) -> str | None:
-    settings = CATALOGUE[scene].checked({**SMALL[scene], **changes})
+    settings = CATALOGUE[scene].checked(SMALL[scene] | changes)
     problem = discretise(settings)
     displacement = reference_of(problem).displacement
     return beyond_small_strain(settings.structure(), problem, displacement)

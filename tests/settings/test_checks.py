@@ -1,4 +1,6 @@
-"""Kinds of values: what is allowed passes, and of the rest the message names value and remedy."""
+"""Kinds of values: what is allowed passes,
+and of the rest the message names value and remedy.
+"""
 
 from __future__ import annotations
 
@@ -91,8 +93,11 @@ KINDS: dict[str, tuple[Kind, list[Any], list[Any]]] = {
         [{"c": 1}, {"a": 0}, {1: 1}, [("a", 1)], None],
     ),
 }
-ALLOWED = [(kind, value) for kind, fine, _ in KINDS.values() for value in fine]
-REFUSED = [(kind, value) for kind, _, wrong in KINDS.values() for value in wrong]
+ALLOWED: list[tuple[Kind, Any]] = []
+REFUSED: list[tuple[Kind, Any]] = []
+for one_kind, fine, wrong in KINDS.values():
+    ALLOWED += [(one_kind, value) for value in fine]
+    REFUSED += [(one_kind, value) for value in wrong]
 
 
 @pytest.mark.parametrize(("kind", "value"), ALLOWED)
@@ -128,7 +133,10 @@ def test_a_range_of_one_number_is_that_of_an_array_of_it(
     alone = Number(low, high, above=above).flaw(value)
     among = Numbers(((None,),), low, high, above=above).flaw(np.array([value, value]))
     assert (alone is None) == (among is None)
-    is_in = low < value <= high if above else low <= value <= high
+    if above:
+        is_in = low < value <= high
+    else:
+        is_in = low <= value <= high
     assert (alone is None) == is_in
 
 

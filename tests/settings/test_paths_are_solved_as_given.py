@@ -1,4 +1,4 @@
-"""What a path over time or a table along a body has, a run sees, or says that it does not."""
+"""Paths over time and tables along a body are solved as given, or a run says not."""
 
 from __future__ import annotations
 
@@ -18,17 +18,21 @@ from solver.settings.definitions import SettingError
 from solver.settings.load import EVERY_POINT, THINNED
 
 SPIKE = [[0.0, 0.0], [0.5, 0.0], [0.503, 1200.0], [0.506, 0.0], [1.0, 0.0]]
-SCENES_AND_PATHS = [
-    (scene, name)
-    for scene, kind in CATALOGUE.items()
-    for name in kind.checked({}).paths
-    if hasattr(kind.definitions()[name], "presets")
-]
+SCENES_AND_PATHS: list[tuple[str, str]] = []
+for scene_name, scene_kind in CATALOGUE.items():
+    definitions = scene_kind.definitions()
+    SCENES_AND_PATHS += [
+        (scene_name, path)
+        for path in scene_kind.checked({}).paths
+        if hasattr(definitions[path], "presets")
+    ]
 """Paths that may be tables, of scenes by default."""
 
 
 def drawn(scene: str, name: str, seed: int) -> Any:
-    """Settings with a table of wide and narrow swings, of which the instants know nothing."""
+    """Settings with a table of wide and narrow swings,
+    of which the instants know nothing.
+    """
     random = np.random.default_rng([seed, *name.encode()])
     if scene == "strand":
         grip = {"grip": "displacement"}
@@ -74,7 +78,7 @@ def of_preset(scene: str, name: str, preset: str, **changes: Any) -> Any:
         grip = {"grip": "displacement"}
     else:
         grip = {}
-    return CATALOGUE[scene].checked({name: preset, "seed": 3, **grip, **changes})
+    return CATALOGUE[scene].checked({name: preset, "seed": 3} | grip | changes)
 
 
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
@@ -265,7 +269,7 @@ NOTCHED = [[0.0, 1.0], [0.51, 1.0], [0.511, 0.01], [0.512, 0.01], [0.513, 1.0]]
 
 
 def varying(**changes):
-    return BarSettings.checked({"method": "paper", **SMALL, **changes})
+    return BarSettings.checked({"method": "paper"} | SMALL | changes)
 
 
 @pytest.mark.parametrize("table", [GRADED, NOTCHED], ids=["graded", "notched"])

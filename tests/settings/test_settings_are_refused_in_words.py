@@ -1,4 +1,4 @@
-"""What is no setting, or no value of one, is refused in one clear line."""
+"""Unknown settings and bad values are refused in one clear line."""
 
 import json
 import math
@@ -49,7 +49,9 @@ NO_CHOICES = ["nothing", 3, 0.0, None, [], ["none"], {"a": 1}]
 
 @st.composite
 def wrong(draw):
-    """Any setting with a value that it cannot have, what is allowed, and a remedy or none."""
+    """Any setting with a value that it cannot have,
+    what is allowed, and a remedy or none.
+    """
     name = draw(st.sampled_from(sorted(DEFINITIONS)))
     definition = DEFINITIONS[name]
     remedy = ""

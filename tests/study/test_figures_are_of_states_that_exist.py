@@ -1,4 +1,4 @@
-"""What is read off a run is the largest of states that exist, under the catalogue's names."""
+"""Figures of a run are the largest of states that exist, by the catalogue's names."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def printed(
 
 @pytest.mark.parametrize("instants", [12, 20, 33])
 def test_a_block_on_a_slope_is_held_up_to_the_angle_of_friction(instants: int) -> None:
-    """There friction is mu W cos(atan(mu)), whatever instants lie around it."""
+    """Friction at the steepest slope is mu W cos(atan(mu)), whatever the instants."""
     run = ran("incline", slope_load="ramp", instants=instants, **COARSE)
     exact = 0.3 * 1000.0 * math.cos(math.atan(0.3))
     assert reading("holding_force")(run) == pytest.approx(exact, rel=5e-4)
@@ -120,10 +120,10 @@ def test_of_friction_that_changes_with_slip_no_force_is_said_to_hold() -> None:
     assert math.isnan(reading("holding_friction")(run))
 
 
-def test_where_friction_goes_while_the_load_stands_the_displacement_is_that_of_the_end() -> (
-    None
-):
-    """F^2 / (2 E A q), with the last q, for the bar that slips no farther than it would at once."""
+def test_where_friction_goes_under_a_steady_load_the_displacement_is_the_last() -> None:
+    """F^2 / (2 E A q), with the last q,
+    for the bar that slips no farther than it would at once.
+    """
     run = ran("bar", **LOOSENED)
     displacement, force = figures_of(run)
     exact = 600.0**2 / (2.0 * STIFFNESS * 0.3 * 3750.0)

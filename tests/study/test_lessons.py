@@ -1,9 +1,12 @@
-"""Lesson files are read as they are meant, or refused in one line, and say what the engine does."""
+"""Lesson files are read as they are meant,
+or refused in one line, and say what the engine does.
+"""
 
 from __future__ import annotations
 
 import functools
 import re
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -44,12 +47,12 @@ def written(parts: dict[str, str | None], claim: dict[str, str | None]) -> str:
     """Give a small lesson with some parts changed, or left out where they are None."""
     lines = [
         f"{key} = {value}"
-        for key, value in {**PARTS, **parts}.items()
+        for key, value in (PARTS | parts).items()
         if value is not None
     ]
     own = [
         f"{key} = {value}"
-        for key, value in {**CLAIM, **claim}.items()
+        for key, value in (CLAIM | claim).items()
         if value is not None
     ]
     return "\n".join([*lines, "[[checkpoints]]", *own, ""])
@@ -181,11 +184,12 @@ def test_the_command_refuses_what_is_no_lesson_and_runs_nothing(
 
 
 LESSONS = {path.stem: lesson_from_file(path) for path in sorted(FOLDER.glob("*.toml"))}
-CHECKPOINTS = [
-    pytest.param(name, number, id=f"{name}: {one.claim}")
-    for name, lesson in LESSONS.items()
-    for number, one in enumerate(lesson.checkpoints)
-]
+CHECKPOINTS = []
+for title, taught in LESSONS.items():
+    CHECKPOINTS += [
+        pytest.param(title, number, id=f"{title}: {checkpoint.claim}")
+        for number, checkpoint in enumerate(taught.checkpoints)
+    ]
 each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))
 
 
@@ -206,9 +210,8 @@ def test_what_a_lesson_shows_is_there_and_moves_only_after_the_choice(
     lesson: Lesson,
 ) -> None:
     assert {lesson.interface} <= {"", *discretise(lesson.settings).rubbing}
-    shown = {
-        kind.name for card in CARDS for kind in card if kind.applies(lesson.settings)
-    }
+    kinds = chain.from_iterable(CARDS)
+    shown = {kind.name for kind in kinds if kind.applies(lesson.settings)}
     assert set(lesson.views) <= shown
     before = " ".join(lesson.text)
     after = " ".join(lesson.explanation)

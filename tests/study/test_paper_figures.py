@@ -1,4 +1,5 @@
-"""The paper's figures: `python -m solver figures` writes them, and they show what the paper says.
+"""The paper's figures: `python -m solver figures` writes them, and they show what the
+paper says.
 
 The paper prints curves without numbers. The gains of Figs. 3 and 4 are those of another
 code for the same equations, within 20 %; the limits of Figs. 5 to 8 are set around what
@@ -8,6 +9,7 @@ tight for another answer.
 
 from __future__ import annotations
 
+import html
 import re
 from itertools import islice
 
@@ -55,7 +57,7 @@ def test_the_page_stands_alone_and_shows_every_figure_with_claim_numbers_and_cap
     page = (written / "figures.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == sum(len(figure.panels) for figure in figures)
     assert not re.search(r"<link|<script src|<img|@import", page)
-    plain = page.replace("&#x27;", "'").replace("&lt;", "<").replace("&quot;", '"')
+    plain = html.unescape(page)
     for figure in figures:
         for words in (figure.claim, figure.caption, figure.title, figure.verdict):
             assert words in plain
@@ -91,7 +93,7 @@ WITHIN = 0.2
 
 
 def options(**values):
-    return BarSettings.checked({"method": "paper", **BENCHMARK, **values})
+    return BarSettings.checked({"method": "paper"} | BENCHMARK | values)
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,6 @@
-"""`python -m solver study` measures what it says: errors against time, and who is first where."""
+"""`python -m solver study` measures what it says:
+errors against time, and who is first where.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ import os
 import re
 import subprocess
 import sys
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -84,7 +86,7 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 2
     assert not re.search(r"<link|<script src|<img|@import", page)
-    cells = {f">{cell}</td>" for row in table(curves)[1:] for cell in row}
+    cells = {f">{cell}</td>" for cell in chain.from_iterable(table(curves)[1:])}
     for words in (*forms_of(BarSettings()), INCREMENTAL, "BLAS threads: 1", *cells):
         assert words in page
 
@@ -92,10 +94,11 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
 def test_the_table_marks_the_first_of_the_levels(measured):
     folder, curves = measured
     for column, level in enumerate(LEVELS.values(), start=1):
+        reached = [row for row in rows(folder / "levels.csv") if row["seconds"]]
         times = {
             row["method"]: float(row["seconds"])
-            for row in rows(folder / "levels.csv")
-            if float(row["level"]) == level and row["seconds"]
+            for row in reached
+            if float(row["level"]) == level
         }
         first = [row[0] for row in table(curves) if row[column].endswith("*")]
         assert first == [min(times, key=times.get)]
@@ -141,10 +144,13 @@ def test_a_page_without_who_draws_it_says_so(tmp_path, monkeypatch, capsys, meas
     assert names == {"curves.csv", "levels.csv", "map.csv", "study.html"}
 
 
-PROGRAM = "import solver.__main__, solver.study.sweep.executors as found; print(found.machine())"
+PROGRAM = (
+    "import solver.__main__, solver.study.sweep.executors as found; "
+    "print(found.machine())"
+)
 
 
-def test_the_report_states_the_threads_as_given_and_one_where_the_command_line_sets_them():
+def test_the_report_states_the_threads_as_given_and_one_set_by_the_command_line():
     surroundings = {
         name: value for name, value in os.environ.items() if name not in LIMITS
     }
