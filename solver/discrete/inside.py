@@ -61,7 +61,7 @@ class Inside:
         each.
     dofs
         Degrees of freedom of the problem that each substructure keeps, (n_kept,) each.
-    places, components
+    positions, components
         Position of every degree of freedom of the problem, (n_dofs, 2), scaled, and its
         component: 0 along x and 1 along y, (n_dofs,).
     """

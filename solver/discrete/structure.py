@@ -21,7 +21,7 @@ OUTWARD = {
     "top": (0.0, 1.0),
 }
 """Sides of all bodies together, and the outward normal of each."""
-Way = tuple[float, float]
+Direction = tuple[float, float]
 
 
 def on_side(side: str, shares: ArrayLike) -> Array:
@@ -60,12 +60,12 @@ class Act:
     where: str
     symbol: str
     points: Array
-    towards: Way | Array
+    towards: Direction | Array
     values: Array
     unit: str
 
     @property
-    def away(self) -> Way:
+    def away(self) -> Direction:
         """Direction out of the body, a unit vector: there is room for an arrow."""
         return OUTWARD.get(self.where.partition(" ")[0], OUTWARD["right"])
 
