@@ -15,10 +15,10 @@ from app.files.link import (
     LONGEST,
     Link,
     link_of,
-    place_of,
     query_of,
     read,
     show,
+    shown_by,
 )
 from app.lessons.catalogue import CASES, settings_of
 from app.messages import Needs, Pace, Start
@@ -87,7 +87,7 @@ def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
     state = PageState(settings_of(CASES["crate"]), case="crate")
     seen: list[str] = []
     watched = ["settings", "case", "plots"]
-    state.param.watch(lambda *events: seen.append(query_of(place_of(state))), watched)
+    state.param.watch(lambda *events: seen.append(query_of(shown_by(state))), watched)
     show(state, read("?scene=bar&peak=800.0")[0])
     assert seen == ["?scene=bar&peak=800.0"]
 
@@ -145,7 +145,7 @@ def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -
 def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     state = PageState(default_settings("bar"))
     link = Link(state, Browser())
-    before = query_of(place_of(state))
+    before = query_of(shown_by(state))
     state.change(peak=1200.0)
     state.choose_scene("rope")
     link.go("?scene=bar&peak=1200.0")

@@ -14,6 +14,7 @@ import pytest
 from app.controls import POINTS, Controls, SettingControl
 from app.files.opener import TableOpener
 from app.messages import Start
+from app.refusals import advice_in_titles
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
 from solver.files.saved import dump
@@ -149,6 +150,18 @@ def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words
     state = of_scene("block")
     state.change(substructures_up=state.settings.elements_up + 1)
     assert "lower Substructures up or raise Elements up" in state.refusal
+
+
+def test_advice_on_a_run_has_the_names_of_the_page_and_keeps_its_other_words() -> None:
+    advice = (
+        "Friction falls with slip. Raise max_iterations, or lower friction_ratio or "
+        "friction, or try a k_scale ten times smaller, where friction falls."
+    )
+    assert advice_in_titles(default_settings("bar"), advice) == (
+        "Friction falls with slip. Raise Most iterations, or lower Last friction over "
+        "first or Friction coefficient μ, or try a Factor on k ten times smaller, where "
+        "friction falls."
+    )
 
 
 def test_an_empty_field_is_the_default() -> None:

@@ -290,7 +290,7 @@ def test_a_tap_on_the_map_selects_the_instant_and_the_place() -> None:
     tap = type("Tap", (), {"x": 0.5, "y": 0.25 * float(frame.run.instants[-1])})
     view._select(tap)
     assert view.state.selection.phase == pytest.approx(0.25)
-    assert view.state.selection.place == pytest.approx(0.5)
+    assert view.state.selection.position == pytest.approx(0.5)
 
 
 def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
