@@ -315,6 +315,8 @@ class TableColumn:
     def quantities(self) -> tuple[frozenset[str], bool]:
         """Quantities that the name may mean, and whether all of it means them."""
         name = self.key.replace("_", " ").rstrip(" .:")
+        # A head may be `load cell`, `Axial Force 2` or `Prüfzeit`: the whole name, its
+        # last word without a number, and its ending are tried.
         joined = name.replace(" ", "")
         last = name.rstrip("0123456789 ").rpartition(" ")[2]
         words = [name, joined, last]
@@ -373,6 +375,9 @@ def _meant_by() -> dict[str, frozenset[str]]:
 
 def column_of(place: int, line: int, head: str) -> TableColumn:
     """Make the column of a head, which is split into name and unit."""
+    # Brackets are certain; a last word is a unit only if it is spelt as one; what
+    # follows a slash or "in" is taken for a unit even if it is unknown, and refused
+    # then.
     in_brackets = _BRACKETS.fullmatch(head)
     if in_brackets is not None:
         return TableColumn(place, line, *in_brackets.groups())
@@ -408,6 +413,7 @@ def are_units(cells: list[str]) -> bool:
     Symbols of quantities, as t, s and F, are no units. At least half of the cells are
     units, as prose may have an "in".
     """
+    # Cells that are "-" or "1" are units that prove nothing.
     words = [cell.strip("()[]") for cell in cells if cell.strip("()[]-1")]
     units = [word for word in words if is_spelt_as_unit(word)]
     others = [word for word in words if word not in units]
@@ -420,6 +426,7 @@ def parse_unit(text: str) -> tuple[float, Dimensions] | None:
     size = Fraction(1)
     total = [0, 0, 0, 0, 0]
     for sign, symbol, power in _factors(text):
+        # As it is written comes first: in small letters mN and MN would be one.
         known = symbol
         if symbol not in _SYMBOLS:
             known = SPELLINGS.get(symbol.lower(), "")
@@ -435,6 +442,7 @@ def parse_unit(text: str) -> tuple[float, Dimensions] | None:
 
 def _factors(text: str) -> Iterable[tuple[int, str, str]]:
     """Yield sign of the exponent, symbol and exponent of every factor of a unit."""
+    # Powers are written in many ways, as m², m^2 and m2.
     plain = text.strip().replace("²", "2").replace("³", "3").replace("^", "")
     # A hyphen between letters is a product, as in kN-m.
     plain = re.sub(r"(?<=[^\W\d])-(?=[^\W\d])", "·", plain)
@@ -480,6 +488,7 @@ def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
     """
     if not unit or not (math.isfinite(size * usual) and size * usual > 0.0):
         return ""
+    # Prefixes go by thousands, so a forgotten one shows as a power of 1000.
     thousands = math.log10(size / usual) / 3.0
     if abs(thousands) < DOUBTFUL:
         return ""

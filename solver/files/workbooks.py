@@ -46,6 +46,7 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
         raise refuse(f"{OTHER} ({type(problem).__name__})") from None
     lines = []
     for number, row in enumerate(rows, start=1):
+        # Empty rows keep their number: messages name lines as the workbook does.
         line = line_of(number, " ".join(row), _without_end(row))
         if line.cells:
             lines.append(line)
@@ -58,6 +59,7 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
 def _check_archive(data: bytes, refuse: Refuse) -> None:
     """Refuse archives that are no workbook, or are far larger when unpacked."""
     try:
+        # Sizes are in the directory of an archive, so nothing is unpacked for this.
         parts = zipfile.ZipFile(io.BytesIO(data)).infolist()
     except zipfile.BadZipFile:
         raise refuse(OTHER) from None

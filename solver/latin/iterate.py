@@ -135,10 +135,12 @@ class Iterate:
         """State from which the iteration goes on."""
         course = self.course
         if course is not None and course.k is not self.k:
+            # With another k, W and F stay and W + F/k changes.
             displacement, force = course.fields
             outgoing = read_only(displacement + force / course.k[:, None])
             return Checkpoint(self.number, self.seconds, outgoing, course=course)
         bases: tuple[SharedBasis, ...] = ()
+        # Bases of a search do not hold the solution that certifies it.
         if self.residual is None:
             bases = self.bases
         return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)

@@ -178,6 +178,7 @@ def next_slab(
         name: law.mean_by_point(law.tangential.slider(moved, force)[:, -1])[law.points]
         for name, law in solved.problem.rubbing.items()
     }
+    # The fields of the last cycle are the guess for the next.
     again = solved.outgoing[:, solved.problem.n_instants - length :]
     again = np.asfortranarray(again[:, : instants.stop - instants.start])
     return Slab(
@@ -222,6 +223,7 @@ def solve_in_slabs(
         if not solutions:
             finish = StatusStep()
         method = replace(slab.latin, finish=finish)
+        # The limit on time is one for all slabs.
         billed = spent + time.perf_counter() - began
         solutions.append(
             solve(slab.problem, method, start=slab.start, watch=False, spent=billed)
@@ -232,6 +234,7 @@ def solve_in_slabs(
     records: list[Record] = []
     for solution in solutions:
         records += solution.records
+    # The last record is replaced by that of the whole interval.
     last = records.pop()
     records = [
         replace(entry, iteration=number) for number, entry in enumerate(records, 1)

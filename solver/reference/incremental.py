@@ -157,6 +157,7 @@ class IncrementalRod:
             least = self._with_changing_bound(bound, load, status, gone)
         else:
             search = self._search
+            # A constant bound keeps one search, and with it its coarser meshes.
             if rules.bound.shape[1] > 1:
                 search = Search(self._stiffness, bound * self._movable, self._movable)
             done = search.solutions
@@ -182,6 +183,8 @@ class IncrementalRod:
         end = gone
         for _ in range(TRIALS):
             factor = rules.strength(end[dofs])
+            # The bound is linear in the slip on a segment of the strength: its slope
+            # goes into the stiffness, and the rest is a constant bound.
             slope = rules.strength.slope(end[dofs])
             slope = first * self._on_dofs(slope) * movable
             bound = (first * self._on_dofs(factor) - slope * (end - gone)) * movable
@@ -189,6 +192,7 @@ class IncrementalRod:
             try:
                 least = search(force, status * search.rubs)
                 reached = gone + np.abs(least.increment)
+                # The trial was right if the slip ends on the segment that was assumed.
                 if np.array_equal(
                     rules.strength.segment(end[dofs]),
                     rules.strength.segment(reached[dofs]),
@@ -196,6 +200,8 @@ class IncrementalRod:
                     growth = self._on_dofs(
                         rules.strength.lowest_slope(gone[dofs], reached[dofs])
                     )
+                    # Factoring fails where the structure is not stable under the
+                    # steepest fall passed.
                     softest = self._stiffness.stiffened(first * growth * movable)
                     slips = movable * (least.increment != 0.0)
                     softest.solve_kept(slips, np.zeros_like(force))
@@ -214,6 +220,7 @@ class IncrementalRod:
         """Reference of the minima of the first instants, after which nothing moves."""
         problem = self._problem
         dofs = self._dofs
+        # An instant is a row here: each is filled as a whole.
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
         for instant, least in enumerate(minima):
             increments[instant] = least.increment

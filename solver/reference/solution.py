@@ -110,6 +110,7 @@ def fingerprint(problem: Problem) -> bytes:
     laws = problem.rubbing
     matrices = assembled_stiffness(problem), jumps(problem)
     for matrix in matrices:
+        # Equal matrices may store their entries in another order.
         matrix.sort_indices()
     parts: list[ArrayLike] = [
         [f"{name} {law.opens} {law.is_on_support}" for name, law in laws.items()],
@@ -130,6 +131,7 @@ def fingerprint(problem: Problem) -> bytes:
     ]
     digest = blake2b(digest_size=16)
     for part in map(np.asarray, parts):
+        # Type and shape, too: equal bytes may be other numbers.
         digest.update(f"{part.dtype.str} {part.shape}".encode())
         digest.update(part.tobytes())
     return digest.digest()

@@ -25,13 +25,8 @@ from solver.files.columns import (
 )
 from solver.files.disk import LARGEST, check_place, read_bytes, whole_file, write
 from solver.files.numerals import decimal_signs, is_gap, is_numeral, number
-from solver.files.table_lines import (
-    block_of,
-    fitted,
-    headed,
-    lines_of_text,
-    text_of,
-)
+from solver.files.table_blocks import block_of, fitted, headed
+from solver.files.table_lines import lines_of_text, text_of
 from solver.files.workbooks import UNPACKED, is_archive, lines_of_workbook
 from solver.settings.definitions import SettingError
 

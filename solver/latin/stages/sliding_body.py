@@ -135,6 +135,7 @@ class Slide:
 
         Both z have shape (n_rows, n_instants), scaled.
         """
+        # Pressing forces do not depend on a slide along the support, so they are known.
         held = incoming[self._across]
         pressing = self._k * (np.maximum(held, self._closed) - held)
         slack = (self._bound + self._friction * pressing) * self._compliance
@@ -228,6 +229,7 @@ class Slide:
             # be a flat.
             if trial and is_balanced:
                 return step, held
+            # Points at a bound slip, and their friction does not change with the step.
             slope = float(pulled(held == wanted))
             if end > step:
                 slope += self._spring
@@ -255,6 +257,7 @@ class Slide:
         *unbalanced, at_mean = self._stiffness @ held + pulled + load
         if at_mean == 0.0:
             step = float(steps[-1])
+        # Before the first turn all points slip, and the spring alone changes its force.
         elif unbalanced[0] <= 0.0:
             step = float(turns[0] + unbalanced[0] / self._spring)
         else:
