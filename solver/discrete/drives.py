@@ -95,6 +95,7 @@ def beyond(drives: Sequence[Drive], instant: int, share: float) -> str:
     changes.
     """
     moving = [drive for drive in drives if drive.changes(instant)]
+    # At the very beginning all loads are zero, and "beyond 0 N" would say nothing.
     from_nothing = not any(drive.before(instant) for drive in moving)
     if moving and from_nothing and share <= LEAST_STEP:
         return f"with {loads_at(drives, instant)}"

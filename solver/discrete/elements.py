@@ -37,6 +37,7 @@ def elastic_matrix(young: float, poisson: float, state: str) -> Array:
     `state` is "strain" or "stress" (Timoshenko and Goodier, Theory of Elasticity, 1970,
     ch. 2).
     """
+    # Plane strain is plane stress of a body with other constants.
     if state == "strain":
         young = young / (1.0 - poisson**2)
         poisson = poisson / (1.0 - poisson)
@@ -90,6 +91,7 @@ def element_stiffness(width: float, height: float, elastic: Array) -> Array:
         compatible = strain_matrix(xi, eta, width, height)
         strain = np.hstack([compatible, _bending(xi, eta, width, height)])
         stiffness += 0.25 * width * height * strain.T @ elastic @ strain
+    # The bending modes belong to one element, so they are eliminated in it.
     coupling = stiffness[8:, :8]
     response = np.linalg.solve(stiffness[8:, 8:], coupling)
     condensed = stiffness[:8, :8] - coupling.T @ response
@@ -242,6 +244,8 @@ class SchurComplement:
         stiffness: sparse.csc_array | Array
         if isinstance(whole, SchurComplement):
             self._before = whole
+            # What was condensed before is condensed further: its inside is eliminated
+            # already.
             stiffness = whole.stiffness
             places = np.searchsorted(whole.kept, kept)
         else:

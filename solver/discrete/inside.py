@@ -148,6 +148,8 @@ class Inside:
         for body in np.unique(bodies):
             dofs = np.flatnonzero(bodies == body)
             modes = self._rigid_modes(dofs)
+            # Motions that vanish where displacements are prescribed are those that stay
+            # free.
             at_fixed = modes[np.isin(dofs, fixed)]
             _, sizes, combinations = np.linalg.svd(at_fixed, full_matrices=True)
             hindered = np.count_nonzero(sizes > HELD)
@@ -161,6 +163,7 @@ class Inside:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
         is_along_x = self.components[dofs] == 0
         x, y = (self.places[dofs] - self.places[dofs].mean(axis=0)).T
+        # About the mean position, where translations and rotation are independent.
         rotation = np.where(is_along_x, -y, x)
         modes = np.stack([is_along_x, ~is_along_x, rotation], axis=1)
         return np.asarray(modes.astype(float))

@@ -238,6 +238,7 @@ class AxialForce:
         if free:
             self._free = problem.scales.force * np.concatenate(free)[:, instants]
         self.positions: Array = 0.5 * (places[self._first] + places[self._second])
+        # A rod begins where its first substructure stands at the first position.
         begins = [places[part.dofs[0]] == places[0] for part in parts]
         sizes = [len(part.dofs) - 1 for part in parts]
         self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
@@ -272,6 +273,7 @@ def _integral(inside: Inside, ends: Indices, component: int, density: Array) -> 
     `ends` are the nodes at both ends of n edges, `density` the values there, (2, n).
     """
     length = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1)
+    # Simpson's rule, exact for the product of two linear functions.
     shares = length / 6.0 * (density + density.sum(axis=0))
     weights = np.zeros_like(inside.nodes)
     np.add.at(weights[:, component], ends, shares)

@@ -141,7 +141,7 @@ class LoopFields(Protocol):
 
     @property
     def displacement(self) -> Array:
-        """Displacement of the problem's degrees of freedom, m."""
+        """Displacement of the problem's dofs, shape (n_dofs, n_instants), m."""
 
     def contact(self, name: str) -> ContactFields:
         """Fields of one interface with friction."""

@@ -110,11 +110,10 @@ def _chosen(
 ) -> list[TableColumn]:
     """Columns of a curve that a head names."""
     # A column named after another setting is not taken, whatever quantity it names.
-    free = [
-        column
-        for column in table.columns
-        if column.key == name or column.key not in _SETTINGS
-    ]
+    free = []
+    for column in table.columns:
+        if column.key == name or column.key not in _SETTINGS:
+            free.append(column)
     chosen: list[TableColumn] = []
     remedy = "add that column"
     key = ""

@@ -80,19 +80,19 @@ class AndersonState:
         # Every so many values, and at other rows at each instant.
         smallest_step = -(-size // SAMPLE)
         self._steps = [_step(smallest_step, group.rows.size) for group in self._groups]
-        weights = [
-            group.k[:, None, None] * problem.time_weights for group in self._groups
-        ]
+        weights = []
+        for group in self._groups:
+            weights.append(group.k[:, None, None] * problem.time_weights)
         self._root = np.sqrt(self._sampled(weights))
         self._free_motion = None
         if motion is not None:
             self._free_motion = self._free(motion, problem.n_instants)
         # Memory that nothing was written to costs nothing yet; an instant is in one
         # piece.
-        self._images = [
-            np.zeros((self._memory + 1, *group.target.T.shape))
-            for group in self._groups
-        ]
+        self._images = []
+        for group in self._groups:
+            shape = (self._memory + 1, *group.target.T.shape)
+            self._images.append(np.zeros(shape))
         self._residuals = np.zeros((self._memory, len(self._root)))
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)

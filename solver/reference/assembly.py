@@ -24,16 +24,17 @@ def assembled_stiffness(problem: Problem) -> sparse.csr_array:
     for part in problem.substructures:
         if id(part.elasticity) not in entries:
             entries[id(part.elasticity)] = sparse.coo_array(part.elasticity.stiffness)
-    parts = [
-        (part.dofs, entries[id(part.elasticity)]) for part in problem.substructures
-    ]
-    rows, columns = (
-        np.concatenate([dofs[matrix.coords[axis]] for dofs, matrix in parts])
-        for axis in (0, 1)
-    )
-    values = np.concatenate([matrix.data for _, matrix in parts])
+    rows = []
+    columns = []
+    values = []
+    for part in problem.substructures:
+        matrix = entries[id(part.elasticity)]
+        rows.append(part.dofs[matrix.coords[0]])
+        columns.append(part.dofs[matrix.coords[1]])
+        values.append(matrix.data)
+    places = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array(
-        (values, (rows, columns)), shape=(problem.n_dofs, problem.n_dofs)
+        (np.concatenate(values), places), shape=(problem.n_dofs, problem.n_dofs)
     )
 
 

@@ -191,9 +191,9 @@ def rules_of(problem: Problem) -> Rules:
             strengths.add(law.tangential.strength or PLAIN)
     if len(strengths) > 1:
         raise NoReferenceError(problem.no_reference)
-    stacked = {
-        name: in_rows([getattr(part, name) for part in parts]) for name in OF_JUMPS
-    }
+    stacked = {}
+    for name in OF_JUMPS:
+        stacked[name] = in_rows([getattr(part, name) for part in parts])
     return Rules(**stacked, strength=next(iter(strengths), PLAIN))
 
 

@@ -258,6 +258,7 @@ def redefined(
     **record: Any,
 ) -> Any:
     """Define a setting anew for some scenes, with changes to its definition."""
+    # A copy, as all scenes share the definition.
     again = copy.copy(definition)
     again.default = default
     if slider is not None:
@@ -331,6 +332,7 @@ def _likeness(name: str, other: str, definition: Parameter) -> float:
     """Likeness of a name to a setting in spelling, in words, and in its meaning."""
     spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
     words = set(name.lower().split("_"))
+    # People mistype a name, turn its words round, or call a setting by its meaning.
     in_name = words & set(other.split("_"))
     meaning = f"{title_of(definition)} {_meaning(definition)}".lower()
     in_meaning = words & set(re.findall(r"\w+", meaning))
@@ -389,6 +391,7 @@ def _checked_curve(definition: CurveParameter, name: str, value: object) -> str 
     if not isinstance(value, list | tuple) or not value:
         raise refuse(f"give at least one {'pair' if definition.is_path else 'row'}")
     rows: list[tuple[float, ...]] = []
+    # Row by row, so that a refusal names the first that is wrong.
     for number in range(1, len(value) + 1):
         rows.append(_checked_row(definition, name, value, number))
         if definition.is_path and number > 1 and rows[-1][0] <= rows[-2][0]:

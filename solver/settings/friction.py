@@ -130,6 +130,7 @@ class FrictionSettings(MethodSettings):
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
         is_given = self.is_general and self.strength != "constant"
         strength = None
+        # A strength that stays 1 is no strength: then no slip is accumulated.
         if self.is_linear_in_slip or is_given:
             slips, factors = zip(*self.strength_points(), strict=True)
             strength = Strength(slips, factors)

@@ -193,6 +193,7 @@ def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
 def _explored(runs: ComparedRuns) -> tuple[Valley, list[Profile]]:
     """Valley of the nearest run that is found, and the profiles of all settings."""
     settings = np.eye(len(runs.names))
+    # A slight pull, so that the least squares have one solution.
     z = runs.solve(runs.coarse(), LOOSE * settings)
     # The last round seeks no lower place, so that it ends.
     for rest in reversed(range(ROUNDS)):
@@ -315,6 +316,7 @@ def _combination(
     # A floor is bent, and no product of powers is the same all along it.
     along = moves @ powers
     below, above = profile.ends()
+    # What the bend of the floor adds widens the margin to both sides.
     below -= float(along.min())
     above += float(along.max())
     if max(below, above) >= LIMIT:
@@ -345,6 +347,7 @@ def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
     is_known
         Whether a setting is known, shape (p,).
     """
+    # Directions without an end have no variance, and are taken out first.
     known = np.eye(len(is_known))
     if len(blind):
         known = null_space(blind)

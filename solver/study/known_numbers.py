@@ -77,6 +77,8 @@ def loop(answer: Answer) -> Iterator[Number]:
         given = up
     unit = WORKS.get(loop.across[1])
     if turning_points(given) and unit:
+        # From the first peak on the path repeats; the first loading is no part of a
+        # cycle.
         start = int(np.argmax(given))
         known = _area(exact.up, exact.across, start)
         found = _area(up, across, start)
@@ -141,6 +143,7 @@ def pressed_parabola(answer: Answer) -> Iterator[Number]:
     lengths, distances = _points(answer, force)
     exact = _half_plane(answer, float(force.sum()))
     yield "largest pressure", "Pa", exact.peak, (force / lengths).max()
+    # Half the width is twice the root of the second moment of an elliptic pressure.
     second = float(force @ distances**2 / force.sum())
     yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
 
@@ -195,6 +198,7 @@ def _energy_of_shear(answer: Answer, first: int) -> Number:
     """Energy of a cycle of the shear, after its first peak."""
     pressing, shear = answer.support
     friction = answer.settings.friction
+    # Friction works on the slip of each instant, against it.
     slip = np.diff(answer.slip, axis=1)[:, first:]
     total = float(pressing[:, -1].sum())
     share = abs(float(shear[:, -1].sum())) / (friction * total)

@@ -137,6 +137,7 @@ class Lesson:
         asked = ""
         for claim in self.checkpoints:
             values = claim.settings.values()
+            # A claim with another change is a point of another curve.
             others = [name for name in given if name != self.draw]
             same = all(values[name] == given[name] for name in others)
             if self.draw in values and same and asked in ("", claim.quantity.name):
@@ -189,6 +190,7 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
         settings = kind.checked(values["settings"])
     controls = values["controls"]
     most = f"at most {MOST_CONTROLS} settings"
+    # A learner who turns several controls at once learns of none of them.
     is_few = len(controls) <= MOST_CONTROLS
     require(is_few, "controls", controls, most, "a lesson is about one thing")
     check_controls(controls, settings)

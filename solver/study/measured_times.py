@@ -166,6 +166,7 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
 
     Forms with an automatic search direction start nested where the scene allows it.
     """
+    # A start that the scene does not have is left out of the name, too.
     is_nested = settings.applies("start")
     name = "LATIN auto k"
     auto = {"search_direction": "auto"}
@@ -302,6 +303,7 @@ def _measured(
             return TimesAtSize(*at, message="the incremental solver finds no solution")
     except NoReferenceError as refusal:
         return TimesAtSize(*at, message=str(refusal))
+    # This run warms up, so that its time does not count.
     ending = latin(form).status.ending
     message = ""
     if ending is not Ending.CONVERGED:
@@ -310,6 +312,7 @@ def _measured(
     of_incremental: list[float] = []
     is_quick = True
     while not of_latin or (len(of_latin) < REPEATS and is_quick):
+        # In turns, as the load of a machine changes within seconds.
         of_latin.append(seconds_of(partial(latin, form)))
         of_incremental.append(seconds_of(partial(incremental, form)))
         is_quick = of_latin[0] + of_incremental[0] < SLOW

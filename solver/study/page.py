@@ -247,6 +247,7 @@ def html_table(rows: Iterable[Sequence[str]]) -> str:
     head, *rest = rows
     lines = ["".join(f"<th>{escape(text)}</th>" for text in head)]
     for row in rest:
+        # A row of words needs the width of the table.
         if len(row) == 1 < len(head):
             lines.append(f'<td class="more" colspan="{len(head)}">{row[0]}</td>')
         else:

@@ -128,6 +128,7 @@ def _rows_by(
 ) -> Iterator[Row]:
     """Rows of a case by a solver, which has come to its end or not."""
     for quantity, unit, known, ours in case.numbers(answer):
+        # Known numbers are never zero: such a case would be no test.
         deviation = float(abs(ours - known) / abs(known))
         verdict = FAILS
         if has_ended and deviation <= case.allowed:

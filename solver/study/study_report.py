@@ -79,6 +79,7 @@ def table(curves: Sequence[ErrorCurve]) -> list[Row]:
     incremental solver.
     """
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
+    # Who is first is decided at each level, not in all.
     times = np.array([_times_to_levels(curve) for curve in curves])
     for curve, is_first in zip(curves, times == times.min(axis=0), strict=True):
         rows.append(_row(curve, is_first))

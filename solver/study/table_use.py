@@ -40,6 +40,7 @@ def use_of(table: Table, axes: Axes) -> Use:
     with suppress(RefusedError):
         columns_of(table, axes)
         is_loop = True
+    # A position beside a force may be that of a testing machine.
     if has_position and (has_friction or not is_loop):
         return Use.RESULTS
     if has_position and not has_displacement and not _times_rise(table):

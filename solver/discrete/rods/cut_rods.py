@@ -76,11 +76,11 @@ class _Piece(NamedTuple):
         """Ends of the rod that springs hold, by their node in this piece."""
         ends = {0: rods.left, rods.elements: rods.right}
         last = self.first + self.size
-        return {
-            node - self.first: end
-            for node, end in ends.items()
-            if end.is_on_spring and self.first <= node <= last
-        }
+        springs = {}
+        for node, end in ends.items():
+            if end.is_on_spring and self.first <= node <= last:
+                springs[node - self.first] = end
+        return springs
 
 
 class CutRods:
@@ -156,10 +156,10 @@ class CutRods:
         carried = None
         if rods.settlement is not None:
             carried = rods.settlement / scales.displacement
-        positions = [
-            np.repeat(places, dofs)
-            for places, dofs in zip(self._places, self._dofs_at, strict=True)
-        ]
+        # Both degrees of freedom of a break stand at its node.
+        positions = []
+        for of_rod, dofs in zip(self._places, self._dofs_at, strict=True):
+            positions.append(np.repeat(of_rod, dofs))
         # Pieces of equal operators share them, also those of different rods.
         shared: dict[tuple[object, ...], Elasticity] = {}
         substructures = list[Substructure]()
@@ -187,6 +187,7 @@ class CutRods:
         for number, size in enumerate(self._sizes):
             piece = _Piece(number, first, size)
             rows, nodes = self._boundary(rod, piece)
+            # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
             key = (
                 is_row.tobytes(),
@@ -290,6 +291,7 @@ class CutRods:
         whole = piece.size * element
         at_ends = 1.0 / whole / float(np.mean(1.0 / own_stiffness))
         direction = np.full(len(nodes), at_ends)
+        # The last two rows are the ends, all others the points that rub.
         direction[:-2] = at_ends * element / whole
         of_springs = own_stiffness * (rods.elements / length)
         at_nodes = np.append(of_springs, 0.0) + np.insert(of_springs, 0, 0.0)
@@ -368,6 +370,7 @@ class CutRods:
 
     def _macro_basis(self) -> sparse.csr_array:
         """Macro basis of a contact between rods, (n_pairs, n_macro), piece by piece."""
+        # Macro forces balance on each piece, whose operator sees no others.
         counts = np.bincount(self._piece[self._rubs]).tolist()
         bases = list[Array]()
         for count in counts:

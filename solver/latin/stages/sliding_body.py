@@ -267,11 +267,10 @@ class Slide:
 
 def _load_along(problem: Problem, motion: Array) -> Array:
     """Load of body forces along a motion, (n_dofs,), of shape (n_instants,), scaled."""
-    loads = [
-        motion[part.dofs] @ part.body_force
-        for part in problem.substructures
-        if part.body_force is not None
-    ]
+    loads = []
+    for part in problem.substructures:
+        if part.body_force is not None:
+            loads.append(motion[part.dofs] @ part.body_force)
     if loads:
         return np.asarray(np.sum(loads, axis=0))
     return np.zeros(problem.n_instants)

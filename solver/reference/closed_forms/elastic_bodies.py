@@ -55,7 +55,7 @@ class HalfPlane:
         return np.asarray(0.5 * self.modulus / self.radius * np.sqrt(square))
 
     def traction(self, positions: Array, friction: float, share: float) -> Array:
-        """Shear traction under a share of mu P that has grown, Pa, as `pressure`."""
+        """Shear traction under a share of mu P that has grown, Pa, shape as `pressure`."""
         sticking = replace(self, force=(1.0 - share) * self.force)
         return friction * (self.pressure(positions) - sticking.pressure(positions))
 

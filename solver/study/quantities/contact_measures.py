@@ -55,6 +55,7 @@ def peak_displacement(run: FinishedRun) -> float:
     if inside is None:
         return float(np.abs(absolute).max())
     vectors = inside.displacement(absolute, slice(None))
+    # On its image a body shows half of the slip.
     ratio = max(law.slip_ratio for law in run.problem.rubbing.values())
     if ratio > 1.0:
         return ratio * float(np.abs(vectors[:, 0]).max())
@@ -285,6 +286,7 @@ def end_displacement(run: FinishedRun, instant: int) -> float:
 def residual_displacement(run: FinishedRun) -> float:
     """Displacement of the loop left at an unloaded end, m; NaN if the end is loaded."""
     size = np.abs(run.force)
+    # Under load the displacement is not what is left.
     if size[-1] > UNLOADED * size.max():
         return math.nan
     return float(run.displacement[-1])
@@ -345,6 +347,7 @@ def _slipped_shares(run: FinishedRun) -> Array:
     Only points of surfaces that can slip count.
     """
     problem = run.problem
+    # A point counts from its first slip on.
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
     still = np.concatenate(list(_stand_still(run).values()))
     counted = slipped[problem.on_surfaces & ~still]

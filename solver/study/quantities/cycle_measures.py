@@ -45,6 +45,7 @@ def has_a_limit(settings: Settings) -> bool:
     if not settings.opens or settings.has("spring") or law != FrictionLaw():
         return False
     holds = settings.structure().described().holds
+    # Open contacts make the set of slips that may stay another one.
     gaps = [hold.gap for hold in holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
@@ -84,6 +85,7 @@ def sliding_share(run: FinishedRun) -> float:
     """
     length = _free_lengths(run)[:, None]
     status = run.iterate.status[run.problem.on_surfaces]
+    # Points that are open carry nothing, and are no part of the contact then.
     status = status[:, instants_of(run.settings, cycles_in(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
@@ -231,6 +233,7 @@ def recovery_length(run: FinishedRun, instant: int) -> float:
     share = forces[axial.wires == wire, 0] / run.force[instant]
     size = described.length / len(share)
     node = round(position / size)
+    # Both sides of the break recover, and the shorter length is that of the wire.
     after = size * _elements_to(share[node:], REGAINED) / REGAINED
     before = size * _elements_to(share[:node][::-1], REGAINED) / REGAINED
     return min(after, before)

@@ -205,6 +205,7 @@ def _is_repeated(settings: Settings, ends: list[int]) -> bool:
     """Check whether all loads begin, end and peak alike in the last cycles."""
     for path in _paths(settings):
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
+        # Ends and extremes: what happens between them does not change the fate of slip.
         marks = [[part[0], part[-1], part.min(), part.max()] for part in parts]
         if marks and np.ptp(marks, axis=0).max() > REPEATED * np.ptp(path):
             return False
@@ -235,6 +236,7 @@ def fate_of(cycles: LoadCycles) -> Word | None:
         return None
     if not largest[-1]:
         return "elastic shakedown"
+    # The point that is farthest on at the end of the last cycle.
     net = cycles.net[np.abs(cycles.net[:, -1]).argmax()]
     if np.abs(net[-1]) > ONE_WAY * largest[-1] and _settled(net[None]):
         return "ratcheting"

@@ -35,6 +35,7 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
     forces, which a moving support has to overcome.
     """
     problem = iterate.problem
+    # Per length, so that a finer mesh has the same field.
     laws = problem.rubbing.values()
     lengths = np.concatenate([law.by_point(law.weights) for law in laws])
     return clips_of(

@@ -138,6 +138,7 @@ def _begin() -> None:
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     threadpool_limits(1)
+    # A parent that is killed cannot end its processes itself.
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -177,6 +177,7 @@ def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
     """Ends of an axis: all values, (n,), with a margin, from zero if that is near."""
+    # What a logarithmic axis cannot show does not widen it.
     known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
         return (0.0, 1.0)
@@ -299,6 +300,7 @@ def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
 def _power(sizes: Array, values: Array) -> float:
     """Power of sizes with which values grow, (n,) each; only values above 0 count."""
     is_known = values > 0.0
+    # A power law is a straight line in logarithms.
     size, value = np.log([sizes[is_known], values[is_known]])
     return float(np.polyfit(size, value, 1)[0])
 
