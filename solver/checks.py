@@ -201,7 +201,7 @@ class Numbers:
 
 
 @dataclass(frozen=True)
-class Instants:
+class IncreasingInstants:
     """Arrays of one or more increasing instants, shape (n_instants,), s."""
 
     allowed = "an array of instants that increase, s, shape [n_instants], one or more"
@@ -372,7 +372,7 @@ POSITIVE = Number(0.0, above=True)
 NON_NEGATIVE = Number(0.0)
 ANY_NUMBER = Number()
 COUNT = Count(1)
-INSTANTS = Instants()
+INSTANTS = IncreasingInstants()
 ROWS = Numbers(((None,),), low=0, whole=True)
 FLAG = Flag()
 FUNCTION = Function()

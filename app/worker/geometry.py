@@ -90,7 +90,7 @@ class Drawn:
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """Displacements of nodes and points, and the status, at the shown instants."""
-        absolute = iterate.problem.at_rest(iterate.displacement)
+        absolute = iterate.problem.absolute(iterate.displacement)
         moved = absolute[self._dofs][:, :, self._columns]
         moved[self._dofs == NONE] = 0.0
         status = iterate.status[np.ix_(self._points, self._columns)]
@@ -118,7 +118,7 @@ class DrawnRods(Drawn):
     """Rods as rectangles above each other, with interfaces below them."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
-        description = settings.structure().described()
+        description = settings.structure().description()
         parts = problem.substructures
         length = description.length
         per_rod = len(parts) // description.bodies
@@ -191,7 +191,7 @@ class DrawnRods(Drawn):
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         """Displacement of the nodes, which move along the rods, m."""
-        moved = iterate.problem.at_rest(iterate.displacement)
+        moved = iterate.problem.absolute(iterate.displacement)
         along = moved[np.ix_(self._along, self._columns)]
         return floats(np.stack([along, np.zeros_like(along)], axis=1))
 
@@ -224,7 +224,7 @@ class DrawnMesh(Drawn):
         # The quadrilateral that each element lies in.
         self._quad = np.concatenate(quads)
         mesh = mesh_of([inside.nodes[grid] for grid in grids], np.arange(len(grids)))
-        description = settings.structure().described()
+        description = settings.structure().description()
         super().__init__(problem, description, columns, mesh, problem.positions)
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
@@ -256,7 +256,7 @@ class DrawnMesh(Drawn):
             ]
             normal, tangential = [
                 iterate.contact_force[rows][:, self._columns]
-                for rows in problem.contact_places[name]
+                for rows in problem.contact_slices[name]
             ]
             pressed = np.maximum(normal, 0.0)
             whole = pressed.sum(axis=0)

@@ -162,7 +162,7 @@ def contact_fields(
     `status` is that of the interface's points, (n_points, n_instants).
     """
     law = problem.rubbing[name]
-    places = problem.contact_places[name]
+    places = problem.contact_slices[name]
     scale = problem.scales.displacement
     jumps = [
         law.mean_by_point(component.jump(displacement)) * scale

@@ -35,7 +35,7 @@ from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, Strength
-from solver.laws.interface import Given, Glued, IncrementalForm
+from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 from solver.laws.play import PLAIN
 from solver.refusal import RefusedError, Words
 
@@ -162,7 +162,7 @@ class Problem:
                 "prescribe it once, or both alike",
             )
 
-    def at_rest(self, displacement: Array) -> Array:
+    def absolute(self, displacement: Array) -> Array:
         """Absolute displacements: relative ones plus the motion of the support.
 
         Shape (n_dofs, n_instants) both, m.
@@ -264,13 +264,13 @@ class Problem:
         return {name: law for name, law in self.interfaces.items() if name not in forms}
 
     @cached_property
-    def given_forces(self) -> list[Given]:
+    def given_forces(self) -> list[PrescribedRows]:
         """Forces that are prescribed, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.force for form in forms if form.force is not None]
 
     @cached_property
-    def given_displacements(self) -> list[Given]:
+    def given_displacements(self) -> list[PrescribedRows]:
         """Displacements that are prescribed, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.displacement for form in forms if form.displacement is not None]
@@ -493,7 +493,7 @@ class Problem:
         return sparse.csr_array(sparse.vstack([nothing, *blocks]))
 
     @cached_property
-    def contact_places(self) -> dict[str, tuple[slice, ...]]:
+    def contact_slices(self) -> dict[str, tuple[slice, ...]]:
         """Ranges of each interface's components in stacked contact forces, by name."""
         ranges = dict[str, tuple[slice, ...]]()
         first = 0
@@ -513,9 +513,9 @@ class Problem:
             largest = max(largest, float(np.abs(self.carried).max(initial=0.0)))
         found = list[DrivenFriction]()
         for name, law in self.rubbing.items():
-            places = self.contact_places[name]
+            slices = self.contact_slices[name]
             driven = driven_friction(
-                law, places, self.row_dofs, self.prescribed, largest
+                law, slices, self.row_dofs, self.prescribed, largest
             )
             if driven is not None:
                 found.append(driven)
@@ -533,7 +533,7 @@ class Problem:
             return forces
         settled = forces.copy()
         for driven in self._driven:
-            settled[driven.places] = driven.force(forces, displacement)
+            settled[driven.rubbing] = driven.force(forces, displacement)
         return settled
 
     @cached_property

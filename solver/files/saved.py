@@ -322,7 +322,7 @@ def _body_arrays(iterate: Iterate) -> dict[str, Any]:
     if inside is None:
         return {
             "x": problem.positions,
-            "displacement": problem.at_rest(iterate.displacement),
+            "displacement": problem.absolute(iterate.displacement),
             "friction_force": iterate.friction_force,
             "determinate": determinate_forces(problem),
             "status": iterate.status,
@@ -359,7 +359,7 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
         if law.is_plain and len(iterate.problem.rubbing) == 1:
             continue
         fields = iterate.contact(name)
-        *_, tangential = iterate.problem.contact_places[name]
+        *_, tangential = iterate.problem.contact_slices[name]
         entries = {
             "points": law.positions,
             "determinate": determinate[tangential],

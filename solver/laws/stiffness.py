@@ -43,7 +43,7 @@ most 45 iterations, more than 150 without (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Rod:
+class RodStiffness:
     """A rod along the interface.
 
     The global length of the problem is the length s that is expected to slide, the
@@ -88,7 +88,7 @@ class Rod:
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class BodyStiffness:
     """Bodies in the plane, above and below an interface.
 
     The stiffness beside it is that of a body as a whole, or of a point of the body. A
@@ -110,7 +110,7 @@ class Bodies:
     on_cuts: ClassVar[float] = 1.0
 
     def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of an interface into that of all rows, as `Rod.choose`.
+        """Write the k of an interface into that of all rows, as `RodStiffness.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its
         depth d.

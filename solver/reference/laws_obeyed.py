@@ -225,7 +225,7 @@ def _interface_fields(
     found = []
     held, _ = _prescribed(problem)
     for name, law in problem.rubbing.items():
-        places = problem.contact_places[name]
+        places = problem.contact_slices[name]
         friction = force[places[-1]]
         jump = _jump(problem, law, law.tangent, displacement)
         largest = largest_size(jump)
@@ -237,11 +237,11 @@ def _interface_fields(
             across = _jump(problem, law, law.normal.component, displacement)
             largest = max(largest, largest_size(across))
             opening = across + law.mean_by_point(law.normal.gap)[:, None]
-            opening = _with_spring(law, opening, pressing, law.normal.softness)
+            opening = _with_spring(law, opening, pressing, law.normal.compliance)
             is_prescribed[law.points] = _is_held(problem, law.normal.component, held)
         fields = _InterfaceFields(
             law=law,
-            slider=_with_spring(law, jump, friction, law.tangential.softness),
+            slider=_with_spring(law, jump, friction, law.tangential.compliance),
             friction=friction,
             largest_jump=largest,
             opening=opening,
@@ -253,15 +253,15 @@ def _interface_fields(
 
 
 def _with_spring(
-    law: Contact, jump: Array, force: Array, softness: Array | None
+    law: Contact, jump: Array, force: Array, compliance: Array | None
 ) -> Array:
     """Jumps plus the length of springs in series, (n_points, n_instants), scaled.
 
     Jumps and forces have that shape; compliances, (n_pairs,), are None without springs.
     """
-    if softness is None:
+    if compliance is None:
         return jump
-    return np.asarray(jump + law.in_parallel(softness)[:, None] * force)
+    return np.asarray(jump + law.in_parallel(compliance)[:, None] * force)
 
 
 def _jump(
@@ -285,7 +285,7 @@ def _contact_force(problem: Problem, force: Array) -> Array:
     total = np.zeros((problem.n_dofs, problem.n_instants))
     for name, law in problem.rubbing.items():
         pairs = np.bincount(law.points)[law.points]
-        places = problem.contact_places[name]
+        places = problem.contact_slices[name]
         for place, component in zip(places, law.components, strict=True):
             # The pairs of a point share its force; above it acts as it is, below against.
             carried = force[place][law.points] / pairs[:, None]

@@ -225,7 +225,7 @@ class Comparison:
         # Friction is per length of the points of one interface.
         if results.quantity == FRICTION:
             law = problem.rubbing[self.interface]
-            self._places = problem.contact_places[self.interface][-1]
+            self._places = problem.contact_slices[self.interface][-1]
             self._sizes = law.by_point(law.weights)[:, None]
             positions = law.positions
         self._order = np.argsort(positions, kind="stable")
@@ -251,7 +251,7 @@ class Comparison:
         if self.counted < FEWEST:
             return float("nan")
         if self._places is None:
-            field = self._problem.at_rest(fields.displacement)
+            field = self._problem.absolute(fields.displacement)
         else:
             field = fields.contact_force[self._places] / self._sizes
         ours = _interpolated(field[self._order], self._at)

@@ -244,7 +244,7 @@ def _measured(solution: Solution) -> Outcome:
         seconds=seconds,
         estimated_error=estimated_error,
         indicator=iterate.indicator,
-        behaviour=iterate.behaviour,
+        behaviour=iterate.violation,
         laws=laws.largest,
         worst_law=laws.worst,
     )

@@ -133,8 +133,8 @@ def test_a_side_that_is_not_named_is_free() -> None:
         BODY, sides={**dict.fromkeys(("left", "right", "bottom"), free), **BODY.sides}
     )
     assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
-    assert {act.where for act in BODY.described().acts} == {"top x", "top y"}
-    assert [hold.kind for hold in BODY.described().holds] == ["support"]
+    assert {act.where for act in BODY.description().acts} == {"top x", "top y"}
+    assert [hold.kind for hold in BODY.description().holds] == ["support"]
 
 
 @pytest.mark.parametrize(

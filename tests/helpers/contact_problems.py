@@ -6,7 +6,14 @@ from solver.discrete.plane.bricks import Brick
 from solver.discrete.plane.stack import Given, Side, Stack, Support
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.laws import Bodies, Component, Contact, Dirichlet, Friction, Unilateral
+from solver.laws import (
+    BodyStiffness,
+    Component,
+    Contact,
+    Dirichlet,
+    Friction,
+    Unilateral,
+)
 
 COURSES = ("random", "reversal", "open and close", "wander")
 
@@ -75,7 +82,7 @@ def contact(normal, tangent, below, gap, friction):
         points=points,
         positions=1.0 * points,
         weights=ones,
-        around=Bodies(),
+        stiffness_beside=BodyStiffness(),
     )
 
 

@@ -18,7 +18,7 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
     for iterate in islice(
         iterations(problem, method_of(settings)), LOOK - 1, most, LOOK
     ):
-        found = iterate.behaviour
+        found = iterate.violation
         if found <= violation:
             return iterate
     raise AssertionError(

@@ -113,7 +113,7 @@ def test_it_makes_the_plain_iteration_shorter(substructures):
 )
 def test_the_limit_is_the_same_once_k_is_updated(change):
     solution = solved(updating(**FAST, tolerance=1e-24, max_iterations=3000, **change))
-    assert solution.iterate.course.phase == "updated"
+    assert solution.iterate.k_update.state == "updated"
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-8
 
@@ -124,11 +124,11 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
     chosen = updating(**{**FAST, "acceleration": acceleration})
     constant = iterates(chosen.replace(k_update="none"), CALM + 20)
     found = iterates(chosen, 600)
-    phases = [iterate.course.phase for iterate in found]
-    assert [phase for phase, _ in groupby(phases)] == ["first", "updated", "returned"]
+    states = [iterate.k_update.state for iterate in found]
+    assert [state for state, _ in groupby(states)] == ["first", "updated", "returned"]
     # An iterate says what follows: the next is the first with the new k.
-    start = phases.index("updated") + 1
-    back = phases.index("returned") + 1
+    start = states.index("updated") + 1
+    back = states.index("returned") + 1
     assert (back - start) % TRIAL == 0
     assert np.array_equal(found[back].k, constant[0].k)
     if (

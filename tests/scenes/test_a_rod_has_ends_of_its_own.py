@@ -29,7 +29,7 @@ def answer(settings):
     assert fields.converged.all()
     return (
         fields,
-        problem.at_rest(fields.displacement),
+        problem.absolute(fields.displacement),
         AxialForce(problem)(fields.displacement),
     )
 

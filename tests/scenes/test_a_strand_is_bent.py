@@ -197,7 +197,7 @@ def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> 
     cut, stress = section_of(scene, found.displacement, instant, 0.013)
     section = settings.section
     assert len(stress) == section.wires - 1 == 36
-    made = [scene.wires[number].made for number in cut.wire]
+    made = [scene.wires[number].layer_data for number in cut.wire]
     areas, lay = (
         np.array([getattr(one, name) for one in made]) for name in ("area", "lay")
     )
@@ -233,7 +233,7 @@ def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     assert reading("energy_per_metre@2")(run) == pytest.approx(energy, rel=0.01)
     # One wire stands for all of its layer: what is taken is that of the strand that is
     # drawn.
-    drawn = settings.structure().described().length
+    drawn = settings.structure().description().length
     assert reading("dissipation@2")(run) == pytest.approx(energy * drawn, rel=0.01)
     of_one = np.abs(run.iterate.contact("wire 1.1").tangential_force).sum(axis=0).max()
     assert taken("peak_friction", run) == pytest.approx(6.0 * 2.0 * of_one, rel=1e-9)

@@ -100,7 +100,7 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     spring = Unilateral(
         component=Component(np.arange(3)),
         gap=random.uniform(0.0, 1.0, 3),
-        softness=10.0 ** random.uniform(-2.0, 2.0, 3),
+        compliance=10.0 ** random.uniform(-2.0, 2.0, 3),
     )
     law = Contact(
         normal=spring,
@@ -112,7 +112,7 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     moved, force = local_stage(law, random, rows=6)
     overlap = np.maximum(-(moved[:3] + spring.gap[:, None]), 0.0)
     np.testing.assert_allclose(
-        force[:3], overlap / spring.softness[:, None], atol=1e-12
+        force[:3], overlap / spring.compliance[:, None], atol=1e-12
     )
     assert not force[3:].any()
-    assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0, 1.0) < 1e-10)
+    assert np.all(law.violation(moved, force, 1e-14).energy(1.0, 1.0) < 1e-10)

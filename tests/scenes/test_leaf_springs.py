@@ -145,7 +145,7 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
     stack = settings.structure()
     assert isinstance(stack, Stack)
     assert stack.longest == 1
-    acts = {act.where: act.places for act in stack.described().acts}
+    acts = {act.where: act.points for act in stack.description().acts}
     np.testing.assert_allclose(acts["top y"][:, 1], [1.0, 2 / 3, 2 / 3])
     np.testing.assert_allclose(acts["bottom y"][:, 1], [0.0, 0.0, 1 / 3])
 

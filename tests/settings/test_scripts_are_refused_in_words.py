@@ -212,8 +212,12 @@ ROPES: list[Case] = [
     (WIRE, {"radius": nan}, "RopeWire.radius"),
     (WIRE, {"bound": -1.0}, "RopeWire.bound"),
     (WIRE, {"curvature": np.ones(5)}, "RopeWire.curvature"),
-    (WIRE, {"made": None}, "RopeWire.made"),
-    (ROPE.section, {"layers": (replace(WIRE.made, diameter=nan),)}, "CrossSection"),
+    (WIRE, {"layer_data": None}, "RopeWire.layer_data"),
+    (
+        ROPE.section,
+        {"layers": (replace(WIRE.layer_data, diameter=nan),)},
+        "CrossSection",
+    ),
 ]
 METHODS: list[Case] = [
     (Latin(), {"direction": "auto"}, "Latin.direction"),

@@ -25,7 +25,7 @@ from solver.study.measured_loop import (
     loop_in,
 )
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.valley import Side
+from solver.study.valley import ProfileSide
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
 SPRUNG = {**BAR, "friction_law": "compliant"}
@@ -333,10 +333,10 @@ def test_where_a_loop_is_straight_in_a_setting_its_profile_has_the_error_of_the_
 def test_a_side_ends_where_the_misfit_last_rises_above_a_level() -> None:
     distances = np.array([0.0, 1.0, 2.0, 3.0])
     rises = np.array([0.0, 9.0, 1.0, 9.0])
-    side = Side(distances, rises, distances[:, None], is_at_bound=False)
+    side = ProfileSide(distances, rises, distances[:, None], is_at_bound=False)
     assert side.end(4.0) == pytest.approx(2.5)
     assert side.end(10.0) == np.inf
-    at_bound = Side(distances, rises, distances[:, None], is_at_bound=True)
+    at_bound = ProfileSide(distances, rises, distances[:, None], is_at_bound=True)
     assert at_bound.end(10.0) == 3.0
 
 

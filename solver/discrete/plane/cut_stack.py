@@ -21,7 +21,7 @@ from solver.discrete.elements import (
     elastic_matrix,
     side_basis,
 )
-from solver.discrete.inside import Part
+from solver.discrete.inside import RectangularSubstructure
 from solver.discrete.plane.bricks import Brick, Joint, joints_of
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
 
@@ -40,7 +40,7 @@ def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
     return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
 
 
-class _Piece(NamedTuple):
+class _RectangularPiece(NamedTuple):
     """A substructure: its rectangle, the number of its body, and its name in cuts."""
 
     rectangle: Brick
@@ -48,7 +48,7 @@ class _Piece(NamedTuple):
     name: str
 
 
-def _pieces(stack: Stack) -> Iterator[_Piece]:
+def _pieces(stack: Stack) -> Iterator[_RectangularPiece]:
     """All substructures, body by body and row by row."""
     for body, brick in enumerate(stack.rectangles):
         ends_across = _ends_across(stack, brick)
@@ -63,7 +63,7 @@ def _pieces(stack: Stack) -> Iterator[_Piece]:
                     columns=right - left,
                     rows=high - low,
                 )
-                yield _Piece(rectangle, body, f"{column}.{row}{of_body}")
+                yield _RectangularPiece(rectangle, body, f"{column}.{row}{of_body}")
 
 
 def _ends_across(stack: Stack, brick: Brick) -> list[int]:
@@ -185,7 +185,7 @@ class CutStack:
         pairs = {joint: self._pairs_of(joint) for joint in joints}
         return {joint: found for joint, found in pairs.items() if len(found[0])}
 
-    def _parts(self, nodes: Sequence[Indices]) -> Iterator[Part]:
+    def _parts(self, nodes: Sequence[Indices]) -> Iterator[RectangularSubstructure]:
         """Substructures, by the numbers of each body's nodes, (n_rows, n_columns)."""
         n_rows = 0
         for number, traces in enumerate(self._traces()):
@@ -200,7 +200,7 @@ class CutStack:
             condensed, operator = self._operator(mesh, modulus, kinds, has_force)
             rows = _numbered(traces, mesh, n_rows)
             n_rows += sum(each.size for each in rows.values())
-            yield Part(
+            yield RectangularSubstructure(
                 rectangle=mesh,
                 condensed=condensed,
                 elasticity=operator,

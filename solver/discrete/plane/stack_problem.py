@@ -15,14 +15,14 @@ from scipy import sparse
 from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
-from solver.discrete.inside import Inside, Part
+from solver.discrete.inside import Inside, RectangularSubstructure
 from solver.discrete.plane.bricks import Joint
 from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Substructure
 from solver.laws import (
-    Bodies,
+    BodyStiffness,
     Component,
     Contact,
     Dirichlet,
@@ -32,7 +32,7 @@ from solver.laws import (
     Perfect,
     Unilateral,
 )
-from solver.laws.friction import softness_of
+from solver.laws.friction import compliance_of
 
 if TYPE_CHECKING:
     from solver.discrete.plane.stack import Side, Spring, Stack
@@ -52,7 +52,7 @@ def problem_of(stack: Stack) -> Problem:
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
         ),
         interfaces=dict(_interfaces(cut)),
-        positions=inside.places * scales.displacement,
+        positions=inside.positions * scales.displacement,
         instants=stack.instants,
         scales=scales,
         inside=inside,
@@ -61,7 +61,7 @@ def problem_of(stack: Stack) -> Problem:
     )
 
 
-def _substructure(part: Part, dofs: Indices) -> Substructure:
+def _substructure(part: RectangularSubstructure, dofs: Indices) -> Substructure:
     """Substructure of a rectangular part, with its degrees of freedom, (n_kept,)."""
     body_force = None
     if part.force is not None:
@@ -82,7 +82,7 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     rigid = rigid_rest(stack)
     if rigid is None:
         return None
-    x, y = inside.places.T
+    x, y = inside.positions.T
     components = inside.components
     modes = np.stack([components, np.where(components == 1, x, -y)], axis=1)
     rest = np.asarray(modes @ (rigid / np.array([[stack.length], [1.0]])))
@@ -172,7 +172,7 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         points=points,
         positions=touching.astype(float) * _element_size(stack, is_upright=is_upright),
         weights=pairs.areas,
-        around=_around(stack, pairs),
+        stiffness_beside=_stiffness_beside(stack, pairs),
         macro=_macro_basis(cut, joints),
         slip_ratio=2.0 if support is not None and support.is_image else 1.0,
     )
@@ -205,8 +205,8 @@ def _normal_law(
     if component is None:
         return None
     scales = (stack.length, stack.young * stack.length)
-    softness = softness_of(stack.friction_law.normal_stiffness, pairs.areas, scales)
-    return Unilateral(component=component, gap=gap, softness=softness)
+    compliance = compliance_of(stack.friction_law.normal_stiffness, pairs.areas, scales)
+    return Unilateral(component=component, gap=gap, compliance=compliance)
 
 
 def _friction(
@@ -242,13 +242,13 @@ def _coefficients(stack: Stack, pairs: _Pairs) -> Array:
     return np.broadcast_to(mu, pairs.nodes.shape)
 
 
-def _around(stack: Stack, pairs: _Pairs) -> Bodies:
+def _stiffness_beside(stack: Stack, pairs: _Pairs) -> BodyStiffness:
     """Moduli and depth of the bodies at a contact, for its search direction."""
     below = np.inf
     if pairs.under is not None:
         below = stack.modulus(pairs.under)
     depth = stack.height * (stack.rectangles[pairs.body].rows / stack.elements[1])
-    return Bodies(moduli=(stack.modulus(pairs.body), below), depth=depth)
+    return BodyStiffness(moduli=(stack.modulus(pairs.body), below), depth=depth)
 
 
 def _macro_basis(cut: CutStack, joints: Sequence[Joint]) -> sparse.csr_array | None:
@@ -291,13 +291,13 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
         normal=Unilateral(
             component=Component(rows[:, 0]),
             gap=np.array([spring.slack / stack.length]),
-            softness=np.array([stack.young / spring.stiffness]),
+            compliance=np.array([stack.young / spring.stiffness]),
         ),
         tangential=FrictionLaw().at(Component(rows[:, 1]), np.ones(1), (1.0, 1.0)),
         points=np.zeros(1, dtype=np.intp),
         positions=np.array([stack.length]),
         weights=stack.length * areas[:1],
-        around=Bodies(moduli=(stack.modulus(0), np.inf)),
+        stiffness_beside=BodyStiffness(moduli=(stack.modulus(0), np.inf)),
         is_spring=True,
     )
 
@@ -323,7 +323,11 @@ def _prescribed(
 
 
 def _move_corners(
-    cut: CutStack, part: Part, side: str, component: int, moved: Array
+    cut: CutStack,
+    part: RectangularSubstructure,
+    side: str,
+    component: int,
+    moved: Array,
 ) -> None:
     """Write the displacement of top and bottom into the corners of an upright side.
 

@@ -100,7 +100,7 @@ def _holds(run: FinishedRun) -> list[_Hold]:
     determinate = determinate_forces(run.problem)
     holds = []
     for name in run.problem.surfaces:
-        *_, tangential = run.problem.contact_places[name]
+        *_, tangential = run.problem.contact_slices[name]
         holds.append(_hold(run, name, determinate[tangential]))
     return holds
 
