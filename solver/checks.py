@@ -148,7 +148,9 @@ class Numbers:
     @property
     def allowed(self) -> str:
         """Words on these values."""
-        kind = "whole numbers" if self.whole else "numbers"
+        kind = "numbers"
+        if self.whole:
+            kind = "whole numbers"
         ends = _range(self.low, self.high, above=self.above)
         shapes = " or ".join(_written(shape) for shape in self.shapes)
         return f"an array of {kind}{ends}, shape {shapes}"
@@ -381,7 +383,9 @@ FUNCTION = Function()
 def _range(low: float, high: float, *, above: bool = False) -> str:
     """Words on a range of numbers."""
     if low == -math.inf:
-        return f" up to {plain(high)}" if high < math.inf else ""
+        if high < math.inf:
+            return f" up to {plain(high)}"
+        return ""
     words = f" {'above' if above else 'from'} {plain(low)}"
     if high < math.inf:
         words = f"{words} to {plain(high)}"

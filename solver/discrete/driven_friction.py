@@ -176,9 +176,10 @@ def _law_of_points(law: Contact, points: Indices, pairs: Indices) -> Friction:
     compliance = None
     if friction.compliance is not None:
         compliance = law.in_parallel(friction.compliance)[points]
+    sides = [rows[pairs] for rows in law.tangent.sides]
     return replace(
         friction,
-        component=Component(*[rows[pairs] for rows in law.tangent.sides]),
+        component=Component(*sides),
         bound=law.by_point(friction.bound)[points],
         friction=law.mean_by_point(friction.friction)[points],
         cap=cap,

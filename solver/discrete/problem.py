@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -390,8 +391,7 @@ class Problem:
     def _strengths(self) -> set[Strength]:
         """Slip-dependent factors of all interfaces on which there is any friction."""
         laws = [law.tangential for law in self.rubbing.values()]
-        rubs = [law for law in laws if law.bound.any() or law.friction.any()]
-        return {law.strength or PLAIN for law in rubs}
+        return {law.strength or PLAIN for law in laws if law.rubs}
 
     @cached_property
     def friction(self) -> Contact:
@@ -434,10 +434,11 @@ class Problem:
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces, and the macro forces from outside, scaled.
 
-        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; MATHEMATICS.md,
-        2).
+        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1;
+        MATHEMATICS.md, 2).
         """
-        parts = [part for law in self.interfaces.values() for part in law.macro_parts()]
+        laws = self.interfaces.values()
+        parts = list(chain.from_iterable(law.macro_parts() for law in laws))
         bases = sparse.block_diag([sparse.coo_array(part.basis) for part in parts])
         rows = np.concatenate([part.rows for part in parts])[bases.coords[0]]
         loads = list[Array]()
@@ -481,16 +482,15 @@ class Problem:
         Shape (n_forces, n_rows). The forces on the body above are stacked interface by
         interface: all normal forces, where it may open, and then all friction forces.
         """
-        blocks = [
-            sparse.csr_array(
-                (np.ones(len(law.points)), (law.points, component.above)),
-                shape=(len(law.positions), self.n_rows),
-            )
-            for law in self.rubbing.values()
-            for component in law.components
-        ]
-        nothing = sparse.csr_array((0, self.n_rows))
-        return sparse.csr_array(sparse.vstack([nothing, *blocks]))
+        blocks = [sparse.csr_array((0, self.n_rows))]
+        for law in self.rubbing.values():
+            size = len(law.positions), self.n_rows
+            ones = np.ones(len(law.points))
+            blocks += [
+                sparse.csr_array((ones, (law.points, component.above)), shape=size)
+                for component in law.components
+            ]
+        return sparse.csr_array(sparse.vstack(blocks))
 
     @cached_property
     def contact_slices(self) -> dict[str, tuple[slice, ...]]:
@@ -610,7 +610,9 @@ def _check_cover(
         number = largest
     else:
         number = int(np.argmax(wrong))
-    how_often = "once" if once else "at least once"
+    how_often = "at least once"
+    if once:
+        how_often = "once"
     allowed = f"each {what} from 0 to {count - 1} {how_often}"
     shown = Words(f"{what} {number}, {times[number]} times")
     raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")

@@ -110,10 +110,8 @@ def _chosen(
 ) -> list[TableColumn]:
     """Columns of a curve that a head names."""
     # A column named after another setting is not taken, whatever quantity it names.
-    free = []
-    for column in table.columns:
-        if column.key == name or column.key not in _SETTINGS:
-            free.append(column)
+    others = _SETTINGS - {name}
+    free = [column for column in table.columns if column.key not in others]
     chosen: list[TableColumn] = []
     remedy = "add that column"
     key = ""

@@ -224,9 +224,9 @@ def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, 
 
 def _texts_in(values: Sequence[object], name: str) -> tuple[str, ...]:
     """Texts of a list under a key; refuse an empty list, and other values."""
-    texts = [value for value in values if isinstance(value, str) and value]
+    texts = [value for value in values if isinstance(value, str)]
     require(
-        len(values) > 0 and len(texts) == len(values),
+        len(values) > 0 and len(texts) == len(values) and all(texts),
         name,
         list(values),
         "a list of texts, at least one",

@@ -127,8 +127,15 @@ def _heads_among(
     ]
     if block is None or not block.is_known:
         return heads
-    # Words that name no quantity may tell of the test, as in `phase;unloading`.
-    return [head for head in heads if _is_known(head.cells) or head.is_comment]
+    return [head for head in heads if _is_comment_or_known(head)]
+
+
+def _is_comment_or_known(head: Line) -> bool:
+    """Return whether a line is a comment, or names a quantity.
+
+    Words that name no quantity may tell of the test, as in `phase;unloading`.
+    """
+    return head.is_comment or _is_known(head.cells)
 
 
 def _is_head_of(line: Line, row: Line, separator: str) -> bool:
@@ -185,7 +192,9 @@ def _broken_rows(between: Sequence[Line], row: Line) -> list[Line]:
     line = between[-1]
     if line.is_text or line.is_comment or not line.n_numbers:
         return []
-    return [line] if len(line.cells) == len(row.cells) else []
+    if len(line.cells) == len(row.cells):
+        return [line]
+    return []
 
 
 def _leave_summary(block: Block) -> None:

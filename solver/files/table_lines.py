@@ -124,9 +124,12 @@ def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
         lines = [_line(number, text, separator) for number, text in filled]
     except csv.Error as problem:
         raise refuse(str(problem)) from None
-    return separator, [
-        line for line in lines if line.cells and not _RULE.fullmatch(line.text)
-    ]
+    return separator, [line for line in lines if not _is_empty(line)]
+
+
+def _is_empty(line: Line) -> bool:
+    """Return whether a line has no cells, or is a rule between others."""
+    return not line.cells or bool(_RULE.fullmatch(line.text))
 
 
 def _separator_of(texts: Sequence[str]) -> str:
@@ -152,7 +155,8 @@ def _separator_of(texts: Sequence[str]) -> str:
 
 def _has_two(line: Line) -> bool:
     """Return whether a line has two numbers, or a number and a gap that is written."""
-    gaps = [cell for cell in line.cells if cell and is_gap(cell)]
+    filled = filter(None, line.cells)
+    gaps = [cell for cell in filled if is_gap(cell)]
     has_number = line.n_numbers > 0
     return not line.is_comment and has_number and line.n_numbers + len(gaps) > 1
 
@@ -195,7 +199,9 @@ def _without_comment(text: str, separator: str) -> list[str]:
         if mark[0] != separator and stands_apart and not is_unit:
             cells = split_cells(text[: mark.start()], separator)
             numerals = [cell for cell in cells if is_numeral(cell)]
-            return cells if len(numerals) > 1 else []
+            if len(numerals) > 1:
+                return cells
+            return []
     return []
 
 
@@ -210,10 +216,15 @@ def split_cells(text: str, separator: str) -> list[str]:
         cells = next(csv.reader([text], delimiter=separator), [])
     else:
         cells = text.split(separator)
-    cells = [cell.strip() for cell in cells]
-    while cells and not cells[-1]:
-        cells.pop()
-    return cells
+    return up_to_last_filled([cell.strip() for cell in cells])
+
+
+def up_to_last_filled(cells: list[str]) -> list[str]:
+    """Cells up to the last one that is not empty."""
+    count = len(cells)
+    while count and not cells[count - 1]:
+        count -= 1
+    return cells[:count]
 
 
 def is_blank(separator: str) -> bool:

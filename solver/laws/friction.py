@@ -207,6 +207,11 @@ class Friction:
             start=Numbers(((size,),)),
         )
 
+    @property
+    def rubs(self) -> bool:
+        """Check whether there is any friction."""
+        return bool(self.bound.any() or self.friction.any())
+
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Position of the slider of every pair, shape (n_pairs, n_instants), scaled.
 

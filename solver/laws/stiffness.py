@@ -44,7 +44,7 @@ most 45 iterations, more than 150 without (measured)."""
 
 @dataclass(frozen=True, eq=False)
 class RodStiffness:
-    """A rod along the interface.
+    """Stiffness of a rod along the interface.
 
     The global length of the problem is the length s that is expected to slide, the
     local one the distance h of its points. So k of a point is `FRICTION_FACTOR` times
@@ -89,9 +89,9 @@ class RodStiffness:
 
 @dataclass(frozen=True, eq=False)
 class BodyStiffness:
-    """Bodies in the plane, above and below an interface.
+    """Stiffness of bodies in the plane, above and below an interface.
 
-    The stiffness beside it is that of a body as a whole, or of a point of the body. A
+    That is the stiffness of a body as a whole, or of a point of the body. A
     smaller k on cuts along slender substructures is no better, where the macro basis
     grows with their length (measured).
 

@@ -213,7 +213,7 @@ def determinate_forces(problem: Problem) -> Flags:
     return np.asarray(moves[:, None] | slips)
 
 
-def kkt_residual(fields: Fields, problem: Problem, limit: float = np.inf) -> float:
+def kkt_residual(fields: Fields, problem: Problem, max_ratio: float = np.inf) -> float:
     """Largest violation of equilibrium, laws and prescribed values, as a share of forces.
 
     It follows from the equations alone, at every instant, however the fields were
@@ -225,7 +225,7 @@ def kkt_residual(fields: Fields, problem: Problem, limit: float = np.inf) -> flo
         Displacements and contact forces, SI.
     problem
         Problem that the fields should solve.
-    limit
+    max_ratio
         Largest size of forces, over the forces that act, as of `force_size`.
     """
     displacement = fields.displacement / problem.scales.displacement
@@ -235,7 +235,7 @@ def kkt_residual(fields: Fields, problem: Problem, limit: float = np.inf) -> flo
     held, prescribed = problem.prescribed
     missing = stiffness @ displacement - outer - jumps(problem).T @ force
     elastic = abs(stiffness) @ np.abs(displacement)
-    size = force_size(force, outer, elastic, missing[held], limit)
+    size = force_size(force, outer, elastic, missing[held], max_ratio)
     # Lengths become forces by the stiffness of their own degrees of freedom.
     stiffnesses = stiffness.diagonal()
     violations = (
@@ -254,7 +254,7 @@ def force_size(
     outer: Array,
     elastic: Array,
     reaction: Array,
-    limit: float,
+    max_ratio: float,
 ) -> float:
     """Size that violations of forces are a share of, scaled.
 
@@ -267,7 +267,7 @@ def force_size(
     force, outer, elastic, reaction
         Contact forces, loads, parts of forces inside elements without signs, and
         reactions of held degrees of freedom, shape (n, n_instants) each, scaled.
-    limit
+    max_ratio
         Largest size over the largest force that acts.
     """
     size = largest_size(force, ELASTIC * outer, ELASTIC * elastic)
@@ -277,7 +277,7 @@ def force_size(
     if carried > NOTHING * float(elastic.max(initial=0.0)):
         acting = max(acting, carried)
     if acting > 0.0:
-        return min(size, limit * acting)
+        return min(size, max_ratio * acting)
     return size
 
 

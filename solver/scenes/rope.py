@@ -262,7 +262,9 @@ class RopeSettings(Settings):
             bounds = bounds[:, 0]
         curvature = self._curvature_at_nodes()
         for layer, layer_data in enumerate(section.layers):
-            count = layer_data.wires if self.is_clamped else 1
+            count = 1
+            if self.is_clamped:
+                count = layer_data.wires
             for number in range(count):
                 yield RopeWire(
                     layer=layer,
@@ -297,7 +299,9 @@ class RopeSettings(Settings):
         bent = shared.acting(
             self.path("load"), "bent up", "bent down", "bent up and down"
         )
-        where = "near a clamp" if self.is_clamped else "alike all along"
+        where = "alike all along"
+        if self.is_clamped:
+            where = "near a clamp"
         tension = ""
         if self.tension_load != "steady":
             tension = "; its tension changes"

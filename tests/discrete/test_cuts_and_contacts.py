@@ -1,4 +1,6 @@
-"""Cut or not, a structure is the same; contacts alike are one; driven points obey their law."""
+"""Cut or not, a structure is the same;
+contacts alike are one; driven points obey their law.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""All equilibria of one instant of a short rod, by trying every status of every point."""
+"""All equilibria of one instant of a short rod,
+by trying every status of every point.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ ROUNDING = 1e-9
 
 
 def numbers_of_equilibria(solution):
-    """How many equilibria each instant has after the instants before it, as they were solved.
+    """How many equilibria each instant has after the instants before it, as they were
+    solved.
 
     Of a rod on a support with friction that changes with slip. What is singular is left
     out: there a rod may lie anywhere.

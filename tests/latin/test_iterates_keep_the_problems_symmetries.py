@@ -62,7 +62,7 @@ def test_other_units_give_the_same_iterates(method, metre, newton, second):
             "peak": table.peak * newton,
             "duration": table.duration * second,
         }
-        settings = BarSettings.checked({"method": method, **SMALL, **values})
+        settings = BarSettings.checked({"method": method} | SMALL | values)
         return iterates(settings, 40)
 
     for own, other in zip(

@@ -1,4 +1,6 @@
-"""Mixtures, separated bases, indicators, starts and ends: each by what it must not change."""
+"""Mixtures, separated bases, indicators,
+starts and ends: each by what it must not change.
+"""
 
 from __future__ import annotations
 

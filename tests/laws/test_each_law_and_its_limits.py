@@ -1,4 +1,6 @@
-"""Local stages obey their laws along E+, compliant laws tend to rigid ones, cuts change no k."""
+"""Local stages obey their laws along E+,
+compliant laws tend to rigid ones, cuts change no k.
+"""
 
 from __future__ import annotations
 
@@ -171,7 +173,9 @@ def contact_of(
 def test_a_local_stage_obeys_coulombs_law_and_action_is_reaction(
     along: str, two: bool, opens: bool
 ) -> None:
-    soft = np.full(PAIRS, 0.3) if opens and along != "plain" else None
+    soft = None
+    if opens and along != "plain":
+        soft = np.full(PAIRS, 0.3)
     random, law = contact_of(7, opens=opens, two=two, across=soft, **ALONG[along])
     displacement, force = local_stage(law, random)
     tangential = law.tangential

@@ -27,7 +27,9 @@ CHANGING = {"friction_law": "slip-dependent"}
 
 
 def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
-    """Give a clamped pulled_bar of 1 m whose end is pulled, or displaced by force L / ES."""
+    """Give a clamped pulled_bar of 1 m whose end is pulled,
+    or displaced by force L / ES.
+    """
     force = np.asarray(force, dtype=float)
     return (
         Rods(
@@ -239,7 +241,8 @@ STRIP = {
 
 
 def pull_out(length):
-    """Give displacement and force of the strip's end, up to where the other begins to slip.
+    """Give displacement and force of the strip's end, up to where the other begins to
+    slip.
 
     Behind the front friction softens over the same distance as long as it goes on, and
     beyond is its last value.

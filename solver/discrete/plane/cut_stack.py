@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -54,7 +54,9 @@ def _pieces(stack: Stack) -> Iterator[_RectangularPiece]:
         ends_across = _ends_across(stack, brick)
         sizes_up = substructure_sizes(brick.rows, stack.substructures[1])
         ends_up = np.cumsum([0, *sizes_up]).tolist()
-        of_body = f" of {body + 1}" if body else ""
+        of_body = ""
+        if body:
+            of_body = f" of {body + 1}"
         for row, (low, high) in enumerate(pairwise(ends_up), start=1):
             for column, (left, right) in enumerate(pairwise(ends_across), start=1):
                 rectangle = Brick(
@@ -152,7 +154,7 @@ class CutStack:
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
         self._pieces = list(_pieces(stack))
         joints = self._joints()
-        self._touched = {side for joint in joints for side in joint.sides}
+        self._touched = set(chain.from_iterable(joint.sides for joint in joints))
         self.pairs = self._paired(joints)
         # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)

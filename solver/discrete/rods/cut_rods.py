@@ -83,12 +83,15 @@ class _Piece(NamedTuple):
     def springs(self, rods: Rods) -> dict[int, End]:
         """Ends of the rod that springs hold, by their node in this piece."""
         ends = {0: rods.left, rods.elements: rods.right}
-        last = self.first + self.size
-        springs = {}
-        for node, end in ends.items():
-            if end.is_on_spring and self.first <= node <= last:
-                springs[node - self.first] = end
-        return springs
+        return {
+            node - self.first: end
+            for node, end in ends.items()
+            if self._is_held(node, end)
+        }
+
+    def _is_held(self, node: int, end: End) -> bool:
+        """Check whether an end of the rod, at a node, is in the piece and on a spring."""
+        return end.is_on_spring and self.first <= node <= self.first + self.size
 
 
 class CutRods:
@@ -98,7 +101,7 @@ class CutRods:
     (MATHEMATICS.md, 1).
 
     Each rod rubs on a support of its own, or on the rods before and behind it; `names`
-    are the names of these interfaces, `positions` the positions of the nodes of each rod,
+    are the names of these interfaces, `positions` those of the nodes of each rod,
     (n_nodes,), m, and `rub_at_ends` says whether the first and the last node rub.
 
     Degrees of freedom run along rod after rod; a broken rod has two at its break, and

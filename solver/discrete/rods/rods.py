@@ -98,7 +98,7 @@ class End:
 
 @dataclass(frozen=True, eq=False)
 class Rods:
-    """One rod on a rigid rough support, or equal parallel rods that rub on each other.
+    """A rod on a rigid rough support, or equal parallel rods that rub on each other.
 
     All have the same ends and friction law; absent parts are None.
 
