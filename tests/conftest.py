@@ -1,4 +1,4 @@
-"""What tests of several files hold: a served page and a browser."""
+"""Fixtures and hooks of all tests: a served page, a browser, the order of files."""
 
 from __future__ import annotations
 
@@ -76,13 +76,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Together:
 
 
 def pytest_collection_finish() -> None:
-    """Have no collection of garbage look through all that was imported again."""
+    """Keep the garbage collector from searching the imported modules again."""
     gc.collect()
     gc.freeze()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Say in the last line how many tests of the page were skipped, and why."""
+    """Print the number of skipped tests of the page, and the reason."""
     reporter = config.pluginmanager.get_plugin("terminalreporter")
     if reporter:
         reports = reporter.stats.get("skipped", [])
@@ -102,7 +102,7 @@ def proxy() -> Iterator[Proxy]:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[Server]:
-    """What serves the page."""
+    """Server of the page."""
     port = free_port()
     origins = [
         f"--allow-websocket-origin=localhost:{each}" for each in (port, proxy.port)

@@ -49,7 +49,7 @@ print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
 
 
 def dockerfile() -> list[tuple[str, str]]:
-    """Give the instructions, continuation lines joined and comments dropped."""
+    """Instructions of the Dockerfile, with joined lines and without comments."""
     text = (ROOT / "Dockerfile").read_text()
     lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
     joined = "\n".join(lines).replace("\\\n", " ")
@@ -61,9 +61,7 @@ def instructions(name: str) -> list[str]:
 
 
 def declared():
-    """Give the distributions that the project needs,
-    directly or not, extras left out.
-    """
+    """Distributions that the project needs, directly or not, extras left out."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
         "project"
     ]
@@ -141,7 +139,7 @@ def test_the_image_is_slim_not_root_and_has_one_blas_thread():
 
 
 def handshake(port, origin):
-    """Give the answer to a page of some origin that asks for a websocket."""
+    """Answer to a page of some origin that asks for a websocket."""
     asked = http.client.HTTPConnection("127.0.0.1", int(port), timeout=PATIENCE)
     with closing(asked):
         asked.request(

@@ -1,4 +1,4 @@
-"""The table among the lines of a file: its rows, its head, and the cells of its columns."""
+"""The table among the lines of a file: its rows, its head, and its cells."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lines of a file with a table: the separator of columns, and the cells of each line."""
+"""Lines of a file with a table: separator of columns, and cells of each line."""
 
 from __future__ import annotations
 

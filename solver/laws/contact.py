@@ -66,7 +66,7 @@ class Violation:
 
     @cached_property
     def dissipated(self) -> Array:
-        """Dissipation q|v| of this slip under the bound, (n_pairs, n_instants), scaled."""
+        """Dissipation of this slip under the bound, (n_pairs, n_instants), scaled."""
         return self.bound * np.abs(self.slip)
 
     def energy(self, mean_slip: float, mean_force: Array | float) -> Array:

@@ -13,9 +13,9 @@ import numpy as np
 from solver.arrays import Array
 
 STEPS = 4
-"""Largest number of steps of the fixed point: 1, 2 and 10 steps, and the leading singular pair
-itself, reach 1 % of force error within one iteration of each other (bar and strand, 98
-to 106; measured)."""
+"""Largest number of steps of the fixed point: 1, 2 and 10 steps, and the leading
+singular pair itself, reach 1 % of force error within one iteration of each other (bar
+and strand, 98 to 106; measured)."""
 STAGNATION = 0.01
 """Change of a pair's size, as a share, at which the fixed point stops; 0 and 0.1 as
 well."""
@@ -87,7 +87,7 @@ class SeparatedBasis:
         return replace(self, modes=modes, time_functions=time_functions)
 
     def orthonormal(self, mode: Array) -> Array | None:
-        """A mode, (n_boundary,), made orthonormal to the others; None if it depends on them."""
+        """A mode orthonormal to the others, (n_boundary,), if it is independent."""
         size = np.sqrt(float(self.k @ (mode * mode)))
         if size == 0.0:
             return None

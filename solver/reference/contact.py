@@ -29,7 +29,7 @@ MOST_JUMPS = 13_000
 
 
 class IncrementalContact:
-    """The incremental solver of any interfaces with friction, ready to march through time.
+    """Incremental solver of any interfaces with friction, ready to march.
 
     Friction may have several solutions for a large mu, or no solution where contact
     alone holds a body. Where several exist one of them is found, and the instant is

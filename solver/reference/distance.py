@@ -1,4 +1,4 @@
-"""Errors: distances of fields from a reference (MATHEMATICS.md, 4), and KKT residuals."""
+"""Errors: distances from a reference (MATHEMATICS.md, 4), and KKT residuals."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Fields(Protocol):
 
     @property
     def contact_force(self) -> Array:
-        """Nodal forces of all interfaces with friction, stacked, (n_forces, n_instants), N."""
+        """Nodal forces of all contacts, stacked, shape (n_forces, n_instants), N."""
 
 
 class Distance:
@@ -58,7 +58,7 @@ class Distance:
     """
 
     def __init__(self, reference: Fields, problem: Problem, load: Array) -> None:
-        """Prepare the distance to a reference, with a load of shape (n, n_instants), N."""
+        """Prepare the distance, with a load of shape (n, n_instants), N."""
         self._weights = problem.time_weights
         self._determinate = determinate_forces(problem)
         self._held = held_instants(problem, reference.contact_force)
@@ -97,7 +97,7 @@ class Distance:
         return self._norm(difference) / self._displacement_size
 
     def of_friction_force(self, fields: Fields) -> float:
-        """Relative error of the contact forces: that of friction, or pressure if larger.
+        """Relative error of contact forces: of friction, or of pressure if larger.
 
         Each is relative to its own norm, or to `LEAST_SHARE` of both together where
         that is more.
@@ -214,7 +214,7 @@ def determinate_forces(problem: Problem) -> Flags:
 
 
 def kkt_residual(fields: Fields, problem: Problem, max_ratio: float = np.inf) -> float:
-    """Largest violation of equilibrium, laws and prescribed values, as a share of forces.
+    """Largest violation of equilibrium, laws and prescribed values, as a share.
 
     It follows from the equations alone, at every instant, however the fields were
     found. Violations are relative to `force_size`, and to the load where all vanish.

@@ -45,7 +45,7 @@ BALANCED = 1e-6
 
 
 def rubs_on_supports(problem: Problem) -> bool:
-    """Check that friction of rods has known bounds, on one rigid support at every point."""
+    """Check that rods rub by known bounds, on one rigid support at every point."""
     laws = problem.rubbing.values()
     if not laws or not problem.is_chain or not all(law.is_plain for law in laws):
         return False
@@ -85,7 +85,7 @@ class IncrementalRod:
         max_systems: int | None,
         stop: Callable[[], bool] | None,
     ) -> Reference:
-        """Solve by the general solver, which follows friction that softens fast, too."""
+        """Solve by the general solver, which also follows fast softening."""
         if self._general is None:
             self._general = IncrementalContact(self._problem, stop)
         dearer = 1 + len(self._dofs) // DEARER
@@ -100,7 +100,7 @@ class IncrementalRod:
         max_systems: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
-        """Solve instant by instant, as `IncrementalContact.march`; a guess is one of statuses.
+        """Solve instant by instant, as `IncrementalContact.march`, by statuses.
 
         Raises
         ------

@@ -287,7 +287,7 @@ def _contact_force(problem: Problem, force: Array) -> Array:
         pairs = np.bincount(law.points)[law.points]
         places = problem.contact_slices[name]
         for place, component in zip(places, law.components, strict=True):
-            # The pairs of a point share its force; above it acts as it is, below against.
+            # The pairs of a point share its force, which acts on both sides oppositely.
             carried = force[place][law.points] / pairs[:, None]
             for side, sign in zip(component.sides, (1.0, -1.0), strict=False):
                 np.add.at(total, problem.row_dofs[side], sign * carried)
@@ -338,7 +338,7 @@ def _prescribed(problem: Problem) -> tuple[Indices, Array]:
 def _balance_of_parts(
     problem: Problem, displacement: Array, force: Array
 ) -> Iterator[Array]:
-    """Yield the forces out of balance of every substructure, (n_dofs, n_instants), scaled.
+    """Yield unbalanced forces of every substructure, (n_dofs, n_instants), scaled.
 
     By displacements (n_dofs, n_instants) of the structure, and forces of all rows
     (n_rows, n_instants).
@@ -354,7 +354,7 @@ def _balance_of_parts(
 def _glued(
     problem: Problem, rows: RowFields, length_size: float, force_size: float
 ) -> float:
-    """Largest difference of both sides of all cuts, or sum of their forces, as a share."""
+    """Largest gap of both sides of all cuts, or sum of their forces, as a share."""
     largest = 0.0
     for law in problem.interfaces.values():
         if isinstance(law, Perfect):

@@ -211,7 +211,8 @@ def slip_space(problem: Problem) -> SlipSpace:
     condensed = Condensation(problem)
     if not _is_of_coulomb(condensed):
         raise NoReferenceError(
-            "The planes are those of Coulomb's friction, where forces follow from slips."
+            "The planes are those of Coulomb's friction, where forces follow from "
+            "slips."
         )
     rules = condensed.rules
     stiffness = condensed.elastic

@@ -239,7 +239,7 @@ def _scales_of_rod(given: Mapping[str, Any]) -> dict[str, float]:
 def _scales_in_plane(
     kind: Any, given: Mapping[str, Any], generator: Generator
 ) -> dict[str, float]:
-    """Scales of bodies in the plane, by unit, with a random strain of their pressure."""
+    """Scales of bodies in the plane by unit, with a random strain of the pressure."""
     length = given["length"]
     height = given[kind.across] * given.get("layers", 1) * given.get("courses", 1)
     smallest = -6.0

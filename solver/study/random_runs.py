@@ -56,7 +56,8 @@ instants."""
 CHANGED = 0.15
 """Share of the runs in which a setting differs from its default."""
 IDLE = 0.5
-"""The same share of settings that do nothing by default, and need another to be drawn."""
+"""The same share of settings that do nothing by default, and need another to be drawn.
+"""
 OFTEN = {
     "friction_law": 0.6,
     "strength": 0.8,
@@ -82,7 +83,7 @@ TRIALS = 10_000
 def random_cases(
     scenes: Sequence[str], number: int, seed: int
 ) -> Iterator[StabilityCase]:
-    """Random runs of scenes, or of all, in turn; row n is of scene n modulo their number."""
+    """Random runs of scenes, or of all: row n is of scene n modulo their number."""
     names = list(scenes or CATALOGUE)
     for row in range(number):
         yield random_case(draw(names[row % len(names)], seed, row), seed, row)
@@ -254,7 +255,7 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
 
 
 def _construction(_name: str, generator: Generator) -> list[list[float]]:
-    """Random construction of a rope: a core, and one or two layers with room to spare."""
+    """Random construction of a rope: a core, and one or two layers around it."""
     rows = [[1, float(generator.uniform(2e-3, 8e-3)), 0.0, 2e11]]
     around = rows[0][1]
     for _ in range(int(generator.integers(1, 3))):

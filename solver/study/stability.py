@@ -146,7 +146,7 @@ class StabilityCase:
 def extreme_cases(
     scenes: Collection[str] = (), *, quick: bool = False
 ) -> Iterator[StabilityCase]:
-    """Cases of some scenes, or of all, by each method; with `quick` only the quick ones."""
+    """Cases of some scenes, or of all, by each method; or the quick ones alone."""
     for scene, groups in tomllib.loads(CASES.read_text(encoding="utf-8")).items():
         if scene not in (scenes or CATALOGUE):
             continue

@@ -64,9 +64,9 @@ SHOWN = {
 }
 """Columns on a console: head and width by name."""
 NOTES = (
-    "A run passes if it comes to what is expected of it. Right is an answer that breaks "
-    "no law by more than 1e-8; of runs that are not certified also errors of at most "
-    "1e-6, and of random runs errors of the contact force of at most the accuracy.",
+    "A run passes if it comes to what is expected of it. Right is an answer that "
+    "breaks no law by more than 1e-8; of runs that are not certified also errors of "
+    "at most 1e-6, and of random runs errors of the contact force of at most the accuracy.",
     "Laws: the largest violation of balance, held displacements, cuts, Signorini's and "
     "Coulomb's law at any place and instant, as a share of the largest contact force, "
     "or jump.",
@@ -81,7 +81,7 @@ def summary(runs: Sequence[Row]) -> str:
 
 
 def counts(runs: Sequence[Row]) -> list[list[str]]:
-    """Numbers of runs by verdict, with the meaning of each; the first row is the head."""
+    """Numbers of runs by verdict, with the meaning of each, below a head."""
     return _counted(runs, "verdict", MEANING)
 
 
@@ -102,7 +102,7 @@ def _counted(
 
 
 def last_lines(runs: Sequence[Row]) -> list[str]:
-    """Last lines on a console: counts, notes, and runs that fail with their commands."""
+    """Last lines on a console: counts, notes, and commands of runs that fail."""
     tables = [aligned(counts(runs)), "", aligned(judges(runs))]
     lines = ["", summary(runs), *tables, "", *NOTES]
     for run in runs:

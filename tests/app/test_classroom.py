@@ -43,8 +43,9 @@ class Document:
 
 
 class Worker:
-    """What stands for a page's supervisor:
-    whether its process is there, and its orders.
+    """Stand-in for a page's supervisor.
+
+    Its orders are kept, and its process is there or not.
     """
 
     def __init__(self, state: PageState) -> None:
@@ -74,7 +75,7 @@ class Seat:
 
 
 def tick(*seats: Seat) -> None:
-    """Let all documents do what is due, until nothing is."""
+    """Run all pending callbacks of all documents."""
     while any(seat.document.due for seat in seats):
         for seat in seats:
             due = seat.document.due
@@ -84,7 +85,7 @@ def tick(*seats: Seat) -> None:
 
 
 def show(seat: Seat, frame: Frame) -> Frame:
-    """Have the leader's worker send a frame of its present run."""
+    """Send a frame of the present run from the leader's worker."""
     shown = replace(frame, run=replace(frame.run, number=seat.state.number))
     seat.state.history = History()
     seat.state.history.add(shown)

@@ -1,5 +1,6 @@
-"""One goes back and forth among the iterates that were shown,
-though not each of them was.
+"""The history goes back and forth among the iterates that were shown.
+
+Iterations that were not shown are left out.
 """
 
 from __future__ import annotations

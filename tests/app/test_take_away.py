@@ -1,4 +1,4 @@
-"""What is taken away holds the numbers that are on the page."""
+"""Files that are taken away hold the numbers that are on the page."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""What if: runs reach the chart as they come. Reports:
-commands are run in turn, and read.
-"""
+"""Charts of settings get runs as they come; commands of reports run in turn."""
 
 from __future__ import annotations
 

@@ -118,8 +118,9 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
 
 
 def _course(settings: Settings) -> tuple[bool, int, int, str]:
-    """When LATIN's own way is within the goal,
-    and when and by what it is known; 0 for never.
+    """Times at which LATIN's own iterates reach the goal, and tell that they do, s.
+
+    Also the way by which it is known. 0 stands for never.
     """
     problem = discretise(settings)
     try:

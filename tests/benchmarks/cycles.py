@@ -1,5 +1,4 @@
-"""What many cycles of a load cost: LATIN and LATIN-PGD, at once and in slabs of a
-cycle.
+"""Cost of many cycles of a load: LATIN and LATIN-PGD, at once and in slabs of a cycle.
 
 `python tests/benchmarks/cycles.py`, of one problem `cycles.py strand`; `--large` up to
 100 cycles. Iterations to 1 % of the contact force are counted without the clock, then

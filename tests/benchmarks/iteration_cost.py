@@ -1,5 +1,4 @@
-"""What one iteration costs: by stage, and against the arithmetic that it cannot do
-without.
+"""Cost of one iteration by stage, beside that of its indispensable arithmetic.
 
 `python tests/benchmarks/iteration_cost.py`, `iteration_cost.py 3` with medians of three
 """
@@ -161,7 +160,7 @@ OVERHEADS: tuple[tuple[str, dict[str, object]], ...] = (
 
 @dataclass(frozen=True)
 class Overhead:
-    """What a run pays beside both stages, as shares of an iteration's own work.
+    """Cost of a run beside both stages, as shares of an iteration's own work.
 
     Attributes
     ----------

@@ -70,7 +70,7 @@ class Public:
 
     @property
     def installed(self) -> bool:
-        """Whether it can be imported."""
+        """Check whether the solver can be imported."""
         return importlib.util.find_spec(self.module) is not None
 
     @property
@@ -81,7 +81,7 @@ class Public:
 
 @dataclass(frozen=True, eq=False)
 class PublicFields:
-    """What a solver found, SI.
+    """Solution of a public solver, SI.
 
     Attributes
     ----------

@@ -1,6 +1,4 @@
-"""What the linear stage costs on separated bases,
-against the full one, by size and modes.
-"""
+"""Cost of the linear stage on separated bases, over that on full fields."""
 
 from __future__ import annotations
 

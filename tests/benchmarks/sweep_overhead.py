@@ -1,4 +1,4 @@
-"""What a sweep takes besides its runs."""
+"""Cost of a sweep beside its runs."""
 
 from __future__ import annotations
 

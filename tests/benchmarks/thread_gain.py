@@ -1,6 +1,4 @@
-"""What threads gain: the same iterations of a block by
-one thread and by several, in turn.
-"""
+"""Gain by threads: the same iterations of a block by one thread and by several."""
 
 from __future__ import annotations
 

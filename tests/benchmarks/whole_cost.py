@@ -1,4 +1,4 @@
-"""What whole runs take beside what `solver.latin.end.cost` expects of them.
+"""Cost of whole runs, beside the estimate of `solver.latin.end.cost`.
 
 `python tests/benchmarks/whole_cost.py`
 """

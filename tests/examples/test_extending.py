@@ -1,4 +1,4 @@
-"""Who follows `solver/EXTENDING.md` to the letter has what it promises."""
+"""The steps of `solver/EXTENDING.md` have the promised result."""
 
 from __future__ import annotations
 

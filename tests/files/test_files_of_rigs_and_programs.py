@@ -1,6 +1,4 @@
-"""One loop, as testing machines,
-spreadsheets and programs write it, is read as that loop.
-"""
+"""A loop is read alike from files of testing machines, spreadsheets and programs."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Written:
 
 @dataclass(frozen=True)
 class Dialect:
-    """How somebody writes numbers, and what beside them."""
+    """A way to write numbers, and the words beside them."""
 
     decimal: str
     thousands: str

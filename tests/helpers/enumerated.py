@@ -15,8 +15,10 @@ ROUNDING = 1e-9
 
 
 def numbers_of_equilibria(solution):
-    """How many equilibria each instant has after the instants before it, as they were
-    solved.
+    """Number of equilibria of each instant, after the solved instants before it.
+
+    For a rod on a support with friction that changes with slip. Singular systems are
+    left out: there a rod may lie anywhere.
 
     Of a rod on a support with friction that changes with slip. What is singular is left
     out: there a rod may lie anywhere.

@@ -1,5 +1,6 @@
-"""One BLAS thread for every process of the tests: they share the processors as the
-workers do.
+"""Limits of BLAS to one thread in every process of the tests.
+
+Processes share the processors as the workers do.
 
 Those of several processes spin against each other, and a dense factor takes twenty
 times as long.

@@ -1,4 +1,4 @@
-"""What tests of processes ask and wait for."""
+"""Processes that tests start, ask and wait for."""
 
 from __future__ import annotations
 

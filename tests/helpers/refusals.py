@@ -1,4 +1,4 @@
-"""How settings are refused."""
+"""Checks of the refusals of settings."""
 
 from __future__ import annotations
 

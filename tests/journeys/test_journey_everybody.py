@@ -25,7 +25,7 @@ OF_THE_WIDGETS = ("aria-prohibited-attr", "aria-progressbar-name", "button-name"
 
 
 def violations(page: Page) -> list[str]:
-    """What the rules of WCAG find, as far as they are of level A and AA."""
+    """Violations of the rules of WCAG, levels A and AA."""
     options = {
         "runOnly": {
             "type": "tag",

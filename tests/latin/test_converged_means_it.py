@@ -1,6 +1,4 @@
-"""What is called converged has its contact force
-within the accuracy, or is told not to.
-"""
+"""A converged run has its contact force within the accuracy, or its user is told."""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ def test_a_fixed_point_is_not_left() -> None:
 
 
 def test_weights_of_a_mixture_add_up_to_one() -> None:
-    """What is added to all states and images is added to the mixture."""
+    """A field added to all states and images is added to the mixture."""
     random = np.random.default_rng(4)
     plain = Mixed(0)
     moved = Mixed(0)

@@ -164,7 +164,7 @@ def exact_of_damped(damping: float = 2.0) -> Array:
 
 
 def is_honest(solution: Solution) -> bool:
-    """Whether a run has ended without claiming a proof."""
+    """Check whether a run has ended without claiming a proof."""
     assert not solution.is_certified
     assert "ertified" not in solution.status.advice
     return solution.status.ending in (
@@ -191,7 +191,7 @@ def test_a_damper_is_solved_and_ends_by_estimate(
 
 @pytest.mark.parametrize("damping", [0.2, 2.0, 50.0])
 def test_an_estimate_is_no_smaller_than_the_error(damping: float) -> None:
-    """Of friction and of the damper's force, at the default accuracy."""
+    """For friction and for the damper's force, at the default accuracy."""
     of = damped(Dashpot, damping)
     rough = solve(of).iterate
     exact = solve(of, EXACT).iterate
@@ -397,7 +397,7 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
 
 
 def test_bases_that_nothing_can_prove_do_not_converge() -> None:
-    """What is converged on a few modes need not be near the answer."""
+    """An iteration that has come to rest on a few modes may be far from the answer."""
     method = Latin(
         linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40)
     )

@@ -1,4 +1,4 @@
-"""What obeys equilibrium and all laws is called solved, whatever led to it."""
+"""Fields that obey equilibrium and all laws count as solved."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""What a path over time or a table along a body has,
-a run sees, or says that it does not.
-"""
+"""A run sees all of a path or a table, or says that it does not."""
 
 from __future__ import annotations
 

@@ -67,12 +67,12 @@ class BentWire:
         return np.asarray(self.radius * np.cos(wire.lay) * force * shares)
 
     def _share(self, curvature: float) -> float:
-        """Moment over R cos(alpha) times the force that friction builds up in a radian."""
+        """Moment over R cos(alpha) times the friction force of a radian."""
         ratio = curvature / self.first_slip
         if ratio <= 1.0:
             return 0.5 * ratio
         phi = 0.5 * np.pi
-        # Zero solves phi = (kappa / kappa_0) sin(phi), too, so the bracket leaves it out.
+        # Zero solves the equation of phi, too, so the bracket leaves it out.
         if ratio < phi:
             phi = float(brentq(_beyond_slip, 1e-9, phi, args=(ratio,), xtol=1e-14))
         spread = 0.5 * phi * (0.5 * np.pi - phi) / np.sin(phi)
@@ -125,5 +125,5 @@ class BentStrand:
         return np.asarray(self.section.slipping_bending * curvature + moment)
 
     def along(self, path: Array) -> Array:
-        """Moment along any path of the curvature, (n_instants,), 1/m, from zero; N m."""
+        """Moment along a path of the curvature from zero, 1/m; (n_instants,), N m."""
         return masing(path, lambda curvature: float(self.moment(np.array(curvature))))

@@ -50,12 +50,12 @@ class HalfPlane:
         return float(self.half_width * np.sqrt(1.0 - share))
 
     def pressure(self, positions: Array) -> Array:
-        """Pressure, Pa, at distances from the middle of the contact, m; of any shape."""
+        """Pressure, Pa, at distances from the middle, m; both of any shape."""
         square = np.maximum(self.half_width**2 - positions**2, 0.0)
         return np.asarray(0.5 * self.modulus / self.radius * np.sqrt(square))
 
     def traction(self, positions: Array, friction: float, share: float) -> Array:
-        """Shear traction under a share of mu P that has grown, Pa, shape as `pressure`."""
+        """Shear traction under a grown share of mu P, Pa, of the shape of positions."""
         sticking = replace(self, force=(1.0 - share) * self.force)
         return friction * (self.pressure(positions) - sticking.pressure(positions))
 
@@ -109,7 +109,7 @@ def cantilever(length: float, height: float, young: float, poisson: float) -> fl
 
 @dataclass(frozen=True)
 class TwoLeaves:
-    """Two equal leaves, clamped at one end, pressed together evenly, and bent by a force.
+    """Two equal leaves, clamped at one end, evenly pressed, and bent by a force.
 
     Shear between beams that stick is the same all along, so all slips at once. (L. E.
     Goodman, J. H. Klumpp, J. Appl. Mech. 23, 421, 1956.)

@@ -53,7 +53,7 @@ def spread(
     later = instants[1:] - instants[0]
     bends = np.diff(np.diff(given) / steps, prepend=0.0)
     pressure = given[0] * erfc(_diffusion_lengths(positions, later, diffusivity))
-    # Every bend of the pressure adds the same answer, later: at even steps a convolution.
+    # Every bend of the pressure adds the same answer: at even steps a convolution.
     if np.ptp(steps) <= EVEN * later[-1]:
         risen = _risen(positions, later, diffusivity)
         pressure += fftconvolve(risen, bends[None], axes=1)[:, : len(later)]
@@ -76,12 +76,12 @@ def _risen(positions: Array, later: Array, diffusivity: float) -> Array:
 
 
 def _diffusion_lengths(positions: Array, later: Array, diffusivity: float) -> Array:
-    """Positions (n_positions,), m, over the diffusion lengths, (n_positions, n_times)."""
+    """Positions, m, over the diffusion lengths, (n_positions, n_times)."""
     return np.minimum(positions[:, None] / np.sqrt(4.0 * diffusivity * later), DRY)
 
 
 def fronts(positions: Array, lack: Array) -> Array:
-    """Half-length of a zone of slip that grows in both directions alike, (n_instants,), m.
+    """Half-length of a zone of slip that grows both ways alike, (n_instants,), m.
 
     Stress is finite at its ends, so the integral over the zone of what the stress lacks
     to the strength, times ds / sqrt(a^2 - s^2), is zero. The half-length is 0 where
@@ -110,7 +110,7 @@ def fronts(positions: Array, lack: Array) -> Array:
 
 
 def _mean_lack(half_length: float, positions: Array, lack: Array) -> float:
-    """Weighted mean over a zone of what the stress lacks, as `fronts`, at one instant."""
+    """Weighted mean of `lack` over a zone, as of `fronts`, at one instant."""
     return float(np.interp(half_length * SHARES, positions, lack).mean())
 
 

@@ -1,4 +1,4 @@
-"""Masing's rule: answers to a load that turns, by the first curve, under a growing load.
+"""Masing's rule: answers to a load that turns, from that to a growing load.
 
 From a turning point on the answer is the first curve, doubled in both directions. A
 loop that closes is forgotten, and the answer goes on as if it had not been (G. Masing,

@@ -1,4 +1,4 @@
-"""Closed forms: a clamped bar pulled over its support, a broken wire (MATHEMATICS.md, 6, 8, 14).
+"""Closed forms of a pulled bar, and of a broken wire (MATHEMATICS.md, 6, 8, 14).
 
 Under Coulomb friction sliding needs the whole bound between a section and the free end,
 R(x) = integral of mu p from x to L. So the normal force N(x, t) follows the load F(t)
@@ -171,7 +171,7 @@ def pulled_compliant_bar(
 def pulled_changing_bar(
     force: float, stiffness: float, bound: float, ratio: float, slip_length: float
 ) -> float:
-    """End displacement where friction changes with slip, under a force grown from zero, m.
+    """End displacement, m, where friction changes with slip, under a grown force.
 
     It holds while no point has slipped farther than friction changes (MATHEMATICS.md,
     14).
@@ -277,7 +277,7 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
 
 
 def _tension(scene: Rods) -> Array:
-    """Tension T under a rigid grip, where a neighbour's elongation is given, (n_instants,).
+    """Tension T under a rigid grip, which gives the elongation, (n_instants,), N.
 
     The elongation is T L / ES, plus for each side of the break the slip there over
     m + 1. That slip grows with T no faster than T L / ES, so a step of half the

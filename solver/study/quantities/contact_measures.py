@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from solver.arrays import Array, Flags
 from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import AxialForce, reaction
+from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.laws import OPEN
+from solver.laws import OPEN, Contact
 from solver.settings.scene import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import (
@@ -358,13 +359,18 @@ def _slipped_shares(run: FinishedRun) -> Array:
 
 def _stand_still(run: FinishedRun) -> dict[str, Flags]:
     """Points of each interface that are held and never slip, shape (n_points,)."""
-    held = run.problem.is_held
     still = {}
     for name, law in run.problem.rubbing.items():
-        is_held = np.all([held[rows] for rows in law.tangent.sides], axis=0)
+        is_free = ~are_clamped(run.problem, law)
         has_slipped = np.any(np.abs(run.iterate.contact(name).status) == 1, axis=1)
-        still[name] = (law.by_point(1.0 * ~is_held) == 0.0) & ~has_slipped
+        still[name] = (law.by_point(is_free.astype(float)) == 0.0) & ~has_slipped
     return still
+
+
+def are_clamped(problem: Problem, law: Contact) -> Flags:
+    """Pairs whose tangential displacement is prescribed on all sides, (n_pairs,)."""
+    held = [problem.is_held[rows] for rows in law.tangent.sides]
+    return np.asarray(np.all(held, axis=0))
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:

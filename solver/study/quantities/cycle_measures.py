@@ -14,6 +14,7 @@ from solver.laws import OPEN, FrictionLaw
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.settings.scene import Settings
+from solver.study.quantities.contact_measures import are_clamped
 from solver.study.quantities.cycles import cycles_in, ends_of, instants_of, slips_of
 from solver.study.quantities.finished import FinishedRun, first_largest
 from solver.study.quantities.quantity import CYCLE, quantity
@@ -96,11 +97,10 @@ def sliding_share(run: FinishedRun) -> float:
 
 def _free_lengths(run: FinishedRun) -> Array:
     """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
-    held = run.problem.is_held
     lengths = []
     for law in run.problem.surfaces.values():
-        is_clamped = np.all([held[rows] for rows in law.tangent.sides], axis=0)
-        lengths.append(law.by_point(law.weights * ~is_clamped))
+        is_free = ~are_clamped(run.problem, law)
+        lengths.append(law.by_point(law.weights * is_free))
     return np.concatenate(lengths)
 
 
