@@ -87,7 +87,10 @@ class SeparatedBasis:
         return replace(self, modes=modes, time_functions=time_functions)
 
     def orthonormal(self, mode: Array) -> Array | None:
-        """A mode orthonormal to the others, (n_boundary,), if it is independent."""
+        """A mode made orthonormal to the others, shape (n_boundary,).
+
+        None if it depends on them up to rounding.
+        """
         size = np.sqrt(float(self.k @ (mode * mode)))
         if size == 0.0:
             return None
