@@ -1,4 +1,4 @@
-"""Fixtures and hooks of all tests: a served page, a browser, the order of files."""
+"""Fixtures of tests in several files: a served page and a browser."""
 
 from __future__ import annotations
 

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from html import escape
 from pathlib import Path
 
 from solver.study.page import (
     aligned,
-    bullets,
-    html_table,
     line_of,
     text_of,
     write_csv,
@@ -66,7 +63,8 @@ SHOWN = {
 NOTES = (
     "A run passes if it comes to what is expected of it. Right is an answer that "
     "breaks no law by more than 1e-8; of runs that are not certified also errors of "
-    "at most 1e-6, and of random runs errors of the contact force of at most the accuracy.",
+    "at most 1e-6, and of random runs errors of the contact force of at most the "
+    "accuracy.",
     "Laws: the largest violation of balance, held displacements, cuts, Signorini's and "
     "Coulomb's law at any place and instant, as a share of the largest contact force, "
     "or jump.",
@@ -120,16 +118,21 @@ def write_stability(runs: Sequence[Row], folder: Path) -> None:
     """Write `FILES` into an existing folder."""
     short = [column for column in COLUMNS if column not in LONG]
     cells = []
-    table = [[column.replace("_", " ") for column in short]]
+    shown = []
     for row in runs:
         cells.append([row[column] for column in COLUMNS])
-        table.append([text_of(row[column]) for column in short])
         words = [str(row[column]) for column in LONG if row[column]]
-        table.append([escape(" · ".join(words))])
+        shown.append(([text_of(row[column]) for column in short], " · ".join(words)))
     write_csv(folder / FILES[0], COLUMNS, cells)
-    sections = [
-        f"<p><b>{escape(summary(runs))}</b></p>\n{html_table(counts(runs))}\n"
-        f"{html_table(judges(runs))}\n{bullets(NOTES)}",
-        f"<h2>Every run</h2>\n{html_table(table)}",
-    ]
-    write_page(folder / FILES[1], "Stability on extreme or random runs", sections)
+    write_page(
+        folder / FILES[1],
+        "stability.html",
+        [],
+        title="Stability on extreme or random runs",
+        summary=summary(runs),
+        counts=counts(runs),
+        judges=judges(runs),
+        notes=NOTES,
+        names=[column.replace("_", " ") for column in short],
+        runs=shown,
+    )

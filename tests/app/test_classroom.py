@@ -43,10 +43,7 @@ class Document:
 
 
 class Worker:
-    """Stand-in for a page's supervisor.
-
-    Its orders are kept, and its process is there or not.
-    """
+    """Double of a page's supervisor: its process is there or not, and its orders."""
 
     def __init__(self, state: PageState) -> None:
         self.state = state

@@ -1,4 +1,4 @@
-"""Values that a page gave to a widget come back, and change nothing."""
+"""The browser's echo of a widget's value is no choice of anybody."""
 
 from __future__ import annotations
 

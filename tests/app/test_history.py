@@ -1,7 +1,4 @@
-"""The history goes back and forth among the iterates that were shown.
-
-Iterations that were not shown are left out.
-"""
+"""Back and forth go among the iterates that were shown, though not each was."""
 
 from __future__ import annotations
 

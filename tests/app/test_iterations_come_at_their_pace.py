@@ -29,7 +29,7 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Watch:
 
 
 def played(watch: Watch, pace: float, count: int, takes: float = 0.0) -> list[float]:
-    """Times at which iterations begin, if each takes a given time."""
+    """Times at which a number of iterations of a given length begin."""
     times = []
     paced = Pacing(pace)
     for done in range(1, count + 1):

@@ -1,4 +1,4 @@
-"""Smallest rank of the argument of a clip in the plane, where the bound is mu N(x, t).
+"""Rank of the argument of a clip in the plane, where the bound is mu N(x, t).
 
 A matrix of low rank is sought that is the friction where a point sticks, and beyond the
 bound where it slips: clipped at the bound it is the friction. Both factors are found at

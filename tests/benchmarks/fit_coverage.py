@@ -1,4 +1,4 @@
-"""Share of the fits whose margins of two standard errors hold the true settings.
+"""Share of fits whose margins of two standard errors hold the values behind a loop.
 
     python tests/benchmarks/fit_coverage.py 40            seeds 0 to 39 of all kinds
     python tests/benchmarks/fit_coverage.py 40 20 young   20 to 39 of kinds with young
@@ -102,7 +102,7 @@ def made_loop(names: tuple[str, ...], seed: int) -> MadeLoop:
 
 
 def judge(found: Fit, true: dict[str, float]) -> tuple[list[bool], list[bool]]:
-    """Check whether the true settings, and their products, are within the margins."""
+    """Check whether true values are in the margins: settings alone, and products."""
     values = np.array(list(true.values()))
     is_known = np.isfinite(found.errors)
     is_within = (found.lower <= values) & (values <= found.upper)

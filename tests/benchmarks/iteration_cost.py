@@ -1,11 +1,10 @@
-"""Cost of one iteration by stage, beside that of its indispensable arithmetic.
+"""Cost of an iteration by stage, beside the arithmetic that it cannot do without.
 
 `python tests/benchmarks/iteration_cost.py`, `iteration_cost.py 3` with medians of three
 """
 
 from __future__ import annotations
 
-import statistics
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -211,13 +210,10 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
             rules.judge(iterate)
 
     ways: list[Callable[[], object]] = [bare, kept, judged_without_step]
-    times = zip(*samples_of(ways, repeats), strict=True)
-    own, snapshot, stop = (
-        statistics.median(found)
-        for found in zip(
-            *((a, (b - a) / a, (c - b) / a) for a, b, c in times), strict=True
-        )
-    )
+    alone, watched, whole = np.array(samples_of(ways, repeats))
+    own = float(np.median(alone))
+    snapshot = float(np.median((watched - alone) / alone))
+    stop = float(np.median((whole - watched) / alone))
     return Overhead(own / number, snapshot, stop)
 
 

@@ -32,7 +32,7 @@ load."""
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Solution of an incremental solver.
+    """Result of an incremental solver.
 
     Attributes
     ----------

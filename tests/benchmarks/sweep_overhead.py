@@ -1,4 +1,4 @@
-"""Cost of a sweep beside its runs."""
+"""Time of a sweep besides its runs."""
 
 from __future__ import annotations
 

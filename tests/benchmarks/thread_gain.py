@@ -1,4 +1,4 @@
-"""Gain by threads: the same iterations of a block by one thread and by several."""
+"""Gain by threads: iterations of a block by one thread and by several, in turn."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The steps of `solver/EXTENDING.md` have the promised result."""
+"""Steps of `solver/EXTENDING.md`, followed to the letter, have what it promises."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A loop is read alike from files of testing machines, spreadsheets and programs."""
+"""A loop is read as that loop, as rigs, spreadsheets or programs write it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Processes that tests start, ask and wait for."""
+"""Helpers of tests of processes: what to ask of them, and waiting."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of the refusals of settings."""
+"""Texts with which settings are refused."""
 
 from __future__ import annotations
 

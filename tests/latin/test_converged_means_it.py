@@ -1,4 +1,4 @@
-"""A converged run has its contact force within the accuracy, or its user is told."""
+"""A run that is called converged has its contact force within the accuracy."""
 
 from __future__ import annotations
 

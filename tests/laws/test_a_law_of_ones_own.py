@@ -397,7 +397,7 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
 
 
 def test_bases_that_nothing_can_prove_do_not_converge() -> None:
-    """An iteration that has come to rest on a few modes may be far from the answer."""
+    """A run that has converged on a few modes need not be near the answer."""
     method = Latin(
         linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40)
     )

@@ -1,4 +1,4 @@
-"""Fields that obey equilibrium and all laws count as solved."""
+"""Fields that obey equilibrium and all laws are called solved, by whatever way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Unknown settings, and values out of range, are refused in one clear line."""
+"""Unknown settings and bad values are refused in one clear line."""
 
 import json
 import math
