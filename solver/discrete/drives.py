@@ -68,6 +68,7 @@ class Drive:
         """
         before = self.before(instant)
         value = before + share * (float(self.values[instant]) - before)
+        # A load factor of a reversed load is that of the reversed peak.
         sign = np.sign(value)
         largest = float((sign * self.values).max(initial=0.0))
         amount = f"{self.name} = {plain(float(f'{value:.4g}'))} {self.unit}".rstrip()

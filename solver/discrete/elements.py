@@ -216,6 +216,7 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
         slenderness = ratio
     else:
         slenderness = 1.0 / ratio
+    # A long side has many soft waves, which the macro forces have to balance.
     wanted = round(degree * max(LONG_SIDES * np.sqrt(slenderness), 1.0))
     highest = min(wanted, max(HIGHEST_DEGREE, degree), n_points - 1)
     return np.asarray(legvander(np.linspace(-1.0, 1.0, n_points), highest))

@@ -124,6 +124,7 @@ class Inside:
                 continue
             np.add.at(total, dofs, part.condensed.condense(share)[:, 0])
             if part.force is not None:
+                # With the boundary held, only loads inside move the inner nodes.
                 held = np.zeros((len(dofs), self._size[1]))
                 constant += share[:, 0] @ part.condensed.recover(held, part.force)
         return total, constant * self._length

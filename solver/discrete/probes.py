@@ -184,6 +184,7 @@ def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
         loads += held[problem.row_dofs[given.rows]] @ given.values
     scales = problem.scales
     dofs = np.flatnonzero(weights)
+    # The weights of a force by displacements are a stiffness.
     elastic = weights[dofs] * scales.force / scales.displacement
     elements = Probe(dofs, elastic, -loads * scales.force)
     return Reaction(elements, _contacts_at(problem, held))
@@ -199,6 +200,7 @@ def _contacts_at(
     """
     contacts: dict[str, tuple[Array | None, Array]] = {}
     for name, law in problem.rubbing.items():
+        # All pairs of a point are at one node, so one of them tells its weight.
         _, pairs = np.unique(law.points, return_index=True)
         weights = []
         for component in law.components:

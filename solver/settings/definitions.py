@@ -409,6 +409,7 @@ def _checked_row(
     row = value[number - 1]
     n_columns = len(definition.columns)
     if not isinstance(row, list | tuple) or len(row) != n_columns:
+        # Most curves have two columns, which people call a pair.
         expected = f"{n_columns} numbers"
         if definition.is_path:
             expected = "a pair of numbers"

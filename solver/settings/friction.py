@@ -184,6 +184,7 @@ class FrictionSettings(MethodSettings):
 
     def check_digits(self, name: str, stiffness: float, remedy: str) -> None:
         """Refuse a stiffness of which no digits are left beside that of bodies."""
+        # Beyond these bounds the spring, or the body, has no digit left in their sum.
         value = getattr(self, name)
         definition = self.definitions()[name]
         unit = about(definition).unit

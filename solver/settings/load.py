@@ -200,6 +200,7 @@ class LoadSettings(FrictionSettings):
                 times = self._turning(name, times)
             points.append(times)
         for name in self.paths:
+            # A path of size zero has no corners that matter.
             if name in tables or not self.size_of(name):
                 continue
             times = self.knots(name)
@@ -258,6 +259,7 @@ class LoadSettings(FrictionSettings):
         preset = self.preset(name)
         if preset is None:
             return interpolate(getattr(self, name), instants)
+        # Presets are functions of the phase, so that a longer run has the same path.
         values = preset.value(instants / self.duration, self.seed, self.cycles)
         return self.size_of(name) * values
 

@@ -312,6 +312,7 @@ def instants_of(
     if is_among_even and np.all(np.diff(every) > rounding):
         return even
     every = np.union1d(every, even[[0, -1]])
+    # Each interval between knots gets as many steps as keep it within the given step.
     shares = np.diff(every) * ((number - 1) / duration)
     steps = np.maximum(np.ceil(shares - SAME * number), 1.0).astype(np.intp)
     return _divided(every, steps)

@@ -260,6 +260,7 @@ class MethodSettings(param.Parameterized):
         values = dict(cls.METHODS[method])
         for name, value in values.items():
             definition = cls.definitions()[name]
+            # A scene may lack an option, as a nested start.
             is_choice = isinstance(definition, param.Selector)
             if is_choice and value not in definition.objects:
                 values[name] = definition.default
@@ -296,6 +297,7 @@ class MethodSettings(param.Parameterized):
             defaults = base.values()
         else:
             defaults = self.defaults(self.method)
+        # Values that come with another method are no choice of their own.
         if base and base.method != self.method:
             defaults.update(self.of_method(self.method))
         changed = {}

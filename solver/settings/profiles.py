@@ -107,5 +107,6 @@ def off_nodes(table: Rows, length: float, pieces: int) -> Array:
     """
     x, values = np.array(table).T
     nodes = np.linspace(0.0, length, pieces + 1)
+    # The run sees the line through the nodes, not the table.
     off = np.abs(np.interp(x, nodes, interpolate(table, nodes)) - values)
     return np.where((x >= 0.0) & (x <= length), off, 0.0)

@@ -179,6 +179,7 @@ class Settings(LoadSettings):
         if self.n_instants <= largest:
             return
         remedy = "give paths with fewer points or cycles, or a coarser mesh"
+        # More instants than were set come from points of paths.
         if self.n_instants == self.instants:
             remedy = "give fewer instants, or a coarser mesh"
         raise SettingError(

@@ -281,6 +281,7 @@ class ComparedRuns:
         """
         settings = self._settings.replace(**self.changes(z))
         with contextlib.suppress(RefusedError):
+            # Half the size: what changes is what the mesh hides of the loop.
             finer = {name: 2 * getattr(settings, name) for name in settings.MESH}
             run = finished_run(
                 settings.replace(**finer), errors=False, indicators=False
@@ -388,6 +389,7 @@ class ComparedRuns:
                 return np.full(len(self.first.differences), np.nan)
             return self.differences(at)
 
+        # Least squares cannot begin where there is no run.
         if not np.isfinite(differences(np.zeros(len(free)))).all():
             return z
         found = least_squares(

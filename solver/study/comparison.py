@@ -117,6 +117,7 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
 
 def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:
     """Refuse a column of friction in newtons: nodal forces depend on the mesh."""
+    # Newtons are no unit of a traction, and here they are the likely mistake.
     if size_in(column.unit, "N") is not None:
         # Without its mesh nobody can tell what a nodal force of another program stands
         # for.
@@ -255,6 +256,7 @@ class Comparison:
         else:
             field = fields.contact_force[self._places] / self._sizes
         ours = _interpolated(field[self._order], self._at)
+        # Relative to the other results, or to ours where those vanish everywhere.
         size = self._norm(self._values) or self._norm(ours) or 1.0
         return self._norm(ours - self._values) / size
 

@@ -226,6 +226,7 @@ def _blind(valley: Valley, is_known: Flags) -> Array:
     moves = moves[np.abs(moves).max(axis=1) <= LIMIT * (1.0 + SILENT)]
     # A known setting moves a little with the rest, but is no part of a direction.
     moves[:, is_known] = 0.0
+    # The directions of the moves, the widest first.
     directions = np.linalg.svd(moves)[2]
     distances = np.abs(moves @ directions.T).max(axis=0)
     return np.asarray(directions[distances > LIMIT / 2.0])
@@ -375,6 +376,7 @@ def _echelon(rows: Array) -> Array:
     """
     # Pivoting finds the columns in which the rows differ most.
     pivots = np.sort(qr(rows, mode="r", pivoting=True)[1][: len(rows)])
+    # A product of few powers is read more easily than an orthonormal row.
     reduced = np.linalg.solve(rows[:, pivots], rows)
     tenths = np.round(reduced, 1)
     rounded = np.where(np.abs(reduced - tenths) < NEAR, tenths, np.round(reduced, 2))

@@ -305,6 +305,7 @@ def pile(answer: Answer) -> Iterator[Number]:
     """
     settings = answer.settings
     pressing, brick = _forces(answer)
+    # The top brick presses least, so it slides first.
     slides = settings.friction * (pressing + brick)
     count = settings.courses
     total = pressing + count * brick
@@ -358,6 +359,7 @@ def pushed_block(answer: Answer) -> Iterator[Number]:
     moment = reaction_moment(problem, "left").of(fields)
     # The foot is at the origin, at the left end of the support.
     around_foot = float(moment[-1] + problem.rubbing["support"].positions @ pressing)
+    # The block slides, so its support carries all that friction can.
     held = settings.friction * load
     yield "force at the pushed side", "N/m", held, float(push[-1])
     yield "pressing force", "N/m", load, float(pressing.sum())

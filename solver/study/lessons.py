@@ -80,6 +80,7 @@ class Claim:
         holds = self.low <= value <= self.high
         words = _written(value, quantity.unit)
         if quantity.when is not None:
+            # What a learner sees in the plots must not contradict the claim.
             seen = quantity.of(run, round(share * (run.problem.n_instants - 1)))
             if not self.low <= seen <= self.high:
                 holds = False

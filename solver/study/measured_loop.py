@@ -291,6 +291,7 @@ class LoopComparison:
             given = force
             found = displacement
         instants = np.arange(len(self._instants))
+        # With times rows are matched by these; without, along the path.
         if self.measured.times is not None:
             times = self.measured.times[self.counted]
             places = np.interp(times, self._instants, instants)

@@ -273,6 +273,7 @@ def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSi
         longest = LONGEST_OF_LARGE
     names = settings.GROWS
     measured: dict[tuple[int, int], TimesAtSize] = {}
+    # Rounding may give a size twice, which is measured once.
     for later, factor in product(FACTORS, factors):
         changes = {}
         for name in names:

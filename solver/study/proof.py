@@ -91,6 +91,7 @@ class KnownCase:
         """Query that opens the run on the page, after the page's address."""
         texts = {"scene": self.settings.scene}
         for name, value in self.settings.changed().items():
+            # Texts stand in an address as they are, all else as JSON.
             if isinstance(value, str):
                 texts[name] = value
             else:

@@ -174,6 +174,7 @@ def _error_panel(
     *latin, incremental = curves
     lines = []
     for hue, curve in enumerate(latin, start=1):
+        # An error of zero has no place on a logarithmic axis.
         y = np.maximum(errors[hue - 1], SMALLEST)
         lines.append(PanelCurve(curve.method, curve.seconds, y, hue))
     # The solver that is the reference itself is a vertical line.

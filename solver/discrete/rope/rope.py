@@ -261,6 +261,7 @@ class Rope:
             return problem
         interfaces = dict(problem.interfaces)
         for wire in self.wires:
+            # The drawn strand has several half turns of each wire, which all count.
             copies = wire.stands_for * self.seen_length / float(wire.along[-1])
             interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
         return replace(problem, interfaces=interfaces)

@@ -208,6 +208,7 @@ def _pressing(run: FinishedRun, name: str) -> Array:
 @quantity("Largest pressing force, all points", "N", applies=_opens)
 def peak_pressing(run: FinishedRun) -> float:
     """Largest sum over all points of the pressing force, N."""
+    # Instant by instant over all interfaces: their peaks may come at other times.
     forces = [_pressing(run, name).sum(axis=0) for name in run.problem.surfaces]
     return float(np.sum(forces, axis=0).max())
 

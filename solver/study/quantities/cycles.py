@@ -57,6 +57,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
         # Slip is the motion of the slider, without the elastic part.
         slider = law.tangential.slider(displacement, force)
         slip = np.diff(slider, axis=1, prepend=0.0)
+        # On its image a body moves by half of the slip.
         slip *= law.slip_ratio * scales.displacement
         yield law, slip, force[law.tangent.above] * slip * -scales.force
 
@@ -240,6 +241,7 @@ def fate_of(cycles: LoadCycles) -> Word | None:
     net = cycles.net[np.abs(cycles.net[:, -1]).argmax()]
     if np.abs(net[-1]) > ONE_WAY * largest[-1] and _settled(net[None]):
         return "ratcheting"
+    # Slip that falls may still tend to a steady size: the limit decides.
     is_falling = largest[-1] <= DIES * largest[-2]
     if is_falling and _limit(largest[-3:]) <= TENDS * largest[-3]:
         return "shakedown with slip that dies"

@@ -332,6 +332,7 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
         return Known(doubt=str(refusal))
     if not reference.converged.all():
         return _without_solution(problem, reference)
+    # A reference past a jump is one of several equilibria.
     if reference.jumps_at is not None:
         where = jump_of(problem, reference.jumps_at)
         return Known(reference, f"at {where} it jumps to another equilibrium")

@@ -50,6 +50,7 @@ left_alone = ExitStack()
 
 def processors() -> int:
     """Number of processors that this process may use."""
+    # A container or a user may have fewer processors than the machine.
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -157,6 +157,7 @@ def is_map(plan: Plan) -> bool:
 
 def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
     """Finite values of a reading of converged runs, of the plan's shape, else NaN."""
+    # Points without a run yet are NaN, too, so that a chart can grow.
     good = np.full(plan.size, np.nan)
     for row in rows:
         if row.holds and math.isfinite(row.values[index]):
