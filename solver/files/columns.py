@@ -296,7 +296,7 @@ _EXAMPLES = {
 class TableColumn:
     """A column of a table: its number from 0, its name, unit, and the line of these."""
 
-    place: int
+    number: int
     line: int = 0
     name: str = ""
     unit: str = ""
@@ -341,8 +341,8 @@ class TableColumn:
     def with_units(self, line: int, cells: list[str], refuse: Refuse) -> TableColumn:
         """Make the column with its unit from a line of units; refuse a second unit."""
         unit = ""
-        if self.place < len(cells):
-            unit = cells[self.place].strip("()[]")
+        if self.number < len(cells):
+            unit = cells[self.number].strip("()[]")
         if not unit:
             return self
         if self.unit and parse_unit(unit) != parse_unit(self.unit):
@@ -373,22 +373,22 @@ def _meant_by() -> dict[str, frozenset[str]]:
     return meant
 
 
-def column_of(place: int, line: int, head: str) -> TableColumn:
+def column_of(number: int, line: int, head: str) -> TableColumn:
     """Make the column of a head, which is split into name and unit."""
     # Brackets are certain; a last word is a unit only if it is spelt as one; what
     # follows a slash or "in" is taken for a unit even if it is unknown, and refused
     # then.
     in_brackets = _BRACKETS.fullmatch(head)
     if in_brackets is not None:
-        return TableColumn(place, line, *in_brackets.groups())
+        return TableColumn(number, line, *in_brackets.groups())
     behind = _BEHIND.fullmatch(head)
     if behind and _is_unit_behind(behind[2]):
         name = re.sub(r"\s+in$", "", behind[1])
-        return TableColumn(place, line, name, behind[2])
+        return TableColumn(number, line, name, behind[2])
     divided = _IN_OR_SLASH.fullmatch(head)
     if divided is not None:
-        return TableColumn(place, line, *divided.groups())
-    return TableColumn(place, line, head)
+        return TableColumn(number, line, *divided.groups())
+    return TableColumn(number, line, head)
 
 
 def _is_unit_behind(word: str) -> bool:
@@ -435,8 +435,8 @@ def parse_unit(text: str) -> tuple[float, Dimensions] | None:
         exponent = sign * int(power or 1)
         factor, dimensions = _SYMBOLS[known]
         size *= factor**exponent
-        for place, dimension in enumerate(dimensions):
-            total[place] += exponent * dimension
+        for axis, dimension in enumerate(dimensions):
+            total[axis] += exponent * dimension
     return float(size), tuple(total)
 
 

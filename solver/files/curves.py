@@ -94,11 +94,11 @@ def path_doubts(
         usual[1] = float(np.abs(default.points(name)).max(axis=0)[1])
     sizes = np.abs(points).max(axis=0)
     doubts = []
-    for place, column in enumerate(columns_for(table, definition, name, units)):
+    for number, column in enumerate(columns_for(table, definition, name, units)):
         if not column.name or column.unit:
             continue
         doubt = unit_doubt(
-            column.name, units[place], float(sizes[place]), usual[place], "the scene"
+            column.name, units[number], float(sizes[number]), usual[number], "the scene"
         )
         if doubt:
             doubts.append(doubt)
@@ -120,9 +120,9 @@ def _chosen(
         # Measured loops, force over displacement, are what people most often bring
         # here.
         remedy += "; a loop, as force over displacement, is no path over time"
-    for place, (title, unit) in enumerate(zip(definition.columns, units, strict=True)):
+    for number, (title, unit) in enumerate(zip(definition.columns, units, strict=True)):
         kinds: Collection[str] = {title}
-        if definition.is_path and place == last:
+        if definition.is_path and number == last:
             # Of two columns the second is the value if its name says nothing.
             if len(table.columns) == 2 and free and not free[0].quantities[0]:
                 return [*chosen, *free]

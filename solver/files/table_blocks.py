@@ -229,7 +229,7 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
         if is_head_found:
             break
         named = [
-            column_of(place, line.number, text) for place, text in enumerate(words)
+            column_of(number, line.number, text) for number, text in enumerate(words)
         ]
         is_known = any(column.quantities[0] for column in named)
         if _fits(named, block, separator) and (is_known or not names):
@@ -239,7 +239,7 @@ def headed(block: Block, separator: str, refuse: Refuse) -> list[TableColumn]:
         _check_nearest(texts, block, separator, refuse)
     if not names:
         n_columns = max(block.width, len(units[1]))
-        names = [TableColumn(place) for place in range(n_columns)]
+        names = [TableColumn(number) for number in range(n_columns)]
     return [column.with_units(*units, refuse) for column in names]
 
 

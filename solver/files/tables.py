@@ -205,7 +205,7 @@ class Table:
 
     def _has_numbers(self, column: TableColumn) -> bool:
         """Return whether any cell of a column is a finite number."""
-        return bool(np.isfinite(self.numbers[column.place]).any())
+        return bool(np.isfinite(self.numbers[column.number]).any())
 
     def choose(
         self,
@@ -251,7 +251,7 @@ class Table:
             sizes.append(column.size(unit, self.refuse))
         # Only columns that are read count: a remark without a number costs no row.
         has_all = self._rows_with(columns)
-        numbers = self.numbers[[column.place for column in columns]][:, has_all]
+        numbers = self.numbers[[column.number for column in columns]][:, has_all]
         notes = [self._note_on_points(columns, names, units, numbers)]
         others = [repr(column.name) for column in self.columns if column not in columns]
         if others:
@@ -288,13 +288,13 @@ class Table:
 
     def _rows_with(self, columns: Sequence[TableColumn]) -> Flags:
         """Rows with a number in all of some columns, (n_rows,); refuse words."""
-        numbers = self.numbers[[column.place for column in columns]]
+        numbers = self.numbers[[column.number for column in columns]]
         is_finite = np.isfinite(numbers)
         has_all = np.asarray(is_finite.all(axis=0))
         for row in np.flatnonzero(~has_all):
-            for place, column in enumerate(columns):
-                is_number = is_finite[place, row]
-                if not is_number and not is_gap(self.cells[row][column.place]):
+            for index, column in enumerate(columns):
+                is_number = is_finite[index, row]
+                if not is_number and not is_gap(self.cells[row][column.number]):
                     raise self._refused_cell(columns, column, int(row))
         if not has_all.any():
             raise self.refuse("none of its rows has a number in each of these columns")
@@ -312,9 +312,9 @@ class Table:
             )
         # An infinite number was read as one, and cannot be mended by a number.
         remedy = "leave such rows out"
-        if np.isnan(self.numbers[column.place, row]):
+        if np.isnan(self.numbers[column.number, row]):
             remedy = "give a number"
-        text = self.cells[row][column.place]
+        text = self.cells[row][column.number]
         return self.refuse(f"line {line} has {text!r} as {column.name}: {remedy}")
 
 

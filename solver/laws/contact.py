@@ -283,9 +283,9 @@ class Contact(Interface):
     def _pairs_of_points(self) -> sparse.csr_array:
         """Matrix with 1 where a pair belongs to a point, shape (n_points, n_pairs)."""
         size = len(self.points)
-        places = self.points, np.arange(size)
+        entries = self.points, np.arange(size)
         return sparse.csr_array(
-            (np.ones(size), places), shape=(len(self.positions), size)
+            (np.ones(size), entries), shape=(len(self.positions), size)
         )
 
     def mean_by_point(self, values: Array) -> Array:

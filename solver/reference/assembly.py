@@ -32,9 +32,9 @@ def assembled_stiffness(problem: Problem) -> sparse.csr_array:
         rows.append(part.dofs[matrix.coords[0]])
         columns.append(part.dofs[matrix.coords[1]])
         values.append(matrix.data)
-    places = np.concatenate(rows), np.concatenate(columns)
+    positions = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array(
-        (np.concatenate(values), places), shape=(problem.n_dofs, problem.n_dofs)
+        (np.concatenate(values), positions), shape=(problem.n_dofs, problem.n_dofs)
     )
 
 

@@ -225,15 +225,15 @@ def _interface_fields(
     found = []
     held, _ = _prescribed(problem)
     for name, law in problem.rubbing.items():
-        places = problem.contact_slices[name]
-        friction = force[places[-1]]
+        slices = problem.contact_slices[name]
+        friction = force[slices[-1]]
         jump = _jump(problem, law, law.tangent, displacement)
         largest = largest_size(jump)
         opening = None
         pressing = None
         is_prescribed = np.zeros(len(law.positions), dtype=bool)
         if law.normal is not None:
-            pressing = force[places[0]]
+            pressing = force[slices[0]]
             across = _jump(problem, law, law.normal.component, displacement)
             largest = max(largest, largest_size(across))
             opening = across + law.mean_by_point(law.normal.gap)[:, None]
@@ -285,10 +285,10 @@ def _contact_force(problem: Problem, force: Array) -> Array:
     total = np.zeros((problem.n_dofs, problem.n_instants))
     for name, law in problem.rubbing.items():
         pairs = np.bincount(law.points)[law.points]
-        places = problem.contact_slices[name]
-        for place, component in zip(places, law.components, strict=True):
+        slices = problem.contact_slices[name]
+        for stacked, component in zip(slices, law.components, strict=True):
             # The pairs of a point share its force, which acts on both sides oppositely.
-            carried = force[place][law.points] / pairs[:, None]
+            carried = force[stacked][law.points] / pairs[:, None]
             for side, sign in zip(component.sides, (1.0, -1.0), strict=False):
                 np.add.at(total, problem.row_dofs[side], sign * carried)
     return total

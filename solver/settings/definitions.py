@@ -416,10 +416,10 @@ def _checked_row(
         raise refuse(f"row {number} must be {expected}")
     if not all(is_number(entry) for entry in row):
         raise refuse(f"row {number} has an entry that is not a number")
-    for place, entry in enumerate(row):
-        column = definition.columns[place]
-        unit = definition.units[place]
-        low, high = definition.bounds[place]
+    for index, entry in enumerate(row):
+        column = definition.columns[index]
+        unit = definition.units[index]
+        low, high = definition.bounds[index]
         if entry < low == 0.0:
             can = f"{column}s of at least 0 {unit}".rstrip()
             raise SettingError(name, value, can, f"raise the negative {column}")

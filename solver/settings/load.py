@@ -184,7 +184,7 @@ class LoadSettings(FrictionSettings):
         """Points of a table that its path needs to stay within a share of its range."""
         table: Rows = getattr(self, name)
         kept = thinned(table, THINNED * float(np.ptp(np.array(table)[:, 1])))
-        return tuple(table[place] for place in kept)
+        return tuple(table[index] for index in kept)
 
     def _instants(self, tables: Mapping[str, Rows]) -> Array:
         """Instants, (n_instants,), s, for some tables and all presets.

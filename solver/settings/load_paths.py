@@ -366,19 +366,19 @@ def thinned(points: Rows | Array, allowed: float) -> Indices:
     tops = {values.index(max(values)), values.index(min(values))}
     low = -math.inf
     high = math.inf
-    for place in range(1, len(times)):
+    for index in range(1, len(times)):
         last = kept[-1]
         # A straight line from the last kept point has to pass all points between within
         # the allowed error: an interval of slopes, which narrows.
-        slope = (values[place] - values[last]) / (times[place] - times[last])
-        if place - 1 > last and (place - 1 in tops or not low <= slope <= high):
-            last = place - 1
+        slope = (values[index] - values[last]) / (times[index] - times[last])
+        if index - 1 > last and (index - 1 in tops or not low <= slope <= high):
+            last = index - 1
             kept.append(last)
             low = -math.inf
             high = math.inf
-        span = times[place] - times[last]
-        low = max(low, (values[place] - allowed - values[last]) / span)
-        high = min(high, (values[place] + allowed - values[last]) / span)
+        span = times[index] - times[last]
+        low = max(low, (values[index] - allowed - values[last]) / span)
+        high = min(high, (values[index] + allowed - values[last]) / span)
     if len(times) > 1:
         kept.append(len(times) - 1)
     return np.array(kept)

@@ -190,10 +190,10 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     with placed("settings"):
         settings = kind.checked(values["settings"])
     controls = values["controls"]
-    most = f"at most {MOST_CONTROLS} settings"
+    can = f"at most {MOST_CONTROLS} settings"
     # A learner who turns several controls at once learns of none of them.
     is_few = len(controls) <= MOST_CONTROLS
-    require(is_few, "controls", controls, most, "a lesson is about one thing")
+    require(is_few, "controls", controls, can, "a lesson is about one thing")
     check_controls(controls, settings)
     for key in ("text", "explanation"):
         with placed(key):

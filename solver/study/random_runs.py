@@ -262,8 +262,8 @@ def _construction(_name: str, generator: Generator) -> list[list[float]]:
         diameter = generator.uniform(0.3, 1.0) * rows[-1][1]
         lay = generator.uniform(5.0, 30.0)
         room = np.pi * (around + diameter) * np.cos(np.radians(lay))
-        most = max(int(0.95 * room / diameter), 1)
-        wires = int(generator.integers(1, most + 1))
+        fitting = max(int(0.95 * room / diameter), 1)
+        wires = int(generator.integers(1, fitting + 1))
         angle = float(generator.choice([-1.0, 1.0]) * lay)
         modulus = log_uniform(generator, 1e9, 1e12)
         rows.append([wires, float(diameter), angle, modulus])

@@ -61,5 +61,7 @@ def brought_in(
 
 def _times_rise(table: Table) -> bool:
     """Check whether rows are in the order of their times, if the table has times."""
-    times = [column.place for column in table.columns if "time" in column.quantities[0]]
+    times = [
+        column.number for column in table.columns if "time" in column.quantities[0]
+    ]
     return len(times) != 1 or bool(np.all(np.diff(table.numbers[times[0]]) > 0.0))

@@ -160,7 +160,7 @@ def test_what_measures_something_else_has_no_size() -> None:
 )
 def test_a_head_has_one_name_and_unit_however_they_are_set_apart(head: str) -> None:
     column = column_of(2, 1, head)
-    assert (column.place, column.name, column.unit) == (2, "force", "kN")
+    assert (column.number, column.name, column.unit) == (2, "force", "kN")
     assert "force" in column.quantities[0]
 
 

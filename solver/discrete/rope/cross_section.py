@@ -100,9 +100,9 @@ class CrossSection:
                     "above 0"
                 )
             if row > 1 and not LEAST_LAY <= abs(lay) < 90.0:
-                least = plain(LEAST_LAY)
+                smallest = plain(LEAST_LAY)
                 return (
-                    f"row {row}: give a lay angle of {least}° or more in size, less "
+                    f"row {row}: give a lay angle of {smallest}° or more in size, less "
                     "than 90°"
                 )
         for layer, (count, diameter, lay, _) in enumerate(self.rows[1:]):
@@ -210,8 +210,10 @@ class CrossSection:
             # Per length of wire, of what acts per length of strand.
             share = np.cos(layer.lay) / layer.wires
             above.append(share * passed)
-            own = self.wire_tension(number, tension) * np.sin(layer.lay) ** 2 / radius
-            passed = passed + own / share
+            pressure = (
+                self.wire_tension(number, tension) * np.sin(layer.lay) ** 2 / radius
+            )
+            passed = passed + pressure / share
             below.append(share * passed)
         return np.array(below[::-1]), np.array(above[::-1])
 

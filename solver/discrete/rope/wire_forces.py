@@ -112,14 +112,14 @@ def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
     return np.asarray((1.0 - share) * low + share * high)
 
 
-def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
+def stress_ranges(rope: Rope, displacement: Array, instants: slice) -> Array:
     """Largest range of the stress of every wire over instants, (n_wires,), Pa.
 
     At the fibre of the wire where its bending about its own axis adds to the mean
     stress. `displacement` is that of the problem's dofs, (n_dofs, n_instants), m.
     """
-    axial = wire_stresses(rope, displacement, some)
-    curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
+    axial = wire_stresses(rope, displacement, instants)
+    curvature = np.stack([wire.curvature[:, instants] for wire in rope.wires])
     outer = np.array(
         [0.5 * wire.layer_data.young * wire.layer_data.diameter for wire in rope.wires]
     )

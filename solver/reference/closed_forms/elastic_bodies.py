@@ -174,10 +174,10 @@ def leaf_spring(lengths: Array) -> float | None:
     ends = np.append(lengths, 0.0)
     # Deflections, times E I, of a leaf under a force at its end: there, and where the
     # next ends.
-    own = ends[:-1] ** 3 / 3.0
+    at_end = ends[:-1] ** 3 / 3.0
     beside = ends[1:] ** 2 * (3.0 * ends[:-1] - ends[1:]) / 6.0
     # Deflections of both leaves that touch at an end agree, for all ends but the first.
-    matrix = np.diag(2.0 * own[1:])
+    matrix = np.diag(2.0 * at_end[1:])
     matrix -= np.diag(beside[1:-1], 1) + np.diag(beside[1:-1], -1)
     pushed = np.zeros(len(lengths) - 1)
     pushed[:1] = beside[0]
@@ -185,4 +185,4 @@ def leaf_spring(lengths: Array) -> float | None:
     # A negative force would pull: these two leaves come apart.
     if np.any(forces < 0.0):
         return None
-    return float(own[0] / (own[0] - np.sum(forces[:1]) * beside[0]))
+    return float(at_end[0] / (at_end[0] - np.sum(forces[:1]) * beside[0]))

@@ -297,7 +297,7 @@ def _power(sizes: Array, values: Array) -> float:
 
 def title_of(plan: Plan) -> str:
     """Title of a sweep: its readings over its settings."""
-    asked = ", ".join(_uncapitalised(one.title) for one in plan.readings)
+    asked = ", ".join(_uncapitalised(quantity.title) for quantity in plan.readings)
     over = " and ".join(_uncapitalised(axis.title) for axis in plan.axes)
     return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
 
