@@ -375,9 +375,8 @@ def _meant_by() -> dict[str, frozenset[str]]:
 
 def column_of(number: int, line: int, head: str) -> TableColumn:
     """Make the column of a head, which is split into name and unit."""
-    # Brackets are certain; a last word is a unit only if it is spelt as one; what
-    # follows a slash or "in" is taken for a unit even if it is unknown, and refused
-    # then.
+    # Brackets are certain, a last word only if it is spelt as a unit; after a slash or
+    # "in" an unknown word is taken for one, too, and refused later.
     in_brackets = _BRACKETS.fullmatch(head)
     if in_brackets is not None:
         return TableColumn(number, line, *in_brackets.groups())

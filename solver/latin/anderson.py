@@ -77,7 +77,7 @@ class AndersonState:
         self._blocks = blocks
         size = sum(group.target.size for group in self._groups)
         self._memory = max(1, min(MEMORY, MOST_VALUES // size - 1))
-        # Every so many values, and at other rows at each instant.
+        # Steps of the sample may not skip a row at all instants, so groups differ.
         smallest_step = -(-size // SAMPLE)
         self._steps = [_step(smallest_step, group.rows.size) for group in self._groups]
         weights = []

@@ -315,7 +315,7 @@ class Contact(Interface):
             along = self.tangential.highest.max(axis=1)
         else:
             along = 1.0 / compliance
-        # A point whose bounds all vanish is shared by areas instead.
+        # Where the bounds of any point all vanish, areas serve for all points.
         for weights in (along, self.weights):
             whole = self.by_point(weights)[self.points]
             if np.all(whole > 0.0):
