@@ -111,11 +111,14 @@ class FrictionLaw:
             # Fields of a run are scaled, so the table is, too.
             slips = tuple(slip / length for slip in strength.slips)
             strength = Strength(slips, strength.factors)
+        if friction is None:
+            friction = np.zeros(len(weights))
+            cap = None
         return Friction(
             component=component,
             bound=bound,
-            friction=np.zeros(len(weights)) if friction is None else friction,
-            cap=None if friction is None else cap,
+            friction=friction,
+            cap=cap,
             compliance=compliance_of(self.stiffness, weights, scales),
             strength=strength,
         )

@@ -89,11 +89,13 @@ def decompose(
     space_modes = left / space_root
     time_modes = right / time_root
     signs = _signs(space_modes)
+    if positions is None:
+        positions = np.arange(float(len(field)))
     return Decomposition(
         values=values,
         space_modes=space_modes * signs,
         time_modes=time_modes * signs[:, None],
-        positions=np.arange(float(len(field))) if positions is None else positions,
+        positions=positions,
         space_weights=space_weights,
         time_weights=time_weights,
     )

@@ -209,12 +209,15 @@ class CutRods:
             if key not in shared:
                 shared[key] = self._operator(rods, piece, stiffness, nodes, is_row)
             first_of_piece = first_dof + first + int(self._beyond[rod, number])
+            pushing = None
+            if free_force is not None:
+                pushing = free_force[piece.elements]
             yield Substructure(
                 elasticity=shared[key],
                 dofs=np.arange(first_of_piece, first_of_piece + size + 1),
                 rows=rows[is_row],
                 body_force=self._body_force(rods, piece, inner_force),
-                free_force=None if free_force is None else free_force[piece.elements],
+                free_force=pushing,
             )
             first += size
 

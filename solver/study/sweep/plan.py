@@ -127,7 +127,7 @@ class Plan:
 
     def settings_at(self, number: int) -> Settings:
         """Settings of a point; settings that do not fit together are refused."""
-        return self.settings.checked({**self.fixed, **self.point(number)})
+        return self.settings.checked(self.fixed | self.point(number))
 
     def idle(self) -> list[str]:
         """Names of the settings that vary and have no effect at any point."""
