@@ -124,6 +124,7 @@ class Inside:
                 continue
             np.add.at(total, dofs, part.condensed.condense(share)[:, 0])
             if part.force is not None:
+                # With the boundary held, only loads inside move the inner nodes.
                 held = np.zeros((len(dofs), self._size[1]))
                 constant += share[:, 0] @ part.condensed.recover(held, part.force)
         return total, constant * self._length
@@ -152,6 +153,8 @@ class Inside:
         for body in np.unique(bodies):
             dofs = np.flatnonzero(bodies == body)
             modes = self._rigid_modes(dofs)
+            # Motions that vanish where displacements are prescribed are those that stay
+            # free.
             at_fixed = modes[np.isin(dofs, fixed)]
             _, sizes, combinations = np.linalg.svd(at_fixed, full_matrices=True)
             hindered = np.count_nonzero(sizes > HELD)
@@ -165,6 +168,7 @@ class Inside:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
         is_along_x = self.components[dofs] == 0
         x, y = (self.positions[dofs] - self.positions[dofs].mean(axis=0)).T
+        # About the mean position, where translations and rotation are independent.
         rotation = np.where(is_along_x, -y, x)
         modes = np.stack([is_along_x, ~is_along_x, rotation], axis=1)
         return np.asarray(modes.astype(float))

@@ -50,6 +50,7 @@ def messages(fit: Fit) -> list[str]:
     sentences += _bounds(fit)
     sentences += _for_the_mesh(fit)
     nearest = fit.nearest
+    # A loop fitted under another path than the measured one says little.
     given = nearest.beside.figures(nearest.run.iterate)["distance_given"]
     sentences += [f"{message}." for message in nearest.beside.drive_messages(given)]
     if not nearest.run.solution.is_certified:

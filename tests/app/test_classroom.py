@@ -72,7 +72,7 @@ class Seat:
 
 
 def tick(*seats: Seat) -> None:
-    """Let all documents do what is due, until nothing is."""
+    """Run all pending callbacks of all documents."""
     while any(seat.document.due for seat in seats):
         for seat in seats:
             due = seat.document.due
@@ -82,7 +82,7 @@ def tick(*seats: Seat) -> None:
 
 
 def show(seat: Seat, frame: Frame) -> Frame:
-    """Have the leader's worker send a frame of its present run."""
+    """Send a frame of the present run from the leader's worker."""
     shown = replace(frame, run=replace(frame.run, number=seat.state.number))
     seat.state.history = History()
     seat.state.history.add(shown)
