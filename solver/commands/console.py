@@ -82,7 +82,8 @@ def postponed_interrupt() -> Iterator[Callable[[], bool]]:
     """Postpone a first Ctrl-C to the end of the body, which asks whether one came.
 
     `KeyboardInterrupt` may come between any two steps of the main thread, and leave a
-    lock of a library taken, or a process half started. A second Ctrl-C is not postponed.
+    lock of a library taken, or a process half started. A second Ctrl-C is not
+    postponed.
 
     Yields
     ------

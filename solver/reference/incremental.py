@@ -215,7 +215,7 @@ class IncrementalRod:
     def _is_stable(
         self, first: Array, slips: Array, begin: Array, reached: Array
     ) -> bool:
-        """Check that the structure is stable under the steepest fall of friction passed.
+        """Check that the structure is stable under the steepest fall of friction.
 
         All arrays have the shape (n_dofs,).
 
@@ -261,8 +261,8 @@ class IncrementalRod:
             deformation=displacement,
             contact_force=friction * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
-            residual=max([0.0, *(minimum.residual for minimum in minima)]),
-            unbalanced=max([0.0, *(minimum.violation for minimum in minima)])
+            residual=max([0.0] + [minimum.residual for minimum in minima]),
+            unbalanced=max([0.0] + [minimum.violation for minimum in minima])
             * problem.scales.force,
             rounding=LEFT_INSIDE * inside * problem.scales.force,
             converged=solved,

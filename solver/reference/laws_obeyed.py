@@ -111,19 +111,21 @@ def law_residuals(
     size = force_size(force, outer, elastic, missing[held], HIDDEN)
     interfaces = _interface_fields(problem, displacement, force)
     length = ROUNDED * largest_size(displacement)
-    length = max(length, *[each.largest_jump for each in interfaces])
+    length = max([length] + [each.largest_jump for each in interfaces])
 
     balance = [np.delete(missing, held, axis=0)]
     glued = 0.0
     if rows is not None:
         balance += _balance_of_parts(problem, displacement, rows.force)
         glued = _glued(problem, rows, length, size)
+    across = [each.across(length, size) for each in interfaces]
+    along = [each.along(length, size) for each in interfaces]
     return LawResiduals(
         balance=_share(largest_size(*balance), size),
         held=_share(largest_size(displacement[held] - prescribed), length),
         glued=glued,
-        pressing=largest_size(*[each.across(length, size) for each in interfaces]),
-        friction=largest_size(*[each.along(length, size) for each in interfaces]),
+        pressing=largest_size(*across),
+        friction=largest_size(*along),
     )
 
 

@@ -113,6 +113,8 @@ def fingerprint(problem: Problem) -> bytes:
         # Equal matrices may store their entries in another order.
         matrix.sort_indices()
         entries += [matrix.indptr, matrix.indices, matrix.data]
+    of_jumps = [getattr(rules, name) for name in OF_JUMPS]
+    positions = [law.positions for law in laws.values()]
     parts: list[ArrayLike] = [
         [f"{name} {law.opens} {law.is_on_support}" for name, law in laws.items()],
         [scales.displacement, scales.force, scales.time],
@@ -120,10 +122,10 @@ def fingerprint(problem: Problem) -> bytes:
         problem.positions,
         force,
         *problem.prescribed,
-        *(getattr(rules, name) for name in OF_JUMPS),
+        *of_jumps,
         [rules.strength.slips, rules.strength.factors],
         *entries,
-        *(law.positions for law in laws.values()),
+        *positions,
         [] if problem.rest is None else problem.rest,
     ]
     digest = blake2b(digest_size=16)

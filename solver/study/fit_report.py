@@ -149,7 +149,7 @@ def _rows(fit: Fit) -> list[list[str]]:
     if len(fit.names) > 1:
         others = fit.names
     head = ["setting", "value", "standard error", "two of them: from", "to", "start"]
-    table = [[*head, *(f"with {name}" for name in others)]]
+    table = [head + [f"with {name}" for name in others]]
     for name, unit, start, value, error, lower, upper, *correlation in _entries(fit):
         shown = "not known alone"
         if math.isfinite(error):

@@ -173,7 +173,7 @@ def cases() -> list[KnownCase]:
                 part=group.get("part", CLOSED_FORMS),
             )
             known.append(case)
-    return [*known, *(known_case(case) for case in all_cases())]
+    return known + [known_case(case) for case in all_cases()]
 
 
 def holds(row: Row) -> bool:

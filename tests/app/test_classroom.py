@@ -153,7 +153,10 @@ def test_who_comes_late_has_the_present_frame_at_once(
 def test_a_page_is_made_with_what_its_class_shows(leader: Seat, leads_on: bool) -> None:
     leader.state.change(peak=600.0)
     leader.state.lesson = LESSON
-    address = leader.state.room if leads_on else code_of(leader)
+    if leads_on:
+        address = leader.state.room
+    else:
+        address = code_of(leader)
     made = PageState(default_settings("rope"), room=address)
     begin_with_class(made)
     assert made.settings is leader.state.settings

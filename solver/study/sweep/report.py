@@ -328,7 +328,8 @@ def write_sweep(plan: Plan, rows: Sequence[Row], file: Path) -> None:
 
 def heads(plan: Plan) -> list[str]:
     """Names of the columns: the run, its settings, its readings, and its ending."""
-    return ["run", *(axis.name for axis in plan.axes), *plan.of, *AFTER]
+    varied = [axis.name for axis in plan.axes]
+    return ["run", *varied, *plan.of, *AFTER]
 
 
 def cells(plan: Plan, row: Row) -> list[object]:
@@ -371,11 +372,12 @@ def head(plan: Plan) -> list[str]:
         columns.append(_column(quantity))
     varied = {axis.name for axis in plan.axes}
     lines = dump(plan.settings).splitlines()
+    fixed = [line for line in lines if line.split(" ")[0] not in varied]
     return [
         f"Slipfront, {plan.settings.scene}: {plan.size} runs; SI units",
         *columns,
         "settings of all runs:",
-        *(line for line in lines if line.split(" ")[0] not in varied),
+        *fixed,
     ]
 
 
