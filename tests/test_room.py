@@ -50,8 +50,10 @@ def is_sequence(node: ast.expr) -> bool:
 
 def nests_conditions(node: ast.AST) -> bool:
     """Check for a conditional expression inside another one."""
+    if not isinstance(node, ast.IfExp):
+        return False
     inner = [each for each in ast.walk(node) if isinstance(each, ast.IfExp)]
-    return isinstance(node, ast.IfExp) and len(inner) > 1
+    return len(inner) > 1
 
 
 def is_conditional_statement(node: ast.AST) -> bool:
