@@ -135,10 +135,12 @@ class Iterate:
         """State from which the iteration goes on."""
         k_update = self.k_update
         if k_update is not None and k_update.k is not self.k:
+            # With another k, W and F stay and W + F/k changes.
             displacement, force = k_update.fields
             outgoing = read_only(displacement + force / k_update.k[:, None])
             return Checkpoint(self.number, self.seconds, outgoing, k_update=k_update)
         bases: tuple[SharedBasis, ...] = ()
+        # Bases of a search do not hold the solution that certifies it.
         if self.residual is None:
             bases = self.bases
         return Checkpoint(

@@ -476,7 +476,7 @@ def test_friction_fitted_to_the_closed_form_of_a_moved_end_is_that_of_the_form()
 
 
 def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> None:
-    """Their ends move alike in the end: what rounding leaves of that is no slip."""
+    """The ends' last moves are alike: their difference is rounding, and no slip."""
     times = np.linspace(0.0, 1.0, 9)
     free = Given(False, 0.0 * times)
     turned = Given(
@@ -535,7 +535,7 @@ LYING: dict[str, tuple[list[Brick], int]] = {
 def test_what_presses_a_partly_covered_body_stands_on_its_support(
     name: str, cuts: int
 ) -> None:
-    """The top is all that lies open above: the load presses whatever piece it lies on."""
+    """The top is all that lies open above: the load presses any piece it lies on."""
     bricks, open_tops = LYING[name]
     stack = block(elements=(6, 4), cuts=(cuts, 1), bodies=2, shear=0.05)
     stack = replace(stack, bricks=bricks)

@@ -212,7 +212,7 @@ class CutStack:
         return rectangle.columns, rectangle.x
 
     def _paired(self, joints: Sequence[Joint]) -> dict[Joint, tuple[Indices, Array]]:
-        """Pairs of nodes of those joints that have any, as `pairs`."""
+        """Pairs of nodes of those joints that have any, (n_pairs,) each, as `pairs`."""
         pairs = {joint: self._pairs_of(joint) for joint in joints}
         return {joint: found for joint, found in pairs.items() if len(found[0])}
 

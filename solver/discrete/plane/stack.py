@@ -474,7 +474,9 @@ class Stack:
             symbol = "τ"
             unit = "Pa"
         # Arrows along a side stand beside those across it.
-        shares = [0.7] if is_normal else [0.15]
+        shares = [0.15]
+        if is_normal:
+            shares = [0.7]
         values = given.mean
         if np.any(given.slope):
             shares = [0.0, 1.0]

@@ -182,7 +182,9 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         nodes=np.concatenate(grid_nodes),
         areas=stack.length * np.concatenate(lengths),
     )
-    support = stack.support if under is None else None
+    support = None
+    if under is None:
+        support = stack.support
     gap = np.zeros(len(pairs.nodes))
     if support is not None:
         gap = support.gap[pairs.nodes] / stack.length
@@ -214,11 +216,13 @@ def _components(
     """Tangential and normal component of a contact; no normal one at a known bound."""
     rows = _rows_of(cut, joints)
     tangential = int(joints[0].is_upright)
-    tangent = Component(*[rows_of_side[:, tangential] for rows_of_side in rows])
+    along = [rows_of_side[:, tangential] for rows_of_side in rows]
+    tangent = Component(*along)
     has_normal = rows[0].shape[1] > 1
     if not has_normal:
         return tangent, None
-    return tangent, Component(*[side[:, 1 - tangential] for side in rows])
+    across = [rows_of_side[:, 1 - tangential] for rows_of_side in rows]
+    return tangent, Component(*across)
 
 
 def _normal_law(
@@ -238,7 +242,9 @@ def _friction(
     """Friction law along a contact, whose opening is `gap`, (n_pairs,), scaled."""
     scales = (stack.length, stack.young * stack.length)
     law = stack.friction_law
-    support = stack.support if pairs.under is None else None
+    support = None
+    if pairs.under is None:
+        support = stack.support
     if support is not None and support.is_image:
         law = law.of_one_side()
     if support is not None and support.bound is not None:
