@@ -1,4 +1,4 @@
-"""One instant of frictional contact with known states: a linear system.
+"""An instant of frictional contact with known states: a linear system.
 
 With S y = f + q and jumps y + Q a (`solver.reference.condensation`), the unknowns are y
 where a jump is not held or where something is in series, the forces of jumps that

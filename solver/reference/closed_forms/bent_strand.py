@@ -107,7 +107,7 @@ class BentStrand:
 
     @cached_property
     def layers(self) -> tuple[BentWire, ...]:
-        """One wire of each layer, inside out."""
+        """A wire of each layer, inside out."""
         section = self.section
         tension = np.array([self.tension])
         bounds = section.friction_bounds(tension, self.friction, self.factors)[:, 0]
