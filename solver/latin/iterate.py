@@ -122,6 +122,7 @@ class Iterate:
         """State from which the iteration goes on."""
         k_update = self.k_update
         if k_update is not None and k_update.k is not self.k:
+            # With another k, W and F stay and W + F/k changes.
             displacement, force = k_update.fields
             outgoing = read_only(displacement + force / k_update.k[:, None])
             return Checkpoint(self.number, self.seconds, outgoing, k_update=k_update)

@@ -84,6 +84,7 @@ def record(
         Whether indicators and estimate are wanted of every iteration, and not only of
         the last.
     """
+    # The last record is that of the result, and is always complete.
     watch = watch or verdict.status is not None
     estimated = verdict.estimated_error
     if watch and math.isnan(estimated) and verdict.certificate is not None:
@@ -181,10 +182,12 @@ def solve(
     with one_blas_thread:
         for iterate, verdict in judged(problem, latin, start, spent, cancelled):
             status = verdict.status
+            # A diverged iterate is no result: the one before is.
             if status is not None and status.ending is Ending.DIVERGED:
                 return Solution(last or iterate, records, status)
             records.append(record(iterate, verdict, distance, watch=watch))
             last = iterate
+            # A run that ends by itself in the same iteration has its own status.
             if status is None and cancelled():
                 status = CANCELLED
             if status is not None:

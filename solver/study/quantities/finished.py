@@ -288,6 +288,7 @@ def finished_run(
     distance = None
     if known.reference is not None:
         distance = distance_to(known.reference, problem)
+    # From a neighbour one status step may find the solution, without any iteration.
     if before is not None:
         near = neighbour(problem, settings, before, cancelled)
         if near is not None:
@@ -331,6 +332,7 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
         return Known(doubt=str(refusal))
     if not reference.converged.all():
         return _without_solution(problem, reference)
+    # A reference past a jump is one of several equilibria.
     if reference.jumps_at is not None:
         where = jump_of(problem, reference.jumps_at)
         return Known(reference, f"at {where} it jumps to another equilibrium")
@@ -385,6 +387,7 @@ def neighbour(
         return None
     if certificate is None or certificate.residual > settings.accuracy:
         return None
+    # The solution has fields of a run, too, with the k of its method.
     k = method_of(settings).direction.of(problem)
     answer = certified_answer(problem, k, certificate)
     status = certified(answer, certificate)
