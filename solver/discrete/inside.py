@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -31,8 +32,8 @@ class RectangularSubstructure:
     body
         Number of its body.
     rows
-        Boundary rows by joint or by the name of a side, shape (n_nodes, n_components)
-        each.
+        Boundary rows by joint or by the span of an outer side, shape (n_nodes,
+        n_components) each.
     force
         Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
     """
@@ -140,6 +141,14 @@ class Inside:
         ]
         return self._young * np.concatenate(parts)
 
+    @cached_property
+    def body_of_dofs(self) -> Indices:
+        """Number of the body of every degree of freedom of the problem, (n_dofs,)."""
+        bodies = np.empty(len(self.components), dtype=np.intp)
+        for part, dofs in zip(self._parts, self.dofs, strict=True):
+            bodies[dofs] = part.body
+        return bodies
+
     def rigid_motions(self, fixed: Indices) -> Array | None:
         """Independent rigid motions of bodies, (n_dofs, n_motions), or None.
 
@@ -147,9 +156,7 @@ class Inside:
         `fixed`, (n,).
         """
         motions = []
-        bodies = np.empty(len(self.components), dtype=np.intp)
-        for part, dofs in zip(self._parts, self.dofs, strict=True):
-            bodies[dofs] = part.body
+        bodies = self.body_of_dofs
         for body in np.unique(bodies):
             dofs = np.flatnonzero(bodies == body)
             modes = self._rigid_modes(dofs)
@@ -163,6 +170,33 @@ class Inside:
             motions.append(of_body)
         together = np.concatenate(motions, axis=1)
         return together if together.size else None
+
+    def hold_still(
+        self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
+    ) -> bool:
+        """Check whether groups of bodies cannot move where some displacements vanish.
+
+        Parameters
+        ----------
+        groups
+            Number of the group of every degree of freedom, all bodies of which move as
+            one, shape (n_dofs,); -1 where it stands still.
+        fixed
+            Degrees of freedom that are held, shape (n,).
+        jumps
+            Degrees of freedom that move alike, shape (n,) each; -1 is one that stands
+            still.
+        """
+        moving = np.unique(groups[groups >= 0])
+        # The row beyond the last is what stands still.
+        motions = np.zeros((len(groups) + 1, 3 * len(moving)))
+        for number, group in enumerate(moving):
+            dofs = np.flatnonzero(groups == group)
+            motions[dofs, 3 * number : 3 * number + 3] = self._rigid_modes(dofs)
+        hindered = [motions[fixed]]
+        hindered += [motions[above] - motions[below] for above, below in jumps]
+        sizes = np.linalg.svd(np.concatenate(hindered), compute_uv=False)
+        return int(np.count_nonzero(sizes > HELD)) == motions.shape[1]
 
     def _rigid_modes(self, dofs: Indices) -> Array:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""

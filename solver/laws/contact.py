@@ -308,19 +308,18 @@ class Contact(Interface):
     def shares(self) -> Array:
         """Share of each pair in the force of its point, (n_pairs,).
 
-        By the pairs' stiffnesses or bounds, or else by their areas.
+        By the stiffnesses of the point's pairs, or their bounds, or else, where they
+        have none, by their areas.
         """
         compliance = self.tangential.compliance
         if compliance is None:
             along = self.tangential.highest.max(axis=1)
         else:
             along = 1.0 / compliance
-        # Where the bounds of any point all vanish, areas serve for all points.
-        for weights in (along, self.weights):
-            whole = self.by_point(weights)[self.points]
-            if np.all(whole > 0.0):
-                return np.asarray(weights / whole)
-        return 1.0 / np.bincount(self.points)[self.points]
+        whole = self.by_point(along)[self.points]
+        known = whole > 0.0
+        weights = np.where(known, along, self.weights)
+        return np.asarray(weights / self.by_point(weights)[self.points])
 
     def macro_parts(self) -> Iterator[MacroPart]:
         """Macro forces of both sides, in equilibrium, component by component."""

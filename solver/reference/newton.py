@@ -150,7 +150,8 @@ class Newton:
         """Yield solutions with softer and softer springs, whose states repeat.
 
         The first is sought from a solution. Nothing is yielded where there are too many
-        jumps.
+        jumps, and no states twice where Newton's steps follow from the states alone:
+        bodies that fall have the same ones, whatever the springs.
         """
         condensed = self._condensed
         share = FIRST_SPRING
@@ -158,6 +159,7 @@ class Newton:
             return
         # Springs are relaxed at the deformation that the step before has come to.
         relaxed = np.zeros_like(sides.load)
+        tried = at.states[:0]
         for _ in range(SPRING_STEPS):
             springs = share * np.diagonal(condensed.stiffness)
             # A spring at its relaxed length pulls with nothing, so at rest it changes
@@ -169,7 +171,11 @@ class Newton:
                 at = solved
                 relaxed = solved.step.strained
                 share = max(SOFTENING * share, SOFTEST_SPRING)
-                if np.array_equal(at.states, before.states):
+                is_new = not np.array_equal(at.states, tried)
+                if np.array_equal(at.states, before.states) and (
+                    is_new or self._rules.is_nonlinear
+                ):
+                    tried = at.states
                     yield at
             elif share < STIFFEST_SPRING:
                 share *= STIFFENING

@@ -12,6 +12,7 @@ from itertools import islice
 import numpy as np
 import pytest
 from contact_problems import on_a_support, rubbing_strands
+from small_scenes import SMALL
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
@@ -24,6 +25,7 @@ from solver.latin import (
     Nested,
     Paper,
     iterations,
+    solve,
 )
 from solver.latin.anderson import AndersonState
 from solver.latin.end.certified import (
@@ -45,6 +47,7 @@ from solver.latin.start import prolong
 from solver.laws import OPEN
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import reference_of
+from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 
 SCENES = {
@@ -428,6 +431,19 @@ def test_what_a_coarse_mesh_represents_a_fine_one_begins_with_exactly() -> None:
     outgoing = prolong(reference_of(coarse), fine, k)
     wanted = prolong(reference_of(fine), fine, k)
     assert close(outgoing, wanted, 1e-9)
+
+
+def test_a_start_refuses_bodies_in_the_plane_and_what_is_another_structure() -> None:
+    block = discretise(CATALOGUE["block"].checked(SMALL["block"]))
+    method = Latin(start=Nested(lambda: [block]))
+    with pytest.raises(RefusedError, match="bodies in the plane is refused"):
+        solve(block, method)
+    bar = scene_problem("bar")
+    with pytest.raises(RefusedError, match="other interfaces"):
+        prolong(reference_of(bar), scene_problem("strand"), bar.direction)
+    longer = CATALOGUE["bar"].checked({**SCENES["bar"], "instants": 5})
+    with pytest.raises(RefusedError, match="other instants"):
+        Nested(lambda: [bar]).of(discretise(longer), bar.direction)
 
 
 def test_a_start_takes_the_first_mesh_and_none_where_there_is_no_time_or_mesh() -> None:

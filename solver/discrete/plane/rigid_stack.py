@@ -84,6 +84,7 @@ def is_upright(stack: Stack) -> bool:
         sides["top"].y.prescribed
         or sides["left"].x.prescribed
         or sides["right"].x.prescribed
+        or (sides["left"].y.prescribed and sides["right"].y.prescribed)
     )
 
 
@@ -111,6 +112,10 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
     if not held_y and not is_upright(stack):
         tips = _tipping(stack, friction) > slack * stack.length
         losses.append((tips, "it tips over an end of its base"))
+    if held_y and not is_upright(stack):
+        turns = _turning(stack, friction) > slack * stack.length
+        reason = "it turns about the side that holds it up, away from its support"
+        losses.append((turns, reason))
     if not any(side.x.prescribed for side in stack.sides.values()):
         if stack.spring is not None:
             pushed = x
@@ -140,6 +145,24 @@ def _tipping(stack: Stack, friction: Array) -> Array:
     return np.asarray(
         np.maximum(middle - answered, stack.length * y - middle - answered)
     )
+
+
+def _turning(stack: Stack, friction: Array) -> Array:
+    """Moment that turns the body off its support about a side, (n_instants,), N m.
+
+    The left or the right side alone holds the body up; where its top is held along x,
+    too, the body is a hinge at that corner. Below 0 the support balances the moment by
+    pressing. `friction` is the largest friction force, (n_instants,), N; where it grows
+    with the pressing, the body may be wedged between side and support.
+    """
+    x, y, moment = wrench(stack)
+    answered = np.zeros_like(moment)
+    if stack.sides["top"].x.prescribed:
+        moment = moment + stack.height * x
+        answered = stack.height * friction
+    if stack.sides["left"].y.prescribed:
+        return np.asarray(moment - answered)
+    return np.asarray(stack.length * y - moment - answered)
 
 
 def _without_slip(stack: Stack, pressing: Array) -> Array:

@@ -81,6 +81,9 @@ class ErrorEstimate:
         has no reference.
     ending
         Status of a run whose last status step came to an instant without equilibrium.
+    unsolved_from
+        First instant at which the last status step found no equilibrium, though there
+        may be one; None where it found all that it tried.
     """
 
     def __init__(
@@ -101,6 +104,7 @@ class ErrorEstimate:
         self.deadline = math.inf
         self._interrupted = interrupted
         self.ending: Status | None = None
+        self.unsolved_from: int | None = None
 
     def __call__(self, iterate: Iterate) -> float:
         """Estimate the relative error of the next iterate of a run; NaN if unknown."""
@@ -185,6 +189,9 @@ class ErrorEstimate:
                 self._next_trial = iterate.number + 1
             return
         self.ending = _lost_equilibrium(iterate.problem, solution)
+        self.unsolved_from = None
+        if solution.is_lost:
+            self.unsolved_from = int(np.argmin(solution.converged))
         if certificate is not None and certificate.residual <= self._accuracy:
             self.certificate = certificate
 

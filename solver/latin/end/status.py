@@ -111,6 +111,16 @@ _JUMPED = (
     "faster than the structure unloads: it jumps to another. Where it should not, "
     "raise friction_ratio, slip_length or the number of elements."
 )
+_NOT_FOUND = (
+    "At {} no equilibrium was found, though contact forces within friction could "
+    "balance the loads there: friction is not free to choose its forces, and where it "
+    "is large it may leave no equilibrium, or bodies slide or tip until they come to "
+    "one. Lower the load or mu, or press more."
+)
+_NOT_HELD = (
+    "At {} no equilibrium was found: friction alone seems not to hold what is pulled. "
+    "Lower the load, raise friction or pressure, or hold an end."
+)
 _SEARCHED = " The iterates by themselves had come within {:g} % of its contact force."
 _CERTIFIED = "Certified: equilibrium and all contact laws hold up to rounding"
 _FOUND = (
@@ -157,7 +167,7 @@ def limit_of(problem: Problem, collapse: Collapse) -> str:
 
 
 def jump_of(problem: Problem, instant: int) -> str:
-    """Words on a jump of a structure: the loads at the instant after, and the time."""
+    """Words on an instant, as after a jump: its time, and the loads there."""
     loads = loads_at(problem.drives, instant)
     time = f"{problem.instants[instant]:.4g} s"
     if loads:
@@ -169,6 +179,14 @@ def lost_jump(problem: Problem, instant: int, lost_from: int) -> Status:
     """Status of a run that jumps, and has no equilibrium from an instant on."""
     advice = _LOST_JUMP.format(jump_of(problem, instant))
     return Status(Ending.STALLED, advice, lost_from=lost_from)
+
+
+def not_found(status: Status, problem: Problem, instant: int) -> Status:
+    """Status of a run that failed, and whose status step is lost from an instant on."""
+    message = _NOT_FOUND
+    if problem.is_chain:
+        message = _NOT_HELD
+    return replace(status, advice=message.format(jump_of(problem, instant)))
 
 
 def diverged(iteration: int) -> Status:

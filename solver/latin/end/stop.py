@@ -29,6 +29,7 @@ from solver.latin.end.status import (
     certified,
     diverged,
     exhausted,
+    not_found,
     obeyed,
     remedies_of,
     stalled,
@@ -279,6 +280,8 @@ class StopState:
             status = self._exhausted(iterate)
         if status is not None:
             problem = iterate.problem
+            if _is_failure(status) and estimate.unsolved_from is not None:
+                status = not_found(status, problem, estimate.unsolved_from)
             status = with_jump(status, problem, estimate.certificate)
             status = unprovable(status, problem, has_bases=self._has_bases)
         return error, status
