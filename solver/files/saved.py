@@ -16,7 +16,7 @@ import numpy as np
 
 from solver.files.curves import messages, read_tables
 from solver.files.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
-from solver.latin import Iterate, Solution
+from solver.latin import Answer, Iterate, Solution
 from solver.reference.distance import determinate_forces, held_instants
 from solver.scenes import CATALOGUE
 from solver.scenes.remarks import remarks_on
@@ -285,7 +285,9 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     for name in INDICATORS:
         figures[name] = getattr(last, name, None)
     figures["certified"] = solution.is_certified
-    figures["residual"] = solution.iterate.residual
+    figures["residual"] = None
+    if isinstance(solution.iterate, Answer):
+        figures["residual"] = solution.iterate.residual
     for name in ERRORS:
         figures[name] = getattr(last, name, None)
     figures["seconds"] = seconds
@@ -301,7 +303,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     """
     iterate = solution.iterate
     residual = math.nan
-    if iterate.residual is not None:
+    if isinstance(iterate, Answer):
         residual = iterate.residual
     arrays: dict[str, Any] = {"t": iterate.problem.instants}
     arrays |= _body_arrays(iterate)

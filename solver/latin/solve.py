@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
+from solver.latin.end.certified import Answer
 from solver.latin.end.status import CANCELLED, Decision, Ending, Status
 from solver.latin.end.stop import StopState
 from solver.latin.iterate import Checkpoint, Iterate
@@ -36,7 +37,7 @@ class Record:
     modes
         Number of modes of every substructure; empty for full fields.
     is_answer
-        Whether the iterate is an answer beside the iterations, as in `Iterate`.
+        Whether the iterate is an answer beside the iterations, as in `Answer`.
     """
 
     iteration: int
@@ -61,7 +62,7 @@ class Solution:
     @property
     def is_certified(self) -> bool:
         """Check whether the iterate is a certified solution of the problem."""
-        return self.iterate.residual is not None
+        return isinstance(self.iterate, Answer)
 
 
 def record(
@@ -110,7 +111,7 @@ def record(
         error_displacement=error_displacement,
         error_force=error_force,
         modes=tuple(basis.n_modes for basis in iterate.bases),
-        is_answer=iterate.is_answer,
+        is_answer=isinstance(iterate, Answer) and iterate.is_beside,
     )
 
 

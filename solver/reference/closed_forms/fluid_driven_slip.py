@@ -56,7 +56,7 @@ def spread(
     # Every bend of the pressure adds the same answer: at even steps a convolution.
     if np.ptp(steps) <= EVEN * later[-1]:
         risen = _risen(positions, later, diffusivity)
-        # The convolution in time; that of scipy.signal takes half a second to import.
+        # That of scipy.signal takes half a second to import.
         shifted = (bends, np.zeros_like(bends))
         pressure += matmul_toeplitz(shifted, risen.T).T
     else:

@@ -16,7 +16,7 @@ from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
-from solver.latin.end.certified import finished
+from solver.latin.end.certified import certified_answer
 from solver.latin.end.cost import costs_of
 from solver.latin.end.status import certified, jump_of, limit_of
 from solver.latin.end.status_step import status_step
@@ -389,9 +389,9 @@ def neighbour(
         return None
     # The solution has fields of a run, too, with the k of its method.
     k = method_of(settings).direction.of(problem)
-    finish = finished(problem, k, certificate)
-    status = certified(finish, certificate)
+    answer = certified_answer(problem, k, certificate)
+    status = certified(answer, certificate)
     residual = certificate.residual
     seconds = time.perf_counter() - began
     decision = Decision(seconds, residual, certificate=certificate)
-    return Solution(finish, [record(finish, decision, None, watch=False)], status)
+    return Solution(answer, [record(answer, decision, None, watch=False)], status)
