@@ -24,6 +24,9 @@ KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENE
 """Colours of the status by its names in legends."""
 BODY = "#8FAAC2"
 EDGE = "#607D8B"
+MACRO = {"above": "#D55E00", "below": "#00795A"}
+MICRO = {"above": "#F0A868", "below": "#6CC5A4"}
+"""Colours of macro and micro forces on the pieces above, or right, and below joints."""
 CUT = "#8A8A8A"
 """Colour of lines where substructures meet."""
 UNSEEN = "#00000000"

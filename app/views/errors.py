@@ -103,7 +103,9 @@ class Convergence(ErrorPlot):
         self.fill("shown", x=[at] if is_back or is_local else [])
         self.show("stage", is_local)
         # The ring of the answer, whose error is nearly zero, stands at the foot.
-        answers = [newest.iteration] if newest.is_answer else []
+        answers = []
+        if newest.is_answer:
+            answers = [newest.iteration]
         foot = 1.6 * self.figure.y_range.reset_start
         self.draw("answer", answers, [foot] * len(answers))
 

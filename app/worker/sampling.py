@@ -13,12 +13,13 @@ from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
 from app.worker.extras import EXTRAS, Sampled
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
+from app.worker.pieces import Cutter
 from app.worker.strand import DrawnRope
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
 from solver.discrete.structure import LoopFields
-from solver.latin import Iterate, Record, Solution, Status
+from solver.latin import Answer, Iterate, Record, Solution, Status
 from solver.latin.end.status import CANCELLED
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.limit_analysis import Collapse
@@ -63,6 +64,7 @@ class Sampler:
         self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(
             problem, settings, self.columns
         )
+        self._cutter = Cutter(problem, settings, self.columns)
         self.run = Run(
             number=number,
             settings=settings,
@@ -112,20 +114,25 @@ class Sampler:
         # Quantities are those of a run that ended here.
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, made_loop=self.loop)
+        residual = None
+        is_beside = False
+        if isinstance(iterate, Answer):
+            residual = iterate.residual
+            is_beside = iterate.is_beside
         remarks: tuple[str, ...] = ()
         if status:
             remarks = tuple(remarks_on(self.settings, iterate))
         return Frame(
             run=self.run,
             iteration=iterate.iterations,
-            is_answer=iterate.is_answer,
+            is_answer=is_beside,
             contact=self._contact(iterate, self._names(needs)),
             deformed=self.drawn.deformed(iterate),
             loop=self._loop(iterate),
             history=_scalars(history),
             status=status,
             energy=float(run.dissipated.sum()),
-            residual=iterate.residual,
+            residual=residual,
             remarks=remarks,
             extras=self._extras(iterate, needs),
             readings={name: reading(name)(run) for name in needs.readings},
@@ -133,7 +140,7 @@ class Sampler:
 
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}
-        known |= self.drawn.extras
+        known |= self.drawn.extras | {"pieces": self._cutter.pieces}
         return {
             name: known[name](iterate, needs) for name in needs.extras & known.keys()
         }
