@@ -113,7 +113,7 @@ class View:
 
     @property
     def layout(self) -> Any:
-        """What stands in the card: the figure, or a layout of it and of another."""
+        """The figure, or a layout of it and of the one beside it, as a card has it."""
         return self.figure
 
     def magnify(self, size: str) -> None:

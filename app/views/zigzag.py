@@ -25,11 +25,13 @@ BEYOND = 3.0
 """Length of lines without end over that of the axes."""
 RING = {"size": 16, "line_width": 2.5, "fill_alpha": 0}
 """Look of the ring about the newest stage."""
+TICKS = 4
+"""Number of ticks that both figures have room for, beside each other."""
 MARKERS = {LOCAL: "circle", LINEAR: "square"}
 
 
 class Zigzag(ExtraView):
-    """One point at the selected instant: slip along x, friction force along y.
+    """The way of a point at the selected instant: slip along x, friction along y.
 
     The local stage puts it on the graph of the friction law, along a line of slope k;
     the linear stage puts it in balance, along one of slope -k. Where the coarse problem
@@ -55,6 +57,7 @@ class Zigzag(ExtraView):
         plot = self.begin(
             ("slip", "m"), ("friction force", "N/m"), y_range=self.beside.y_range
         )
+        plot.xaxis.ticker.desired_num_ticks = TICKS
         self.add("dead", "HStrip", "y0 y1", fill_color=STICK, alpha=0.3, line_alpha=0)
         self.add("bounds", "HSpan", "y", color=REFERENCE, line_width=1)
         self.add("graph", color=STAGES[LOCAL], width=5, alpha=0.3)
@@ -97,6 +100,7 @@ class Zigzag(ExtraView):
         """The figure of all points, whose axis up is that of the way."""
         plot = self.begin(("x", "m"), ("friction force", "N/m"))
         plot.yaxis.visible = False
+        plot.xaxis.ticker.desired_num_ticks = TICKS
         self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         for stage in MARKERS:
             self.add(f"{stage} field", color=STAGES[stage], width=2)
@@ -164,7 +168,9 @@ class Zigzag(ExtraView):
         self.draw("star", *star)
         line = np.zeros((2, 0))
         if extra["balance"] is not None:
-            through = way.star if star.size else way.points[-1]
+            through = way.points[-1]
+            if star.size:
+                through = way.star
             slope = extra["balance"]
             reach = min(width, height / max(slope, height / width))
             step = np.array([reach, reach * slope])
@@ -218,7 +224,7 @@ class Zigzag(ExtraView):
             self._along("linear field", [], [])
         else:
             self._along("linear field", x, linear)
-        shown = local if stage == LOCAL else linear
+        shown = {LOCAL: local, LINEAR: linear}[stage]
         position = extra["position"]
         self.fill("position", x=self.across([position]))
         nearest = int(np.abs(x - position).argmin())

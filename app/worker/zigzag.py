@@ -106,7 +106,7 @@ class Stages:
 
 
 class ContactPoint:
-    """One point of an interface, whose pairs move and rub as one: SI, per length or area.
+    """A point of an interface, whose pairs move as one; in SI, per length or area.
 
     `pairs` are its pairs, shape (n,), and `number` is its own among the points.
     """
@@ -189,15 +189,14 @@ def zigzag(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     if balance is not None:
         balance *= point.force_unit / point.slip_unit
     kept = thinned(len(law.positions), MOST_POINTS)
-    return {
-        **_way(point, past, columns),
-        **point.law_at(iterate, columns),
+    shown = {
         "position": float(law.positions[point.number]),
         "star": star,
         "balance": balance,
         "x": floats(law.positions[kept]),
         "fields": _fields(problem, law, iterate, columns)[:, kept],
     }
+    return shown | _way(point, past, columns) | point.law_at(iterate, columns)
 
 
 def _way(point: ContactPoint, past: list[Iterate], columns: Indices) -> dict[str, Any]:
