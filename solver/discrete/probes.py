@@ -197,8 +197,9 @@ def _contacts_at(
     `held` has shape (n_dofs,), weights of normal forces, or None, and of tangential
     forces have (n_points,).
     """
-    contacts: dict[str, tuple[Array | None, Array]] = {}
-    for name, law in problem.rubbing.items():
+    found: dict[str, tuple[Array | None, Array]] = {}
+    names = problem.rubbing.names
+    for law, numbers, _, _ in problem.rubbing.stacks:
         _, pairs = np.unique(law.points, return_index=True)
         weights = []
         for component in law.components:
@@ -206,9 +207,11 @@ def _contacts_at(
             if component.below is not None:
                 weight = weight - held[problem.row_dofs[component.below[pairs]]]
             weights.append(weight)
-        if any(weight.any() for weight in weights):
-            contacts[name] = (weights[0] if law.opens else None, weights[-1])
-    return contacts
+        for number, (points, _) in zip(numbers, law.ranges, strict=True):
+            normal, tangential = weights[0][points], weights[-1][points]
+            if normal.any() or tangential.any():
+                found[names[number]] = (normal if law.opens else None, tangential)
+    return {name: found[name] for name in names if name in found}
 
 
 class AxialForce:

@@ -9,7 +9,7 @@ time.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -30,7 +30,7 @@ from solver.checks import (
     Part,
     check,
 )
-from solver.discrete.contacts import ContactGroup
+from solver.discrete.contacts import Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive
 from solver.discrete.substructure import Substructure
@@ -83,6 +83,9 @@ class Problem:
     has_short_joints
         Whether upright joints of bodies have no pair at their ends, so that these
         bodies carry less than rigid ones.
+    order
+        Names of all interfaces with friction, in the order in which their points and
+        forces are stacked; by default that of `interfaces`.
     drives
         Loads and motions by the settings that give them, for messages only; empty for a
         problem without a scene.
@@ -104,6 +107,7 @@ class Problem:
     rest: Array | None = None
     carried: Array | None = None
     has_short_joints: bool = False
+    order: tuple[str, ...] = ()
     drives: tuple[Drive, ...] = ()
 
     def __post_init__(self) -> None:
@@ -123,8 +127,20 @@ class Problem:
         _check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
         _check_cover("substructures", "row", self.n_rows, rows, once=True)
         _check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
+        self._check_names()
         self._check_instants()
         self._check_prescribed()
+
+    def _check_names(self) -> None:
+        """Refuse names that interfaces with friction share, and an order without some."""
+        names = self.rubbing.names_of_laws
+        if len(set(names)) < len(names) or sorted(self.rubbing.names) != sorted(names):
+            raise RefusedError(
+                "Problem.order",
+                Words(f"of {len(self.rubbing.names)} names"),
+                f"all {len(names)} interfaces with friction once",
+                "give each a name of its own, and all of them a place",
+            )
 
     def _check_instants(self) -> None:
         """Refuse laws and body forces with values for another number of instants."""
@@ -220,36 +236,13 @@ class Problem:
         Joined laws have no macro bases.
         """
         kinds: dict[type[Interface], list[Interface]] = {}
-        for name, law in self.interfaces.items():
-            if name not in self.rubbing:
+        for law in self.interfaces.values():
+            if not isinstance(law, Contact):
                 kinds.setdefault(type(law), []).append(law)
-        joined: list[Interface] = [group.law for group in self.contact_groups]
+        joined: list[Interface] = [group.law for group in self.rubbing.groups]
         for kind, laws in kinds.items():
             joined.extend(kind.together(laws))
         return joined
-
-    @cached_property
-    def contact_groups(self) -> list[ContactGroup]:
-        """Groups of interfaces with friction that have the same kind of law."""
-        laws = list(self.rubbing.values())
-        alike = dict[Hashable, list[int]]()
-        for number, (name, law) in enumerate(self.rubbing.items()):
-            # A user's law may differ from others in more than its fields: it is a group
-            # of its own.
-            key = law.kind if name in self.incremental_forms else name
-            alike.setdefault(key, []).append(number)
-        return [ContactGroup(laws, numbers) for numbers in alike.values()]
-
-    @cached_property
-    def contact_points(self) -> dict[str, slice]:
-        """Range of the points of each interface among those of all, by name."""
-        ranges = dict[str, slice]()
-        first = 0
-        for name, law in self.rubbing.items():
-            last = first + len(law.positions)
-            ranges[name] = slice(first, last)
-            first = last
-        return ranges
 
     @cached_property
     def incremental_forms(self) -> dict[str, IncrementalForm]:
@@ -298,7 +291,7 @@ class Problem:
         kind_of = np.full(self.n_rows, -1)
         for law in self.own_laws.values():
             kind_of[law.rows] = 2
-        for law in self.rubbing.values():
+        for law in self.rubbing.laws.values():
             kind_of[law.tangent.above] = 1
             if law.normal is not None:
                 kind_of[law.normal.component.above] = 0
@@ -339,7 +332,7 @@ class Problem:
                 "so that no matrix of the whole structure says what holds: number them "
                 f"alike, or {_BY_ESTIMATE}."
             )
-        for name, contact in self.rubbing.items():
+        for name, contact in self.rubbing.laws.items():
             if not self._has_points(contact):
                 return (
                     f'Pairs of one point of the interface "{name}" differ in their '
@@ -389,7 +382,7 @@ class Problem:
     @property
     def _strengths(self) -> set[Strength]:
         """Slip-dependent factors of all interfaces on which there is any friction."""
-        laws = [law.tangential for law in self.rubbing.values()]
+        laws = [law.tangential for law in self.rubbing.laws.values()]
         rubs = [law for law in laws if law.bound.any() or law.friction.any()]
         return {law.strength or PLAIN for law in rubs}
 
@@ -400,35 +393,25 @@ class Problem:
         return contact
 
     @cached_property
-    def rubbing(self) -> dict[str, Contact]:
-        """The interfaces with friction, by name."""
-        return {
+    def rubbing(self) -> Contacts:
+        """The interfaces with friction, by name and stacked."""
+        laws = {
             name: law
             for name, law in self.interfaces.items()
             if isinstance(law, Contact)
         }
-
-    @cached_property
-    def surfaces(self) -> dict[str, Contact]:
-        """The interfaces with friction that are surfaces, not springs, by name."""
-        return {name: law for name, law in self.rubbing.items() if not law.is_spring}
-
-    @cached_property
-    def on_surfaces(self) -> NDArray[np.bool_]:
-        """Mask of contact points that are on surfaces, shape (n_points,)."""
-        laws = self.rubbing.values()
-        is_surface = [not law.is_spring for law in laws]
-        return np.repeat(is_surface, [len(law.positions) for law in laws])
+        return Contacts(laws, self.order)
 
     @cached_property
     def goes_on(self) -> bool:
         """Check whether sliders begin at given positions, not at rest."""
-        return any(law.tangential.start is not None for law in self.rubbing.values())
+        laws = self.rubbing.laws.values()
+        return any(law.tangential.start is not None for law in laws)
 
     @cached_property
     def opens(self) -> bool:
         """Check whether any interface may open."""
-        return any(law.opens for law in self.rubbing.values())
+        return any(law.opens for law in self.rubbing.laws.values())
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
@@ -478,32 +461,9 @@ class Problem:
     def sum_of_contact(self) -> sparse.csr_array:
         """Sum over the rows of each point and component of interfaces with friction.
 
-        Shape (n_forces, n_rows). The forces on the body above are stacked interface by
-        interface: all normal forces, where it may open, and then all friction forces.
+        Shape (n_forces, n_rows): contact forces are stacked as `Contacts` says.
         """
-        blocks = [
-            sparse.csr_array(
-                (np.ones(len(law.points)), (law.points, component.above)),
-                shape=(len(law.positions), self.n_rows),
-            )
-            for law in self.rubbing.values()
-            for component in law.components
-        ]
-        nothing = sparse.csr_array((0, self.n_rows))
-        return sparse.csr_array(sparse.vstack([nothing, *blocks]))
-
-    @cached_property
-    def contact_places(self) -> dict[str, tuple[slice, ...]]:
-        """Ranges of each interface's components in stacked contact forces, by name."""
-        ranges = dict[str, tuple[slice, ...]]()
-        first = 0
-        for name, law in self.rubbing.items():
-            size = len(law.positions)
-            last = first + size * len(law.components)
-            starts = range(first, last, size)
-            ranges[name] = tuple([slice(start, start + size) for start in starts])
-            first = last
-        return ranges
+        return self.rubbing.sum_of_rows(self.n_rows)
 
     @cached_property
     def _driven(self) -> list[DrivenFriction]:
@@ -512,14 +472,28 @@ class Problem:
         if self.carried is not None:
             largest = max(largest, float(np.abs(self.carried).max(initial=0.0)))
         found = list[DrivenFriction]()
-        for name, law in self.rubbing.items():
-            places = self.contact_places[name]
+        for name in self._names_of_driven():
             driven = driven_friction(
-                law, places, self.row_dofs, self.prescribed, largest
+                self.rubbing[name],
+                self.rubbing.forces[name],
+                self.row_dofs,
+                self.prescribed,
+                largest,
             )
             if driven is not None:
                 found.append(driven)
         return found
+
+    def _names_of_driven(self) -> list[str]:
+        """Names of the interfaces with a pair whose sides are both prescribed."""
+        names = list[str]()
+        for stacked in self.rubbing.stacks:
+            law = stacked.law
+            sides = [self.is_held[rows] for rows in law.tangent.sides]
+            pairs = np.logical_and.reduce(sides)
+            driven = np.unique(law.interface_of_pairs[pairs])
+            names += [self.rubbing.names[number] for number in stacked.numbers[driven]]
+        return sorted(names, key=self.rubbing.number_of.__getitem__)
 
     def with_driven_friction(self, forces: Array, displacement: Array) -> Array:
         """Contact forces in which the friction of driven points is that of the law.
@@ -621,7 +595,8 @@ def nothing_acts(problem: Problem) -> bool:
 
     A user's law without an incremental form may act, too.
     """
-    if problem.own_laws or any(law.is_moved for law in problem.rubbing.values()):
+    laws = problem.rubbing.laws.values()
+    if problem.own_laws or any(law.is_moved for law in laws):
         return False
     given = problem.given_forces + problem.given_displacements
     forces = [part.body_force for part in problem.substructures]

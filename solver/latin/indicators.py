@@ -58,9 +58,9 @@ def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np
     force = iterate.boundary_local_force
     linear_moved = iterate.boundary_displacement
     linear_force = iterate.boundary_force
-    groups = iterate.problem.contact_groups
+    groups = iterate.problem.rubbing.groups
     creep = np.broadcast_to(creep, len(iterate.problem.rubbing))
-    n_points = sum(len(group.points) for group in groups)
+    n_points = iterate.problem.rubbing.n_points
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
     for group in groups:
         slip = group.slip(moved, force)
@@ -128,7 +128,7 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
 
 def _known_groups(problem: Problem) -> list[ContactGroup]:
     """Groups of contacts whose laws are those of `Contact.behaviour`."""
-    groups = problem.contact_groups
+    groups = problem.rubbing.groups
     return [group for group in groups if group.law.incremental_form() is not None]
 
 
@@ -173,7 +173,7 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
     `force` has shape (n_rows, n_instants), scaled.
     """
     largest = float(np.abs(force).max())
-    laws = [group.law for group in problem.contact_groups]
+    laws = [group.law for group in problem.rubbing.groups]
     carried = max((law.carried(force) for law in laws), default=0.0)
     by_friction = sum(law.capacity(problem.is_held) for law in laws)
     capacity = max(by_friction, SMALL_CONTACT * carried)

@@ -151,7 +151,7 @@ def _during(
     interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
     if start is not None:
         for name, slider in start.items():
-            interfaces[name] = problem.rubbing[name].during(some).begun(slider)
+            interfaces[name] = problem.rubbing.laws[name].during(some).begun(slider)
     return replace(
         problem,
         substructures=tuple(parts),
@@ -176,7 +176,7 @@ def next_slab(
     ends = {
         # Pairs of one point that stand apart could never stick together again.
         name: law.mean_by_point(law.tangential.slider(moved, force)[:, -1])[law.points]
-        for name, law in solved.problem.rubbing.items()
+        for name, law in solved.problem.rubbing.laws.items()
     }
     again = solved.outgoing[:, solved.problem.n_instants - length :]
     again = np.asfortranarray(again[:, : instants.stop - instants.start])

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from types import NoneType
 from typing import Self
 
@@ -17,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, Indices
-from solver.checks import Numbers, Part, check
+from solver.arrays import Array, Flags, Indices
+from solver.checks import Numbers, Part, check, check_value
 from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
@@ -29,6 +30,7 @@ from solver.laws.interface import (
     Rule,
     beyond,
     joined,
+    restricted,
     squared,
 )
 from solver.laws.play import Strength
@@ -93,7 +95,9 @@ class Contact(Interface):
     """Pairs that stick and slip, and may open.
 
     A pair is a point of the body above and what lies below it; the pairs of one point
-    (two, where a cut crosses the interface, or ends at it) share its force.
+    (two, where a cut crosses the interface, or ends at it) share its force. One law may
+    hold on many interfaces, as in a wall: points and pairs of one then follow those of
+    the other.
 
     Attributes
     ----------
@@ -112,7 +116,7 @@ class Contact(Interface):
     macro
         Macro basis of each component between two bodies, shape (n_pairs, n_macro), in
         which the forces on both are in equilibrium in the coarse problem. None on a
-        rigid support.
+        rigid support. Columns of one interface follow those of the other.
     slip_ratio
         Slip between both sides over the tangential displacement of the rows: 2 where
         the image of the body lies below, which has no rows and moves the other way.
@@ -122,6 +126,12 @@ class Contact(Interface):
         points count as many times.
     is_spring
         Whether the contact is a spring at a point, and no surface.
+    names
+        Names of the interfaces, where there are several; one alone has the name that
+        `Problem.interfaces` gives to its law.
+    interfaces
+        Number in `names` of the interface of each point, ascending, shape (n_points,);
+        None where `names` is empty.
     """
 
     points: Indices
@@ -134,6 +144,8 @@ class Contact(Interface):
     slip_ratio: float = 1.0
     copies: float = 1.0
     is_spring: bool = False
+    names: tuple[str, ...] = ()
+    interfaces: Indices | None = None
 
     remembers = True
 
@@ -164,6 +176,24 @@ class Contact(Interface):
             shown = Words(f"of {len(self.normal.gap)} pairs")
             raise RefusedError(
                 "Contact.normal", shown, f"a law of {size} pairs", remedy
+            )
+        if self.names or self.interfaces is not None:
+            last = len(self.names) - 1
+            kind = Numbers(((len(self.positions),),), low=0, high=last, whole=True)
+            check_value("Contact.interfaces", self.interfaces, kind)
+            self._check_order(np.asarray(self.interfaces))
+
+    def _check_order(self, interfaces: Indices) -> None:
+        """Refuse interfaces without points, or whose points or pairs are mixed."""
+        steps_of_points = np.diff(interfaces)
+        steps_of_pairs = np.diff(interfaces[self.points])
+        is_sorted = np.all(steps_of_points >= 0) and np.all(steps_of_pairs >= 0)
+        if not is_sorted or not self.sizes.all():
+            raise RefusedError(
+                "Contact.interfaces",
+                Words("out of order"),
+                "points and pairs of one interface after those of the other",
+                "sort them by the numbers of their interfaces, each of which has some",
             )
 
     def incremental_form(self) -> IncrementalForm | None:
@@ -249,7 +279,7 @@ class Contact(Interface):
 
     @classmethod
     def concatenated(cls, laws: Sequence[Self]) -> Self:
-        """Concatenate interfaces of one kind, without macro bases."""
+        """Concatenate interfaces of one kind, without macro bases and names."""
         sizes = [len(law.positions) for law in laws]
         firsts = np.cumsum([0, *sizes[:-1]])
         points = [first + law.points for first, law in zip(firsts, laws, strict=True)]
@@ -261,7 +291,83 @@ class Contact(Interface):
             weights=joined([law.weights for law in laws]),
             points=np.concatenate(points),
             macro=None,
+            names=(),
+            interfaces=None,
         )
+
+    @cached_property
+    def sizes(self) -> Indices:
+        """Number of points of each interface, shape (n_interfaces,)."""
+        if self.interfaces is None:
+            return np.array([len(self.positions)])
+        return np.bincount(self.interfaces, minlength=len(self.names))
+
+    @cached_property
+    def interface_of_pairs(self) -> Indices:
+        """Number of the interface of each pair, ascending, shape (n_pairs,)."""
+        if self.interfaces is None:
+            return np.zeros(len(self.points), dtype=np.intp)
+        return self.interfaces[self.points]
+
+    @cached_property
+    def ranges(self) -> list[tuple[slice, slice]]:
+        """Range of the points, and of the pairs, of each interface."""
+        pairs = np.bincount(self.interface_of_pairs, minlength=len(self.sizes))
+        ends_of_points = np.cumsum([0, *self.sizes]).tolist()
+        ends_of_pairs = np.cumsum([0, *pairs]).tolist()
+        points = [slice(first, last) for first, last in pairwise(ends_of_points)]
+        pairs_of = [slice(first, last) for first, last in pairwise(ends_of_pairs)]
+        return list(zip(points, pairs_of, strict=True))
+
+    def interface(self, number: int) -> Self:
+        """The law of one of several interfaces."""
+        if self.interfaces is None:
+            return self
+        points, pairs = self.ranges[number]
+        return replace(
+            self,
+            tangential=restricted(self.tangential, pairs),
+            normal=restricted(self.normal, pairs),
+            around=restricted(self.around, pairs),
+            positions=self.positions[points],
+            weights=self.weights[pairs],
+            points=self.points[pairs] - points.start,
+            macro=self._macro_of(number, pairs),
+            names=(),
+            interfaces=None,
+        )
+
+    def _macro_of(self, number: int, pairs: slice) -> sparse.csr_array | None:
+        """Macro basis of one interface, (n_pairs, n_macro), or None."""
+        if self.macro is None:
+            return None
+        columns = np.flatnonzero(self._interface_of_macro == number)
+        if not columns.size:
+            return None
+        return sparse.csr_array(self.macro[pairs][:, columns])
+
+    @cached_property
+    def _interface_of_macro(self) -> Indices:
+        """Number of the interface of each column of the macro basis, (n_macro,)."""
+        assert self.macro is not None
+        entries = sparse.coo_array(self.macro)
+        owners = np.zeros(self.macro.shape[1], dtype=np.intp)
+        owners[entries.coords[1]] = self.interface_of_pairs[entries.coords[0]]
+        return owners
+
+    def holds_on(self, points: Flags) -> Flags:
+        """Mask of the points of interfaces of which any point counts, (n_points,) both."""
+        counts = [points[some].any() for some, _ in self.ranges]
+        return np.repeat(counts, self.sizes)
+
+    def sums(self, values: Array) -> Array:
+        """Sums over the pairs of each interface, to the bit those of it alone.
+
+        From values of pairs, (n_pairs, ...), to (n_interfaces, ...).
+        """
+        # Sums of unequal length in one pass would be added up in another order.
+        totals = [np.add.reduce(values[pairs]) for _, pairs in self.ranges]
+        return np.array(totals)
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Local stage for k of all rows, (n_rows,), scaled."""
@@ -299,26 +405,47 @@ class Contact(Interface):
     def shares(self) -> Array:
         """Share of each pair in the force of its point, (n_pairs,).
 
-        By the pairs' stiffnesses or bounds, or else by their areas.
+        By the pairs' stiffnesses or bounds, or else, on an interface with a point that
+        has none, by their areas.
         """
         softness = self.tangential.softness
         if softness is None:
             along = self.tangential.highest.max(axis=1)
         else:
             along = 1.0 / softness
-        for weights in (along, self.weights):
-            whole = self.by_point(weights)[self.points]
-            if np.all(whole > 0.0):
-                return np.asarray(weights / whole)
-        return 1.0 / np.bincount(self.points)[self.points]
+        by_area = self.weights / self.by_point(self.weights)[self.points]
+        whole = self.by_point(along)[self.points]
+        numbers = self.interface_of_pairs
+        lacks = np.bincount(numbers, whole <= 0.0, len(self.sizes))[numbers] > 0
+        np.divide(along, whole, by_area, where=~lacks)
+        return np.asarray(by_area)
 
     def macro_parts(self) -> Iterator[MacroPart]:
-        """Macro forces of both sides, in equilibrium, component by component."""
+        """Macro forces of both sides, in equilibrium, interface by interface."""
         if self.macro is None:
             return
         basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
-        for component in self.components:
-            yield MacroPart(np.concatenate(component.sides), basis)
+        numbers, columns = basis.coords
+        # Of every interface the columns of one component follow those of the other.
+        owners = self._interface_of_macro
+        counts = np.bincount(owners, minlength=len(self.sizes))
+        firsts = np.cumsum(counts) - counts
+        n_components = len(self.components)
+        within = columns - firsts[owners[columns]]
+        begins = n_components * firsts[owners[columns]] + within
+        rows = []
+        places = []
+        for number, component in enumerate(self.components):
+            rows.append(np.concatenate(component.sides))
+            places.append(begins + number * counts[owners[columns]])
+        n_rows = len(rows[0])
+        all_numbers = [number * n_rows + numbers for number in range(n_components)]
+        entries = (
+            np.tile(basis.data, n_components),
+            (np.concatenate(all_numbers), np.concatenate(places)),
+        )
+        shape = (n_components * n_rows, n_components * basis.shape[1])
+        yield MacroPart(np.concatenate(rows), sparse.coo_array(entries, shape=shape))
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Violation of the balance of both sides' forces, as `Interface.gaps`.

@@ -261,6 +261,24 @@ def joined(parts: Sequence[Any]) -> Any:
     return kind(**values)
 
 
+def restricted(whole: Any, pairs: slice) -> Any:
+    """A law, or a field of it, restricted to a range of pairs.
+
+    Arrays, (n_pairs, ...), are cut; other values stay as they are.
+    """
+    if isinstance(whole, np.ndarray):
+        return whole[pairs]
+    if isinstance(whole, Component):
+        return Component(*[restricted(side, pairs) for side in whole])
+    if not is_dataclass(whole):
+        return whole
+    kind = cast(Any, type(whole))
+    values = dict[str, Any]()
+    for field in fields(whole):
+        values[field.name] = restricted(getattr(whole, field.name), pairs)
+    return kind(**values)
+
+
 def beyond(field: Array, noise: float | Array) -> Array:
     """A field with zero in place of values up to `noise`, of the same shape."""
     return np.where(np.abs(field) > noise, field, 0.0)

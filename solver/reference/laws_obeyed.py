@@ -215,7 +215,7 @@ def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Po
     """Yield the points of every interface with contact."""
     held, _ = _prescribed(problem)
     for name, law in problem.rubbing.items():
-        places = problem.contact_places[name]
+        places = problem.rubbing.forces[name]
         friction = force[places[-1]]
         slider = jump = _jump(problem, law, law.tangent, displacement)
         if law.tangential.softness is not None:
@@ -256,7 +256,7 @@ def _contact_force(problem: Problem, force: Array) -> Array:
     for name, law in problem.rubbing.items():
         pairs = np.bincount(law.points)[law.points]
         for place, component in zip(
-            problem.contact_places[name], law.components, strict=True
+            problem.rubbing.forces[name], law.components, strict=True
         ):
             carried = force[place][law.points] / pairs[:, None]
             for side, sign in zip(component.sides, (1.0, -1.0), strict=False):

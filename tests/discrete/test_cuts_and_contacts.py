@@ -10,7 +10,7 @@ import pytest
 from contact_problems import block, friction_of
 
 from solver.arrays import Array
-from solver.discrete.contacts import NO_SLIP, ContactGroup, contact_fields
+from solver.discrete.contacts import NO_SLIP, ContactGroup, Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive, beyond, loads_at
 from solver.discrete.elements import SchurComplement
@@ -353,8 +353,10 @@ def test_contacts_put_together_show_what_each_shows(opens: bool) -> None:
         interface(100, 2, opens=opens),
         interface(6, 4, opens=opens, start=-0.2),
     ]
-    both = ContactGroup(laws, [0, 2])
-    alone = [ContactGroup(laws, [number]) for number in (0, 2)]
+    stacks = Contacts(dict(zip("abc", laws, strict=True))).stacks
+    both = ContactGroup([stacks[0], stacks[2]])
+    alone = [ContactGroup([stacks[number]]) for number in (0, 2)]
+    assert both.numbers.tolist() == [0, 2]
     assert both.points.tolist() == [0, 1, 2, 5, 6, 7, 8]
     displacement = random.normal(size=(14, 6))
     displacement[6:] *= 1e-10
@@ -380,7 +382,7 @@ def test_contacts_put_together_show_what_each_shows(opens: bool) -> None:
 
 
 def test_status_is_the_sign_of_slip_beyond_rounding_and_open_without_force() -> None:
-    group = ContactGroup([interface(0, 2, opens=True)], [0])
+    group = ContactGroup(Contacts({"one": interface(0, 2, opens=True)}).stacks)
     displacement = np.zeros((4, 4))
     displacement[0] = [1.0, 1.0, 0.5, 0.5 + 0.1 * NO_SLIP]
     displacement[1] = [0.0, -1.0, -1.0, -1.0]
@@ -404,14 +406,16 @@ def test_fields_of_a_contact_are_its_forces_jumps_and_gap_in_si() -> None:
     displacement[law.tangent.below] = 1e-3
     assert law.normal is not None
     displacement[law.normal.component.above] = 5e-3
-    sizes = sum(len(one.positions) * 2 for one in problem.rubbing.values())
-    force = random.normal(size=(sizes, problem.n_instants))
-    status = np.zeros((len(law.positions), problem.n_instants), dtype=np.int8)
-    fields = contact_fields(problem, name, force, displacement, status)
+    contacts = problem.rubbing
+    force = random.normal(size=(contacts.n_forces, problem.n_instants))
+    status = random.integers(-1, 3, size=(contacts.n_points, problem.n_instants))
     scale = problem.scales.displacement
-    assert fields.slip == pytest.approx(np.full(status.shape, 2e-3 * scale))
-    assert fields.opening == pytest.approx(np.full(status.shape, 5e-3 * scale))
-    across, along = problem.contact_places[name]
+    fields = contacts.fields(force, displacement, status.astype(np.int8), scale)[name]
+    shape = len(law.positions), problem.n_instants
+    assert fields.slip == pytest.approx(np.full(shape, 2e-3 * scale))
+    assert fields.opening == pytest.approx(np.full(shape, 5e-3 * scale))
+    assert np.array_equal(fields.status, status[contacts.points[name]])
+    across, along = problem.rubbing.forces[name]
     assert np.array_equal(fields.normal_force, force[across])
     assert np.array_equal(fields.tangential_force, force[along])
 

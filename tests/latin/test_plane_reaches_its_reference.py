@@ -121,5 +121,5 @@ def test_only_forces_that_a_support_does_not_share_are_compared():
     for side, points in ((LEANING, 13), (wall, 12)):
         problem = block(left=side).discretise()
         assert len(problem.rubbing["support"].positions) == points
-        places = problem.contact_places["support"]
+        places = problem.rubbing.forces["support"]
         assert all(determinate_forces(problem)[place][:, 1:].all() for place in places)

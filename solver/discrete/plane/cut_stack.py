@@ -157,6 +157,8 @@ class CutStack:
         # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)
         self._operator = cache(self._operator_of)
+        self._basis = cache(self._basis_of)
+        self._entries = cache(self._entries_of)
         self.parts = list(self._parts(_node_numbers(grids)))
 
     def _grids(self) -> list[Array]:
@@ -251,6 +253,10 @@ class CutStack:
             if (number, side) not in self._touched and is_end.get(side, True):
                 yield side
 
+    def body_of(self, number: int) -> int:
+        """Number of the body of a substructure."""
+        return self._pieces[number].body
+
     def bodies(self, joint: Joint) -> tuple[int, int | None]:
         """Body above or to the right of a joint, and the other one (None: support)."""
         above = self._pieces[joint.above].body
@@ -297,9 +303,26 @@ class CutStack:
         """
         number, side = joint.sides[which]
         part = self.parts[number]
-        mesh = part.rectangle
-        count = len(part.rows[joint])
+        return self._basis(part.rectangle, side, len(part.rows[joint]))
+
+    def entries(self, joint: Joint) -> tuple[Indices, Indices, Array]:
+        """Macro basis of one component on a joint from above: rows, columns, values.
+
+        Columns ascend; entries that are zero are left out.
+        """
+        number, side = joint.sides[0]
+        part = self.parts[number]
+        return self._entries(part.rectangle, side, len(part.rows[joint]))
+
+    def _basis_of(self, mesh: Rectangle, side: str, count: int) -> Array:
         return side_basis(mesh, side, count, self.stack.macro_degree)
+
+    def _entries_of(
+        self, mesh: Rectangle, side: str, count: int
+    ) -> tuple[Indices, Indices, Array]:
+        basis = self._basis(mesh, side, count)
+        columns, rows = np.nonzero(basis.T)
+        return rows, columns, basis[rows, columns]
 
     def _is_known(self, joint: Joint) -> bool:
         """Check whether a joint is with a support of known bound."""

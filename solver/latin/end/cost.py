@@ -212,7 +212,7 @@ def _iteration_cost(problem: Problem) -> float:
 
 def _systems_in_any_case(problem: Problem) -> int:
     """Linear systems per instant that a status step may solve in any case."""
-    softens = any(law.tangential.softens for law in problem.rubbing.values())
+    softens = any(law.tangential.softens for law in problem.rubbing.laws.values())
     has_several_rods = rubs_on_supports(problem) and len(problem.rubbing) > 1
     if softens or has_several_rods:
         return ENDS_FOR_SURE
