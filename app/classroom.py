@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import secrets
 import time
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
@@ -93,8 +94,7 @@ class Classroom:
         self.leader = None
         self._gone_at = now
         last = self.state
-        kept = {name: getattr(last, name) for name in (*SHARED, "prediction")}
-        self.state = PageState(**kept)
+        self.state = PageState(**_values(last, (*SHARED, "prediction")))
         self.state.history = last.history
         self.state.number = last.number
 
@@ -135,6 +135,28 @@ class Classroom:
 
 CLASSROOMS: dict[str, Classroom] = {}
 """The classes of the server, by their codes."""
+
+
+def begin_with_class(state: PageState) -> None:
+    """Begin a page with what the class shows that its address names.
+
+    Widgets are made with these values: what changes once they are on the screen would
+    be written over what a person types there.
+    """
+    room = find(state.room.partition(".")[0])
+    if room is not None:
+        _update(state, _values(room.state, RESUMED))
+
+
+def _values(state: PageState, names: Sequence[str]) -> dict[str, Any]:
+    return {name: getattr(state, name) for name in names}
+
+
+def _update(state: PageState, values: Mapping[str, Any]) -> None:
+    """Set the values that have changed: watchers of others have nothing to do."""
+    present = _values(state, [*values])
+    changed = {name: value for name, value in values.items() if value != present[name]}
+    state.param.update(**changed)
 
 
 def forget() -> None:
@@ -199,7 +221,7 @@ class ClassMember(param.Parameterized):
             self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.state
-            self.state.param.update(**{name: getattr(last, name) for name in RESUMED})
+            _update(self.state, _values(last, RESUMED))
             self.state.prediction = last.prediction
             self._lead(room)
         elif room is not self.room:
@@ -303,14 +325,8 @@ class ClassMember(param.Parameterized):
             leader = room.state
             state.history = leader.history
             state.number = leader.number
-            values |= {name: getattr(leader, name) for name in SHARED}
-        # Watchers of values that have not changed have nothing to do.
-        changed = {
-            name: value
-            for name, value in values.items()
-            if value != getattr(state, name)
-        }
-        state.param.update(**changed)
+            values |= _values(leader, SHARED)
+        _update(state, values)
         self.message = self._sentence(room)
         if room.is_alone and not room.is_over:
             self._document.add_timeout_callback(self._take, int(1000 * KEPT) + 1000)

@@ -10,7 +10,7 @@ import panel_material_ui as pmui
 from panel.util import edit_readonly
 
 from app.browser import Browser
-from app.classroom import ClassDialog, ClassMember
+from app.classroom import ClassDialog, ClassMember, begin_with_class
 from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
@@ -260,6 +260,7 @@ def open_page() -> pmui.Page:
     state = PageState(shown["settings"], refusal=refusal, is_narrow=is_phone)
     iteration = shown.pop("iteration", 0)
     show(state, shown)
+    begin_with_class(state)
     page = Page(state, iteration)
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)

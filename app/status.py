@@ -97,11 +97,11 @@ def _said(state: PageState) -> list[str]:
     words = [escape(text) for text in (state.message, state.refusal) if text]
     frame = state.frame
     if frame is not None and frame.status is not None:
-        told = list(frame.remarks)
+        messages = list(frame.remarks)
         if frame.status.ending is not Ending.CONVERGED:
-            told.insert(0, frame.status.advice)
+            messages.insert(0, frame.status.advice)
         settings = frame.run.settings
-        words.extend(escape(amounts_in_titles(settings, text)) for text in told)
+        words.extend(escape(amounts_in_titles(settings, text)) for text in messages)
     return words
 
 
@@ -158,6 +158,6 @@ def _unit_of(figure: KeyFigure) -> Callable[[float], str]:
 def _over_time(frame: Frame, figure: KeyFigure) -> str:
     """Largest value of a key figure with its instant, and its last value."""
     instants = frame.run.instants
-    told = _unit_of(figure)
+    unit = _unit_of(figure)
     when = unit_for(float(instants[-1]), "s")(float(instants[figure.instant]))
-    return f"largest {told(figure.largest)} at {when}, last {told(figure.last)}"
+    return f"largest {unit(figure.largest)} at {when}, last {unit(figure.last)}"

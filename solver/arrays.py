@@ -54,7 +54,9 @@ def as_slice(rows: Indices) -> slice | Indices:
     """Rows, (n_rows,), as a slice if they are consecutive: reading copies nothing."""
     if not np.all(np.diff(rows) == 1):
         return rows
-    first = int(rows[0]) if len(rows) else 0
+    first = 0
+    if len(rows):
+        first = int(rows[0])
     return slice(first, first + len(rows))
 
 
@@ -64,7 +66,8 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
     Fields that do not change with time have a single column; so has the result if none
     of them changes.
     """
-    columns = np.broadcast_shapes(*[field.shape[1:] for field in fields])
+    shapes = [field.shape[1:] for field in fields]
+    columns = np.broadcast_shapes(*shapes)
     return np.concatenate(
         [np.broadcast_to(field, (len(field), *columns)) for field in fields]
     )

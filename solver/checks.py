@@ -148,7 +148,9 @@ class Numbers:
     @property
     def allowed(self) -> str:
         """Words on these values."""
-        kind = "whole numbers" if self.whole else "numbers"
+        kind = "numbers"
+        if self.whole:
+            kind = "whole numbers"
         ends = _range(self.low, self.high, above=self.above)
         shapes = " or ".join(_written(shape) for shape in self.shapes)
         return f"an array of {kind}{ends}, shape {shapes}"
@@ -201,7 +203,7 @@ class Numbers:
 
 
 @dataclass(frozen=True)
-class Instants:
+class IncreasingInstants:
     """Arrays of one or more increasing instants, shape (n_instants,), s."""
 
     allowed = "an array of instants that increase, s, shape [n_instants], one or more"
@@ -372,7 +374,7 @@ POSITIVE = Number(0.0, above=True)
 NON_NEGATIVE = Number(0.0)
 ANY_NUMBER = Number()
 COUNT = Count(1)
-INSTANTS = Instants()
+INSTANTS = IncreasingInstants()
 ROWS = Numbers(((None,),), low=0, whole=True)
 FLAG = Flag()
 FUNCTION = Function()
@@ -381,7 +383,9 @@ FUNCTION = Function()
 def _range(low: float, high: float, *, above: bool = False) -> str:
     """Words on a range of numbers."""
     if low == -math.inf:
-        return f" up to {plain(high)}" if high < math.inf else ""
+        if high < math.inf:
+            return f" up to {plain(high)}"
+        return ""
     words = f" {'above' if above else 'from'} {plain(low)}"
     if high < math.inf:
         words = f"{words} to {plain(high)}"

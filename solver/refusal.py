@@ -44,7 +44,10 @@ def _shown(value: object) -> str:
 
 def plain(value: float) -> str:
     """Text of a number as one types it: 1e15, and not 1e+15."""
-    text = str(value) if isinstance(value, int) else f"{value:g}"
+    if isinstance(value, int):
+        text = str(value)
+    else:
+        text = f"{value:g}"
     return re.sub(r"e\+?(-?)0*", r"e\1", text)
 
 

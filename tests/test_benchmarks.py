@@ -1,4 +1,6 @@
-"""The scripts of benchmarks count the iterations of runs, and other programs agree with us."""
+"""The scripts of benchmarks count the iterations of runs,
+and other programs agree with us.
+"""
 
 from __future__ import annotations
 
@@ -106,7 +108,7 @@ def test_public_solvers_agree_with_the_incremental_solver(
     if not public.installed:
         pytest.skip(f"{public.name} is not installed")
     sizes = {"elements": 20, "instants": 21}
-    problem = discretise(BarSettings.checked({"method": "paper", **sizes, **changes}))
+    problem = discretise(BarSettings.checked({"method": "paper"} | sizes | changes))
     fields = solve_by(public, problem, public.tolerances[-1])
     distance = distance_to(reference_of(problem), problem)
     assert distance.of_friction_force(fields) < REACHED[public.name]

@@ -1,4 +1,5 @@
-"""The Dockerfile's steps without a container engine: install, serve, ask the health check.
+"""The Dockerfile's steps without a container engine: install, serve, ask the health
+check.
 
 The clean environment is lent what the project declares that it needs, and nothing else:
 pip checks the versions, but unpacks no packages that these tests run on already.
@@ -32,8 +33,17 @@ PROGRAM = """
 from solver import End, Latin, Rods, solve
 import numpy as np, solver
 t = np.linspace(0.0, 1.0, 21)
-rods = Rods(length=1.0, stiffness=1e6, elements=20, substructures=2, bound=np.full(21, 1500.0),
-            left=End(displacement=0.0 * t), right=End(force=900.0 * t), instants=t, duration=1.0)
+rods = Rods(
+    length=1.0,
+    stiffness=1e6,
+    elements=20,
+    substructures=2,
+    bound=np.full(21, 1500.0),
+    left=End(displacement=0.0 * t),
+    right=End(force=900.0 * t),
+    instants=t,
+    duration=1.0,
+)
 print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
 """
 
@@ -51,7 +61,9 @@ def instructions(name: str) -> list[str]:
 
 
 def declared():
-    """Give the distributions that the project needs, directly or not, extras left out."""
+    """Give the distributions that the project needs,
+    directly or not, extras left out.
+    """
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
         "project"
     ]
@@ -68,7 +80,9 @@ def declared():
 
 
 def lend(found, environment):
-    """Link the modules of a distribution into an environment, and write its programs there."""
+    """Link the modules of a distribution into an environment,
+    and write its programs there.
+    """
     (packages,) = environment.glob("lib/python*/site-packages")
     for file in found.files:
         if file.parts[0] == "..":
@@ -85,7 +99,9 @@ def lend(found, environment):
 
 @pytest.fixture(scope="module")
 def image(tmp_path_factory):
-    """Copy what the Dockerfile copies, and run its installation in a clean environment."""
+    """Copy what the Dockerfile copies,
+    and run its installation in a clean environment.
+    """
     folder = tmp_path_factory.mktemp("image")
     for copied in instructions("COPY"):
         *sources, target = copied.split()

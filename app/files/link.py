@@ -211,8 +211,8 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     place["settings"] = _together(
         base, {name: parse(text) for name, text in pairs.items()}, refused
     )
-    told = "; ".join(text.rstrip(".") for text in refused)
-    return place, f"From the address: {told}." if refused else ""
+    message = "; ".join(text.rstrip(".") for text in refused)
+    return place, f"From the address: {message}." if refused else ""
 
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:

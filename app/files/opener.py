@@ -145,12 +145,12 @@ class TableOpener:
                 data.decode("utf-8-sig", "replace"), source
             )
             definitions = settings.definitions()
-            told = [
+            messages = [
                 f"{title_of(definitions[name])}: {text}."
                 for name, text in changed.items()
             ]
             message = f"{source}: settings of the scene {settings.scene}."
-            return settings, " ".join([message, *told])
+            return settings, " ".join([message, *messages])
         self._table = table = table_of(data, source)
         names = [name.replace(",", " ") for name in names_of(table)]
         self._rows.object = pd.DataFrame(table.cells[:SHOWN], columns=names)

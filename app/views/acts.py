@@ -177,7 +177,7 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     """
     act = arrows.act
     up = act.away[1]
-    is_left = float(np.mean(act.places[:, 0])) < 0.45
+    is_left = float(np.mean(act.points[:, 0])) < 0.45
     place = arrows.places[0 if is_left else -1]
     ends = np.append(arrows.lines[:, :, 0], place[0])
     if is_aside(act):
@@ -203,7 +203,7 @@ def _has_aside(layout: Layout, side: str) -> bool:
 
 def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
     """Check whether the words of a load on top have room beside its longest arrows."""
-    across = layout.local(act.places * layout.size)[:, 0] + layout.origin[0]
+    across = layout.local(act.points * layout.size)[:, 0] + layout.origin[0]
     if is_left:
         room = across.min()
     else:

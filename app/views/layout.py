@@ -122,11 +122,11 @@ class Layout:
 
 def is_high(geometry: Geometry) -> bool:
     """Check whether a picture of bodies has more room beside plots than above."""
-    described = geometry.description
+    description = geometry.description
     top = float(geometry.nodes[:, 1].max())
-    low, high = _extent(described.length, top, described.tilt)
+    low, high = _extent(description.length, top, description.tilt)
     width, height = high - low
-    return described.height is not None and bool(width <= HIGH * height)
+    return description.height is not None and bool(width <= HIGH * height)
 
 
 def turned(points: Array, angle: float) -> Array:

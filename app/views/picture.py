@@ -81,7 +81,7 @@ class Picture:
         for act in self._described.acts:
             setting = behind.get(act.where)
             peak = self._peaks[act.where]
-            places = self._follow(act.places * layout.size)
+            places = self._follow(act.points * layout.size)
             arrows.append(Arrows(act, setting, places, layout, peak, self._now))
         return arrows
 

@@ -94,12 +94,12 @@ class Timeline(View):
 
 def paths_of(run: Run) -> list[tuple[str, Array]]:
     """Title with range, and values, (n_instants,), of all paths, constant ones last."""
-    described = run.geometry.description
+    description = run.geometry.description
     given: list[tuple[str, Array, Unit]] = []
-    if described.tilt is not None:
-        given.append(("tilt", np.degrees(described.tilt), Unit("°")))
-    for place, act in enumerate(described.acts):
-        if not any(is_opposite(act, other) for other in described.acts[:place]):
+    if description.tilt is not None:
+        given.append(("tilt", np.degrees(description.tilt), Unit("°")))
+    for place, act in enumerate(description.acts):
+        if not any(is_opposite(act, other) for other in description.acts[:place]):
             if act.values.ndim == 1:
                 values = act.values
             else:
@@ -116,6 +116,9 @@ def paths_of(run: Run) -> list[tuple[str, Array]]:
             text = f"{number(low / unit.factor)} to {unit(high)}"
         else:
             text = unit(high)
-        path = f"{symbol} = {text}", np.interp(run.instants, described.instants, values)
+        path = (
+            f"{symbol} = {text}",
+            np.interp(run.instants, description.instants, values),
+        )
         (changing if changes else constant).append(path)
     return [*changing, *constant] or [("nothing acts", np.zeros(len(run.instants)))]

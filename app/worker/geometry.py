@@ -89,7 +89,7 @@ class Drawn:
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """Displacements of nodes and points, and the status, at the shown instants."""
-        absolute = iterate.problem.at_rest(iterate.displacement)
+        absolute = iterate.problem.absolute(iterate.displacement)
         moved = absolute[self._dofs][:, :, self._columns]
         moved[self._dofs == NONE] = 0.0
         status = iterate.status[np.ix_(self._points, self._columns)]
@@ -117,7 +117,7 @@ class DrawnRods(Drawn):
     """Rods as rectangles above each other, with interfaces below them."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
-        description = settings.structure().described()
+        description = settings.structure().description()
         parts = problem.substructures
         length = description.length
         per_rod = len(parts) // description.bodies
@@ -190,7 +190,7 @@ class DrawnRods(Drawn):
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         """Displacement of the nodes, which move along the rods, m."""
-        moved = iterate.problem.at_rest(iterate.displacement)
+        moved = iterate.problem.absolute(iterate.displacement)
         along = moved[np.ix_(self._along, self._columns)]
         return floats(np.stack([along, np.zeros_like(along)], axis=1))
 
@@ -223,7 +223,7 @@ class DrawnMesh(Drawn):
         # The quadrilateral that each element lies in.
         self._quad = np.concatenate(quads)
         mesh = mesh_of([inside.nodes[grid] for grid in grids], np.arange(len(grids)))
-        description = settings.structure().described()
+        description = settings.structure().description()
         super().__init__(problem, description, columns, mesh, problem.positions)
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:

@@ -59,11 +59,11 @@ class DrawnRope:
         assert isinstance(rope, Rope)
         self._rope = rope
         self._columns = columns
-        description = rope.described()
+        description = rope.description()
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
         self._first = len(rope.wires) - len(wires)
-        self._lay = wires[0].made.lay
+        self._lay = wires[0].layer_data.lay
         self._helix = wires[0].radius
         self._radius = 0.5 * description.height
         self._count = sum(wire.stands_for for wire in wires)
@@ -238,7 +238,7 @@ class DrawnRope:
         stress = stress_at(
             rope, cut, wire_stresses(rope, iterate.displacement, columns)
         )
-        radii = [0.5 * rope.wires[number].made.diameter for number in cut.wire]
+        radii = [0.5 * rope.wires[number].layer_data.diameter for number in cut.wire]
         return {
             "place": place,
             "wires": np.append(-1, cut.wire),

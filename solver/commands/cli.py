@@ -181,7 +181,10 @@ def _run(chosen: argparse.Namespace) -> int:
     if nothing_acts(problem):
         warn("nothing acts on the structure: all loads are zero")
     announce(settings, problem, reference=chosen.reference, limit=limit)
-    known = _known(problem, limit) if chosen.reference else Known()
+    if chosen.reference:
+        known = _known(problem, limit)
+    else:
+        known = Known()
     solution = _solved(chosen, settings, problem, known, asked, limit, spent)
     if chosen.out is not None:
         with refusing(chosen.out, CAN_BE_WRITTEN):
@@ -293,7 +296,9 @@ def _print_figures(
 def _print_lines(figures: Mapping[str, object]) -> None:
     """Print figures by name, each entry of a list on a line of its own."""
     for name, value in figures.items():
-        entries = value if isinstance(value, list) else [value]
+        entries = [value]
+        if isinstance(value, list):
+            entries = value
         for entry in entries:
             shown = entry
             if isinstance(entry, float):

@@ -1,4 +1,4 @@
-"""The command `example`: write one of the scripts in `solver/examples` beside the user."""
+"""The command `example`: write a script of `solver/examples` beside the user."""
 
 from __future__ import annotations
 

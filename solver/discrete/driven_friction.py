@@ -41,7 +41,7 @@ class DrivenFriction:
         Position in a stack of contact forces of the friction of the nearest point that
         is free to slip, (n_points,), and area of a point over the area of that point; 0
         without one.
-    places, pressing
+    rubbing, pressing
         Positions in a stack of contact forces, (n_points,), of the friction forces and
         of the pressing forces; None for the latter where the pressure is known.
     normal_rows, gap
@@ -56,7 +56,7 @@ class DrivenFriction:
     noise: float
     beside: Indices
     share: Array
-    places: Indices
+    rubbing: Indices
     pressing: Indices | None = None
     normal_rows: tuple[Indices, ...] = ()
     gap: Array | None = None
@@ -71,7 +71,7 @@ class DrivenFriction:
         if self.pressing is not None:
             pressing = forces[self.pressing]
         opening = self._opening(displacement)
-        if self.along.softness is not None:
+        if self.along.compliance is not None:
             return self._on_springs(pressing, opening)
         slip = self._slip
         bound = self.along.allowed(pressing, slip, opening)
@@ -97,8 +97,8 @@ class DrivenFriction:
         Parameters and force are (n_points, n_instants), scaled.
         """
         along = self.along
-        assert along.softness is not None
-        compliance = along.softness[:, None]
+        assert along.compliance is not None
+        compliance = along.compliance[:, None]
         bound = along.without_slip(pressing, opening)
         slack = compliance * np.broadcast_to(bound, self.jump.shape)
         if along.strength is None:
@@ -111,14 +111,14 @@ class DrivenFriction:
 
 def driven_friction(
     law: Contact,
-    places: tuple[slice, ...],
+    slices: tuple[slice, ...],
     row_dofs: Indices,
     prescribed: tuple[Indices, Array],
     largest: float,
 ) -> DrivenFriction | None:
     """Friction of the driven points of an interface; None where it has none.
 
-    `places` are the slices of its components in a stack of contact forces, `row_dofs`
+    `slices` are the slices of its components in a stack of contact forces, `row_dofs`
     the degrees of freedom of all rows, (n_rows,), and `prescribed` those whose
     displacement is, (n,), with their values, (n, n_instants), scaled. `largest` is the
     largest displacement that any of these values is a difference of, scaled.
@@ -143,16 +143,16 @@ def driven_friction(
         jump=_difference(moved),
         start=start,
         noise=ROUNDING * largest,
-        beside=places[-1].start + nearest,
+        beside=slices[-1].start + nearest,
         share=share,
-        places=places[-1].start + points,
+        rubbing=slices[-1].start + points,
     )
     if law.normal is None:
         return driven
     normal_sides = law.normal.component.sides
     return replace(
         driven,
-        pressing=places[0].start + points,
+        pressing=slices[0].start + points,
         normal_rows=tuple([rows[pairs[points]] for rows in normal_sides]),
         gap=law.mean_by_point(law.normal.gap)[points],
     )
@@ -172,16 +172,17 @@ def _law_of_points(law: Contact, points: Indices, pairs: Indices) -> Friction:
     cap = None
     if friction.cap is not None:
         cap = law.by_point(friction.cap)[points]
-    softness = None
-    if friction.softness is not None:
-        softness = law.in_parallel(friction.softness)[points]
+    compliance = None
+    if friction.compliance is not None:
+        compliance = law.in_parallel(friction.compliance)[points]
+    sides = [rows[pairs] for rows in law.tangent.sides]
     return replace(
         friction,
-        component=Component(*[rows[pairs] for rows in law.tangent.sides]),
+        component=Component(*sides),
         bound=law.by_point(friction.bound)[points],
         friction=law.mean_by_point(friction.friction)[points],
         cap=cap,
-        softness=softness,
+        compliance=compliance,
         start=None,
     )
 

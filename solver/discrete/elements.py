@@ -238,21 +238,21 @@ class SchurComplement:
         self.kept = kept
         self._before = None
         # Positions of what is kept, and of the rest, in the whole stiffness.
-        places = kept
+        positions = kept
         stiffness: sparse.csc_array | Array
         if isinstance(whole, SchurComplement):
             self._before = whole
             stiffness = whole.stiffness
-            places = np.searchsorted(whole.kept, kept)
+            positions = np.searchsorted(whole.kept, kept)
         else:
             stiffness = whole
         self._size = stiffness.shape[0]
-        self._places = places
-        self._rest = np.setdiff1d(np.arange(self._size), places)
-        condensed = _dense(stiffness[places][:, places])
+        self._positions = positions
+        self._rest = np.setdiff1d(np.arange(self._size), positions)
+        condensed = _dense(stiffness[positions][:, positions])
         others = stiffness[self._rest]
         if len(self._rest):
-            coupling = _dense(others[:, places])
+            coupling = _dense(others[:, positions])
             inner = others[:, self._rest]
             if isinstance(inner, np.ndarray):
                 self._solve = partial(cho_solve, cho_factor(inner))
@@ -267,8 +267,8 @@ class SchurComplement:
         if self._before is not None:
             force = self._before.condense(force)
         if not len(self._rest):
-            return np.asarray(force[self._places])
-        return np.asarray(force[self._places] - self._response.T @ force[self._rest])
+            return np.asarray(force[self._positions])
+        return np.asarray(force[self._positions] - self._response.T @ force[self._rest])
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all degrees of freedom, shape (n, n_columns).
@@ -280,7 +280,7 @@ class SchurComplement:
         if self._before is not None and force is not None:
             condensed = self._before.condense(force)
         whole = np.empty((self._size, kept.shape[1]))
-        whole[self._places] = kept
+        whole[self._positions] = kept
         if len(self._rest):
             rest = -(self._response @ kept)
             if condensed is not None:

@@ -18,7 +18,7 @@ that of a translation."""
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class RectangularSubstructure:
     """A rectangular substructure.
 
     Attributes
@@ -67,7 +67,11 @@ class Inside:
     """
 
     def __init__(
-        self, parts: Sequence[Part], positions: Array, scales: Scales, n_instants: int
+        self,
+        parts: Sequence[RectangularSubstructure],
+        positions: Array,
+        scales: Scales,
+        n_instants: int,
     ) -> None:
         length = scales.displacement
         kept = [dofs_of(part.nodes.ravel())[part.condensed.kept] for part in parts]
@@ -79,7 +83,7 @@ class Inside:
         self.dofs = [np.searchsorted(skeleton, dofs) for dofs in kept]
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
-        self.places = positions[skeleton // 2]
+        self.positions = positions[skeleton // 2]
         corners = [part.nodes.ravel()[part.rectangle.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(elements) for elements in corners]
@@ -160,7 +164,7 @@ class Inside:
     def _rigid_modes(self, dofs: Indices) -> Array:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
         is_along_x = self.components[dofs] == 0
-        x, y = (self.places[dofs] - self.places[dofs].mean(axis=0)).T
+        x, y = (self.positions[dofs] - self.positions[dofs].mean(axis=0)).T
         rotation = np.where(is_along_x, -y, x)
         modes = np.stack([is_along_x, ~is_along_x, rotation], axis=1)
         return np.asarray(modes.astype(float))

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,7 +36,7 @@ from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, Strength
-from solver.laws.interface import Given, Glued, IncrementalForm
+from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 from solver.laws.play import PLAIN
 from solver.refusal import RefusedError, Words
 
@@ -178,7 +179,7 @@ class Problem:
                 "prescribe it once, or both alike",
             )
 
-    def at_rest(self, displacement: Array) -> Array:
+    def absolute(self, displacement: Array) -> Array:
         """Absolute displacements: relative ones plus the motion of the support.
 
         Shape (n_dofs, n_instants) both, m.
@@ -257,13 +258,13 @@ class Problem:
         return {name: law for name, law in self.interfaces.items() if name not in forms}
 
     @cached_property
-    def given_forces(self) -> list[Given]:
+    def given_forces(self) -> list[PrescribedRows]:
         """Forces that are prescribed, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.force for form in forms if form.force is not None]
 
     @cached_property
-    def given_displacements(self) -> list[Given]:
+    def given_displacements(self) -> list[PrescribedRows]:
         """Displacements that are prescribed, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.displacement for form in forms if form.displacement is not None]
@@ -417,10 +418,11 @@ class Problem:
     def macro(self) -> tuple[sparse.csr_array, Array]:
         """Macro basis of all interfaces, and the macro forces from outside, scaled.
 
-        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1; MATHEMATICS.md,
-        2).
+        P, (n_rows, n_macro), and P^T F_d, (n_macro, n_instants) (paper, eq. 1;
+        MATHEMATICS.md, 2).
         """
-        parts = [part for law in self.interfaces.values() for part in law.macro_parts()]
+        laws = self.interfaces.values()
+        parts = list(chain.from_iterable(law.macro_parts() for law in laws))
         bases = sparse.block_diag([sparse.coo_array(part.basis) for part in parts])
         rows = np.concatenate([part.rows for part in parts])[bases.coords[0]]
         loads = list[Array]()
@@ -507,7 +509,7 @@ class Problem:
             return forces
         settled = forces.copy()
         for driven in self._driven:
-            settled[driven.places] = driven.force(forces, displacement)
+            settled[driven.rubbing] = driven.force(forces, displacement)
         return settled
 
     @cached_property
@@ -584,7 +586,9 @@ def _check_cover(
         number = largest
     else:
         number = int(np.argmax(wrong))
-    how_often = "once" if once else "at least once"
+    how_often = "at least once"
+    if once:
+        how_often = "once"
     allowed = f"each {what} from 0 to {count - 1} {how_often}"
     shown = Words(f"{what} {number}, {times[number]} times")
     raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")

@@ -47,7 +47,7 @@ class Act:
         Side and component, as "right x", or "body" for a load on the whole body.
     symbol, unit
         Symbol of the values, and their SI unit.
-    places
+    points
         Points on the undeformed bodies, shape (n, 2), as shares of their length and
         height.
     towards
@@ -59,7 +59,7 @@ class Act:
 
     where: str
     symbol: str
-    places: Array
+    points: Array
     towards: Way | Array
     values: Array
     unit: str
@@ -200,5 +200,5 @@ class Structure(Protocol):
     def loop(self, problem: Problem) -> Loop:
         """Hysteresis loop; forces in the plane are those for a metre of thickness."""
 
-    def described(self) -> Description:
+    def description(self) -> Description:
         """Description of the structure for drawings."""

@@ -26,7 +26,8 @@ strand = Rods(
 )
 solution = solve(strand.discretise())
 
-# Points stand wire after wire, and the break has two of them: the second wire has one more.
+# Points stand wire after wire, and the break has two of them: the second wire has one
+# more.
 displacement = solution.iterate.displacement[ELEMENTS + 1 : 2 * ELEMENTS + 3, -1]
 left = displacement[: ELEMENTS // 2 + 1]
 force = STIFFNESS * np.diff(left) * ELEMENTS

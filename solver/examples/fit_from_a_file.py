@@ -1,4 +1,4 @@
-"""Friction of a bar from a measured loop in a file; a closed form stands for the rig here."""
+"""Friction of a bar from a measured loop in a file; a closed form is the rig here."""
 
 import tempfile
 from pathlib import Path

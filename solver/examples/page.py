@@ -31,7 +31,7 @@ BAR = Rods(
 
 
 class LoopView:
-    """Force over the displacement of the end: of an iterate, and the closed form, dashed."""
+    """Force over the end's displacement: of an iterate, and the closed form, dashed."""
 
     def __init__(self) -> None:
         self.source = ColumnDataSource({"x": 0.0 * TIMES, "y": FORCE})

@@ -1,4 +1,4 @@
-"""A sweep on a pool of processes: friction takes energy with the third power of the load."""
+"""A sweep on a pool of processes: friction takes energy as the load's third power."""
 
 import numpy as np
 

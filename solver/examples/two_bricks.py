@@ -1,4 +1,4 @@
-"""Two bricks on each other are pressed, then moved at the top until the joint slides."""
+"""Two bricks are pressed on each other, then moved at the top until they slide."""
 
 import numpy as np
 

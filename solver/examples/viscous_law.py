@@ -1,4 +1,4 @@
-"""A law of one's own: a damper F = F_d - c dW/dt, by backward Euler, at the end of a bar."""
+"""A law of one's own: a damper F = F_d - c dW/dt, by backward Euler, on a bar."""
 
 from dataclasses import dataclass, replace
 

@@ -107,11 +107,8 @@ def _chosen(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> list[TableColumn]:
     """Columns of a curve that a head names."""
-    free = [
-        column
-        for column in table.columns
-        if column.key == name or column.key not in _SETTINGS
-    ]
+    others = _SETTINGS - {name}
+    free = [column for column in table.columns if column.key not in others]
     chosen: list[TableColumn] = []
     remedy = "add that column"
     key = ""

@@ -218,9 +218,9 @@ def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, 
 
 def _texts_in(values: Sequence[object], name: str) -> tuple[str, ...]:
     """Texts of a list under a key; refuse an empty list, and other values."""
-    texts = [value for value in values if isinstance(value, str) and value]
+    texts = [value for value in values if isinstance(value, str)]
     require(
-        len(values) > 0 and len(texts) == len(values),
+        len(values) > 0 and len(texts) == len(values) and all(texts),
         name,
         list(values),
         "a list of texts, at least one",
@@ -314,7 +314,7 @@ def _body_arrays(iterate: Iterate) -> dict[str, Any]:
     if inside is None:
         return {
             "x": problem.positions,
-            "displacement": problem.at_rest(iterate.displacement),
+            "displacement": problem.absolute(iterate.displacement),
             "friction_force": iterate.friction_force,
             "determinate": determinate_forces(problem),
             "status": iterate.status,

@@ -165,9 +165,12 @@ def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
         lines = [_line(number, text, separator) for number, text in filled]
     except csv.Error as problem:
         raise refuse(str(problem)) from None
-    return separator, [
-        line for line in lines if line.cells and not _RULE.fullmatch(line.text)
-    ]
+    return separator, [line for line in lines if not _is_empty(line)]
+
+
+def _is_empty(line: Line) -> bool:
+    """Return whether a line has no cells, or is a rule between others."""
+    return not line.cells or bool(_RULE.fullmatch(line.text))
 
 
 def _separator_of(texts: Sequence[str]) -> str:
@@ -189,7 +192,8 @@ def _separator_of(texts: Sequence[str]) -> str:
 
 def _has_two(line: Line) -> bool:
     """Return whether a line has two numbers, or a number and a gap that is written."""
-    gaps = [cell for cell in line.cells if cell and is_gap(cell)]
+    filled = filter(None, line.cells)
+    gaps = [cell for cell in filled if is_gap(cell)]
     has_number = line.n_numbers > 0
     return not line.is_comment and has_number and line.n_numbers + len(gaps) > 1
 
@@ -232,7 +236,9 @@ def _without_comment(text: str, separator: str) -> list[str]:
         if mark[0] != separator and stands_apart and not is_unit:
             cells = _split(text[: mark.start()], separator)
             numerals = [cell for cell in cells if is_numeral(cell)]
-            return cells if len(numerals) > 1 else []
+            if len(numerals) > 1:
+                return cells
+            return []
     return []
 
 
@@ -318,8 +324,15 @@ def _heads_among(
     ]
     if block is None or not block.is_known:
         return heads
-    # Words that name no quantity may tell of the test, as in `phase;unloading`.
-    return [head for head in heads if _is_known(head.cells) or head.is_comment]
+    return [head for head in heads if _is_comment_or_known(head)]
+
+
+def _is_comment_or_known(head: Line) -> bool:
+    """Return whether a line is a comment, or names a quantity.
+
+    Words that name no quantity may tell of the test, as in `phase;unloading`.
+    """
+    return head.is_comment or _is_known(head.cells)
 
 
 def _is_head_of(line: Line, row: Line, separator: str) -> bool:
@@ -374,7 +387,9 @@ def _broken_rows(between: Sequence[Line], row: Line) -> list[Line]:
     line = between[-1]
     if line.is_text or line.is_comment or not line.n_numbers:
         return []
-    return [line] if len(line.cells) == len(row.cells) else []
+    if len(line.cells) == len(row.cells):
+        return [line]
+    return []
 
 
 def _leave_summary(block: Block) -> None:

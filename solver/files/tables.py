@@ -261,7 +261,9 @@ class Table:
             notes.append(f"passed over: {', '.join(others)}")
         left_out = self.lines[~has_all]
         if len(left_out):
-            rows = "1 row" if len(left_out) == 1 else f"{len(left_out)} rows"
+            rows = f"{len(left_out)} rows"
+            if len(left_out) == 1:
+                rows = "1 row"
             notes.append(f"left out {rows} without a number ({_named(left_out)})")
         message = "; ".join([*notes, *self.remarks])
         return Reading(numbers * np.array(sizes)[:, None], self.lines[has_all], message)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from solver.arrays import ROUNDING, Array
 from solver.discrete.contacts import ContactGroup
 from solver.discrete.problem import Problem
-from solver.laws.contact import Behaviour
+from solver.laws.contact import Violation
 from solver.laws.interface import beyond, squared
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ STILL = 1e-6
 structure counts as not moving."""
 
 
-def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
+def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
     """Violation of the laws by W and F, whatever k (MATHEMATICS.md, 4).
 
     Friction with bound q and slip increment v violates its law by q|v| + F v with F cut
@@ -107,18 +107,18 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
     """
     noise = _rounding(displacement, force)
     groups = _known_groups(problem)
-    behaviours = [group.law.behaviour(displacement, force, noise) for group in groups]
+    violations = [group.law.violation(displacement, force, noise) for group in groups]
     energy = _elastic_energy(problem, displacement, beyond(force, noise))
-    energy += sum(float(behaviour.dissipated.sum()) for behaviour in behaviours)
-    largest_friction = sum(float(behaviour.bound.sum()) for behaviour in behaviours)
+    energy += sum(float(violation.dissipated.sum()) for violation in violations)
+    largest_friction = sum(float(violation.bound.sum()) for violation in violations)
     if largest_friction == 0.0:
         largest_friction = float(np.abs(force).sum())
     mean_slip = ratio(energy, largest_friction)
-    violations = [
-        _worst(group, behaviour, mean_slip)
-        for group, behaviour in zip(groups, behaviours, strict=True)
+    energies = [
+        _worst(group, violation, mean_slip)
+        for group, violation in zip(groups, violations, strict=True)
     ]
-    worst = max(violations, default=0.0)
+    worst = max(energies, default=0.0)
     # Against the mean energy per interface, so that many that hold do not hide one that
     # does not.
     total = ratio(len(problem.rubbing) * worst, energy)
@@ -127,21 +127,21 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
 
 
 def _known_groups(problem: Problem) -> list[ContactGroup]:
-    """Groups of contacts whose laws are those of `Contact.behaviour`."""
+    """Groups of contacts whose laws are those of `Contact.violation`."""
     groups = problem.rubbing.groups
     return [group for group in groups if group.law.incremental_form() is not None]
 
 
-def _worst(group: ContactGroup, behaviour: Behaviour, mean_slip: float) -> float:
+def _worst(group: ContactGroup, violation: Violation, mean_slip: float) -> float:
     """Largest violation of the law at any interface of a group, an energy, scaled."""
     mean_force: Array | float = 0.0
-    if behaviour.pressing is not None:
-        pressed = np.maximum(behaviour.pressing, 0.0).mean(axis=1)
+    if violation.pressing is not None:
+        pressed = np.maximum(violation.pressing, 0.0).mean(axis=1)
         pairs = group.interfaces[group.law.points]
         means = group.sums(pressed) / group.sums(np.ones_like(pressed))
         mean_force = means[pairs, None]
-    violation = behaviour.violation(mean_slip, mean_force)
-    return float(group.sums(violation.sum(axis=1)).max())
+    energy = violation.energy(mean_slip, mean_force)
+    return float(group.sums(energy.sum(axis=1)).max())
 
 
 def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> float:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array, read_only
 from solver.discrete.contacts import ContactFields
 from solver.discrete.problem import Problem
-from solver.latin.indicators import behaviour_of, contact_status, latin_indicator
+from solver.latin.indicators import contact_status, latin_indicator, violation_of
 from solver.reduction.basis import SharedBasis
 
 
@@ -22,13 +22,13 @@ class UpdateProgress:
 
     Attributes
     ----------
-    phase
+    state
         State of k: the first one, which may change ("first"), another one on trial
         ("updated"), or one that stays as it is ("returned").
     k
         Search direction of the next iteration, shape (n_rows,), scaled.
     count
-        In the phase "first", successive iterations with hardly a change of status; in
+        In the state "first", successive iterations with hardly a change of status; in
         "updated", iterations since the last trial.
     status
         Contact status of the last iteration, shape (n_points, n_instants), where k
@@ -40,7 +40,7 @@ class UpdateProgress:
         The k-free indicator of these fields.
     """
 
-    phase: Literal["first", "updated", "returned"]
+    state: Literal["first", "updated", "returned"]
     k: Array
     count: int = 0
     status: NDArray[np.int8] | None = None
@@ -62,7 +62,7 @@ class Checkpoint:
         W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
     bases
         Separated bases that hold it, one per substructure; empty for full fields.
-    course
+    k_update
         State of the k update; None where the fields are those of another run.
     """
 
@@ -70,7 +70,7 @@ class Checkpoint:
     seconds: float
     outgoing: Array
     bases: tuple[SharedBasis, ...] = ()
-    course: UpdateProgress | None = None
+    k_update: UpdateProgress | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +98,7 @@ class Iterate:
         Separated bases that hold the linear stage, one per substructure; empty for full
         fields. In a certified solution they are those of the search that led to it, and
         do not hold all of it.
-    course
+    k_update
         State of the k update, with the k of the next iteration.
     residual
         KKT residual of a certified solution (`solver.latin.end.certified`), relative to
@@ -120,7 +120,7 @@ class Iterate:
     local_displacement: Array
     local_incoming: Array
     bases: tuple[SharedBasis, ...] = ()
-    course: UpdateProgress | None = None
+    k_update: UpdateProgress | None = None
     residual: float | None = None
     force: Array | None = None
     is_answer: bool = False
@@ -133,15 +133,17 @@ class Iterate:
     @property
     def checkpoint(self) -> Checkpoint:
         """State from which the iteration goes on."""
-        course = self.course
-        if course is not None and course.k is not self.k:
-            displacement, force = course.fields
-            outgoing = read_only(displacement + force / course.k[:, None])
-            return Checkpoint(self.number, self.seconds, outgoing, course=course)
+        k_update = self.k_update
+        if k_update is not None and k_update.k is not self.k:
+            displacement, force = k_update.fields
+            outgoing = read_only(displacement + force / k_update.k[:, None])
+            return Checkpoint(self.number, self.seconds, outgoing, k_update=k_update)
         bases: tuple[SharedBasis, ...] = ()
         if self.residual is None:
             bases = self.bases
-        return Checkpoint(self.number, self.seconds, self.outgoing, bases, self.course)
+        return Checkpoint(
+            self.number, self.seconds, self.outgoing, bases, self.k_update
+        )
 
     @property
     def boundary_displacement(self) -> Array:
@@ -168,9 +170,9 @@ class Iterate:
         return latin_indicator(self)
 
     @cached_property
-    def behaviour(self) -> float:
+    def violation(self) -> float:
         """The k-free indicator (MATHEMATICS.md, 4)."""
-        return behaviour_of(
+        return violation_of(
             self.problem, self.boundary_displacement, self.boundary_force
         )
 

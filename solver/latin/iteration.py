@@ -89,11 +89,11 @@ class Iteration:
     ) -> None:
         self._problem = problem
         self._latin = latin
-        if start is not None and start.course is not None:
-            self._course = start.course
+        if start is not None and start.k_update is not None:
+            self._k_update = start.k_update
         else:
-            self._course = latin.direction.begin(problem, start)
-        self.k = self._course.k
+            self._k_update = latin.direction.begin(problem, start)
+        self.k = self._k_update.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         self.linear = _linear_stage(problem, self.k, latin, blocks)
         self.local = LocalStage(problem, self.k, blocks)
@@ -130,13 +130,15 @@ class Iteration:
 
     def choose_direction(self) -> None:
         """Choose the k of the next iteration."""
-        if self._course.phase != "returned":
-            self._course = self._latin.direction.follow(self.snapshot(), self._course)
+        if self._k_update.state != "returned":
+            self._k_update = self._latin.direction.follow(
+                self.snapshot(), self._k_update
+            )
 
     @property
     def has_new_k(self) -> bool:
         """Check whether the next iteration has another k, and so needs new stages."""
-        return self._course.k is not self.k
+        return self._k_update.k is not self.k
 
     def snapshot(self, number: int = 0, seconds: float = 0.0) -> Iterate:
         """Iterate with a number and a time in seconds."""
@@ -150,7 +152,7 @@ class Iteration:
             local_displacement=read_only(self.local.displacement),
             local_incoming=read_only(self.local.incoming),
             bases=self.linear.bases(),
-            course=self._course,
+            k_update=self._k_update,
         )
 
 

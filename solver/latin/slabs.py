@@ -151,7 +151,9 @@ def _during(
     interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
     if start is not None:
         for name, slider in start.items():
-            interfaces[name] = problem.rubbing.laws[name].during(some).begun(slider)
+            interfaces[name] = (
+                problem.rubbing.laws[name].during(some).with_start(slider)
+            )
     return replace(
         problem,
         substructures=tuple(parts),

@@ -92,9 +92,9 @@ def record(
     indicator = math.nan
     if watch or "indicator" in known:
         indicator = iterate.indicator
-    behaviour = math.nan
-    if watch or "behaviour" in known:
-        behaviour = iterate.behaviour
+    violation = math.nan
+    if watch or "violation" in known:
+        violation = iterate.violation
     error_displacement = math.nan
     error_force = math.nan
     if distance:
@@ -104,7 +104,7 @@ def record(
         iteration=iterate.number,
         seconds=verdict.seconds,
         indicator=indicator,
-        behaviour=behaviour,
+        behaviour=violation,
         estimated_error=estimated,
         error_displacement=error_displacement,
         error_force=error_force,

@@ -5,12 +5,12 @@ from solver.laws.friction import Friction, FrictionLaw
 from solver.laws.interface import Component, Interface
 from solver.laws.linear import Dirichlet, Neumann, Perfect
 from solver.laws.play import Strength
-from solver.laws.stiffness import Bodies, Rod
+from solver.laws.stiffness import BodyStiffness, RodStiffness
 from solver.laws.unilateral import Unilateral
 
 __all__ = [
     "OPEN",
-    "Bodies",
+    "BodyStiffness",
     "Component",
     "Contact",
     "Dirichlet",
@@ -19,7 +19,7 @@ __all__ = [
     "Interface",
     "Neumann",
     "Perfect",
-    "Rod",
+    "RodStiffness",
     "Strength",
     "Unilateral",
 ]

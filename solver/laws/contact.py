@@ -34,7 +34,7 @@ from solver.laws.interface import (
     squared,
 )
 from solver.laws.play import Strength
-from solver.laws.stiffness import Bodies, Rod
+from solver.laws.stiffness import BodyStiffness, RodStiffness
 from solver.laws.unilateral import ContactRule, Unilateral
 from solver.refusal import RefusedError, Words
 
@@ -43,7 +43,7 @@ OPEN = 2
 
 
 @dataclass(frozen=True, eq=False)
-class Behaviour:
+class Violation:
     """Fields of one interface from which the violation of its law follows.
 
     All have the shape (n_pairs, n_instants), scaled.
@@ -71,7 +71,7 @@ class Behaviour:
         """Dissipation of this slip under the largest friction force."""
         return self.bound * np.abs(self.slip)
 
-    def violation(self, mean_slip: float, mean_force: Array | float) -> Array:
+    def energy(self, mean_slip: float, mean_force: Array | float) -> Array:
         """Violation of every pair and instant, (n_pairs, n_instants), a scaled energy.
 
         The sum of q|v| + F v, where F is cut to |F| <= q, which is nowhere negative and
@@ -111,7 +111,7 @@ class Contact(Interface):
         Friction law along the interface.
     normal
         Normal law across the interface; None where the pressure is known.
-    around
+    stiffness_beside
         Stiffness of the bodies beside the interface, for the search direction.
     macro
         Macro basis of each component between two bodies, shape (n_pairs, n_macro), in
@@ -139,7 +139,7 @@ class Contact(Interface):
     weights: Array
     tangential: Friction
     normal: Unilateral | None = None
-    around: Rod | Bodies = field(default_factory=Rod)
+    stiffness_beside: RodStiffness | BodyStiffness = field(default_factory=RodStiffness)
     macro: sparse.csr_array | None = None
     slip_ratio: float = 1.0
     copies: float = 1.0
@@ -154,7 +154,7 @@ class Contact(Interface):
             self,
             tangential=Part(Friction),
             normal=Part(Unilateral),
-            around=Part(Rod, Bodies),
+            stiffness_beside=Part(RodStiffness, BodyStiffness),
             positions=Numbers(((None,),)),
         )
         size = len(self.tangential.component.above)
@@ -250,13 +250,17 @@ class Contact(Interface):
     @property
     def is_plain(self) -> bool:
         """Check whether a rod of known bound slips on a support, without springs."""
-        if not self.is_on_support or not isinstance(self.around, Rod) or self.opens:
+        if (
+            not self.is_on_support
+            or not isinstance(self.stiffness_beside, RodStiffness)
+            or self.opens
+        ):
             return False
-        return self.tangential.softness is None and self.tangential.cap is None
+        return self.tangential.compliance is None and self.tangential.cap is None
 
-    def begun(self, start: Array) -> Self:
-        """The law with initial positions of its sliders, as `Friction.begun`."""
-        return replace(self, tangential=self.tangential.begun(start))
+    def with_start(self, start: Array) -> Self:
+        """The law with initial positions of its sliders, as `Friction.with_start`."""
+        return replace(self, tangential=self.tangential.with_start(start))
 
     def during(self, instants: slice) -> Self:
         """The law restricted to a range of instants."""
@@ -272,9 +276,9 @@ class Contact(Interface):
             self.is_on_support,
             self.opens,
             friction.cap is not None,
-            friction.softness is not None,
+            friction.compliance is not None,
             friction.start is not None,
-            normal is not None and normal.softness is not None,
+            normal is not None and normal.compliance is not None,
         )
 
     @classmethod
@@ -328,7 +332,7 @@ class Contact(Interface):
             self,
             tangential=restricted(self.tangential, pairs),
             normal=restricted(self.normal, pairs),
-            around=restricted(self.around, pairs),
+            stiffness_beside=restricted(self.stiffness_beside, pairs),
             positions=self.positions[points],
             weights=self.weights[pairs],
             points=self.points[pairs] - points.start,
@@ -392,14 +396,14 @@ class Contact(Interface):
         trailing = [1] * (values.ndim - 1)
         return np.asarray(self.by_point(values) / counts.reshape(-1, *trailing))
 
-    def in_parallel(self, softness: Array | None) -> Array:
+    def in_parallel(self, compliance: Array | None) -> Array:
         """Compliance of every point from that of its pairs in parallel, (n_points,).
 
         Zero without compliances of the pairs, (n_pairs,).
         """
-        if softness is None:
+        if compliance is None:
             return np.zeros(len(self.positions))
-        return np.asarray(1.0 / self.by_point(1.0 / softness))
+        return np.asarray(1.0 / self.by_point(1.0 / compliance))
 
     @cached_property
     def shares(self) -> Array:
@@ -408,11 +412,11 @@ class Contact(Interface):
         By the pairs' stiffnesses or bounds, or else, on an interface with a point that
         has none, by their areas.
         """
-        softness = self.tangential.softness
-        if softness is None:
+        compliance = self.tangential.compliance
+        if compliance is None:
             along = self.tangential.highest.max(axis=1)
         else:
-            along = 1.0 / softness
+            along = 1.0 / compliance
         by_area = self.weights / self.by_point(self.weights)[self.points]
         whole = self.by_point(along)[self.points]
         numbers = self.interface_of_pairs
@@ -463,7 +467,7 @@ class Contact(Interface):
             unbalanced += squared(beyond(np.asarray(missing), noise))
         return Gaps(force=unbalanced)
 
-    def behaviour(self, displacement: Array, force: Array, noise: float) -> Behaviour:
+    def violation(self, displacement: Array, force: Array, noise: float) -> Violation:
         """Prepare the check of W and F against the law; parameters as of `gaps`."""
         opening = None
         pressing = None
@@ -476,7 +480,7 @@ class Contact(Interface):
             before = start[:, None]
         slider = self.tangential.slider(displacement, force)
         slip = beyond(np.diff(slider, axis=1, prepend=before), 2.0 * noise)
-        return Behaviour(
+        return Violation(
             slip=slip,
             friction=force[self.tangent.above],
             bound=self.tangential.allowed(pressing, slip, opening),

@@ -8,7 +8,7 @@ the interface a spring k_t is in series with a slider, whose friction force is a
 with the known part r, the pressing force N, and a factor g of the slip s that the
 slider has accumulated, g(0) = 1. The slider stands at p = w + f / k_t, where w is the
 tangential jump and f the friction force on the body above. Along the search direction
-it is the play operator (problem 2.1 of the paper), whose reach is longer by the bound
+it is the play operator (problem 2.1 of the paper), whose slack is longer by the bound
 over k_t. Coulomb's friction is mu alone, Jenkins' element has k_t, friction that
 hardens or softens has g; a bond has cohesion in r.
 
@@ -113,7 +113,7 @@ class FrictionLaw:
             bound=bound,
             friction=np.zeros(len(weights)) if friction is None else friction,
             cap=None if friction is None else cap,
-            softness=softness_of(self.stiffness, weights, scales),
+            compliance=compliance_of(self.stiffness, weights, scales),
             strength=strength,
         )
 
@@ -144,7 +144,7 @@ class FrictionLaw:
         return max(self.strength.factors)
 
 
-def softness_of(
+def compliance_of(
     stiffness: float, weights: Array, scales: tuple[float, float]
 ) -> Array | None:
     """Compliance of pairs, (n_pairs,), scaled; None for an infinite stiffness.
@@ -174,7 +174,7 @@ class Friction:
         pressure is known.
     cap
         Largest friction force before slip, (n_pairs,), scaled; None if there is none.
-    softness
+    compliance
         1 / k_t of each pair, (n_pairs,), scaled; None if there is none.
     strength
         Factor over accumulated slip, scaled; None where slip does not change the bound.
@@ -187,7 +187,7 @@ class Friction:
     bound: Array
     friction: Array
     cap: Array | None = None
-    softness: Array | None = None
+    compliance: Array | None = None
     strength: Strength | None = None
     start: Array | None = None
 
@@ -199,10 +199,15 @@ class Friction:
             bound=Numbers(((size, None),), low=0.0),
             friction=Numbers(((size,),), low=0.0),
             cap=Numbers(((size,),), low=0.0),
-            softness=positive,
+            compliance=positive,
             strength=Part(Strength),
             start=Numbers(((size,),)),
         )
+
+    @property
+    def rubs(self) -> bool:
+        """Check whether there is any friction."""
+        return bool(self.bound.any() or self.friction.any())
 
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Position of the slider of every pair, shape (n_pairs, n_instants), scaled.
@@ -211,11 +216,11 @@ class Friction:
         out.
         """
         jump = self.component.jump(displacement)
-        if self.softness is None or force is None:
+        if self.compliance is None or force is None:
             return jump
-        return np.asarray(jump + self.softness[:, None] * force[self.component.above])
+        return np.asarray(jump + self.compliance[:, None] * force[self.component.above])
 
-    def begun(self, start: Array) -> Friction:
+    def with_start(self, start: Array) -> Friction:
         """The law with initial positions of its sliders, (n_pairs,), scaled.
 
         Raises

@@ -113,7 +113,7 @@ class Gaps(NamedTuple):
     force: float = 0.0
 
 
-class Given(NamedTuple):
+class PrescribedRows(NamedTuple):
     """Values prescribed at rows, (n_rows,): shape (n_rows, n_instants), scaled."""
 
     rows: Indices
@@ -143,8 +143,8 @@ class IncrementalForm:
         The law itself, where it is one of contact.
     """
 
-    force: Given | None = None
-    displacement: Given | None = None
+    force: PrescribedRows | None = None
+    displacement: PrescribedRows | None = None
     glued: Glued | None = None
     contact: Contact | None = None
 

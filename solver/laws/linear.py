@@ -12,11 +12,11 @@ from solver.arrays import Array, Indices, as_slice
 from solver.checks import ROWS, Numbers, check
 from solver.laws.interface import (
     Gaps,
-    Given,
     Glued,
     IncrementalForm,
     Interface,
     MacroPart,
+    PrescribedRows,
     Rule,
     beyond,
     joined,
@@ -51,7 +51,7 @@ class Dirichlet(_Given):
 
     def incremental_form(self) -> IncrementalForm:
         """Prescribed displacements."""
-        return IncrementalForm(displacement=Given(self.rows, self.values))
+        return IncrementalForm(displacement=PrescribedRows(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Local stage in which W^ is the prescribed displacement."""
@@ -81,7 +81,7 @@ class Neumann(_Given):
 
     def incremental_form(self) -> IncrementalForm:
         """Prescribed forces."""
-        return IncrementalForm(force=Given(self.rows, self.values))
+        return IncrementalForm(force=PrescribedRows(self.rows, self.values))
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Local stage in which W^ is z plus F_d / k."""

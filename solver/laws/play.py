@@ -1,7 +1,7 @@
 """The play operator: Coulomb friction pointwise, in closed form (MATHEMATICS.md, 2).
 
 A clip of a clip is a clip, so the recursion in time is an associative scan: blocks of
-instants are composed side by side. Where the reach changes with the slip that has gone
+instants are composed side by side. Where the slack changes with the slip that has gone
 by, time is walked.
 """
 
@@ -16,7 +16,7 @@ from solver.arrays import Array, Indices
 from solver.refusal import RefusedError
 
 
-def play(target: Array, reach: Array) -> Array:
+def play(target: Array, slack: Array) -> Array:
     """Follow a target with Coulomb play.
 
     Parameters
@@ -24,16 +24,16 @@ def play(target: Array, reach: Array) -> Array:
     target
         Position that the point would take without friction, shape (n_points, n_times),
         m.
-    reach
+    slack
         Distance at which it starts to slip, same shape or (n_points,), m; non-negative.
 
     Returns
     -------
     Position with friction, shape (n_points, n_times), m (MATHEMATICS.md, 2).
     """
-    if reach.ndim < target.ndim:
-        reach = reach[:, None]
-    result: Array = Play(*target.shape)(target, reach).copy()
+    if slack.ndim < target.ndim:
+        slack = slack[:, None]
+    result: Array = Play(*target.shape)(target, slack).copy()
     return result
 
 
@@ -69,13 +69,13 @@ class Play:
         self._position = np.zeros((blocks, size, n_points))
         self._result = self._position.reshape(-1, n_points)[:n_times]
 
-    def __call__(self, target: Array, reach: Array) -> Array:
+    def __call__(self, target: Array, slack: Array) -> Array:
         """Follow a target, (n_points, n_times); the next call overwrites the positions.
 
-        `reach` has the shape of the target, or (n_points, 1).
+        `slack` has the shape of the target, or (n_points, 1).
         """
-        np.subtract(target, reach, out=self._low.T)
-        np.add(target, reach, out=self._high.T)
+        np.subtract(target, slack, out=self._low.T)
+        np.add(target, slack, out=self._high.T)
         self._composed[0] = self._limits[:, :, 0]
         for before, low, high, after in self._steps:
             np.maximum(before, low, out=after)
@@ -170,19 +170,19 @@ PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
 """Factor of friction that slip does not change."""
 
 
-def follow(target: Array, reach: Array, strength: Strength) -> Array:
-    """Positions of sliders whose reach changes with the slip that they accumulate.
+def follow(target: Array, slack: Array, strength: Strength) -> Array:
+    """Positions of sliders whose slack changes with the slip that they accumulate.
 
     `target` are the positions without friction, (n_points, n_instants), m or scaled;
-    `reach` is the distance at which each starts to slip before it has slipped, of the
-    same shape or (n_points, 1); `strength` is a factor on the reach. Positions have the
+    `slack` is the distance at which each starts to slip before it has slipped, of the
+    same shape or (n_points, 1); `strength` is a factor on the slack. Positions have the
     shape and unit of the target.
     """
     positions = np.empty_like(target)
     position = np.zeros(len(target))
     slipped = np.zeros(len(target))
-    reaches = np.broadcast_to(reach, target.shape).T
-    for after, wanted, limit in zip(positions.T, target.T, reaches, strict=True):
+    slacks = np.broadcast_to(slack, target.shape).T
+    for after, wanted, limit in zip(positions.T, target.T, slacks, strict=True):
         distance = wanted - position
         slip = _slip(np.abs(distance), limit, slipped, strength)
         position = position + np.sign(distance) * slip
@@ -191,20 +191,20 @@ def follow(target: Array, reach: Array, strength: Strength) -> Array:
     return positions
 
 
-def _slip(distance: Array, reach: Array, slipped: Array, strength: Strength) -> Array:
-    """Smallest slip a >= 0 with a + reach g(slipped + a) = distance, shape (n,) all.
+def _slip(distance: Array, slack: Array, slipped: Array, strength: Strength) -> Array:
+    """Smallest slip a >= 0 with a + slack g(slipped + a) = distance, shape (n,) all.
 
     The left side is linear in a between the points of g. Where it falls with a, as
     friction softens faster than the search direction unloads, and the distance is
-    within reach, the point sticks.
+    within its slack, the point sticks.
     """
     slip = np.zeros_like(distance)
-    missing = distance - reach * strength(slipped)
+    missing = distance - slack * strength(slipped)
     # Points whose slip is not found yet, segment after segment of g.
     left = missing > 0.0
     for end in strength.slips[1:]:
         ahead = np.maximum(end - slipped, slip)
-        after = distance - ahead - reach * strength(slipped + ahead)
+        after = distance - ahead - slack * strength(slipped + ahead)
         ends = left & (after <= 0.0)
         zeros = np.zeros_like(after)
         share = np.divide(missing, missing - after, out=zeros, where=ends)
@@ -212,4 +212,4 @@ def _slip(distance: Array, reach: Array, slipped: Array, strength: Strength) -> 
         slip = np.where(ends, within, np.where(left, ahead, slip))
         left &= ~ends
         missing = after
-    return np.where(left, distance - reach * strength.factors[-1], slip)
+    return np.where(left, distance - slack * strength.factors[-1], slip)

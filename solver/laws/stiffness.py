@@ -43,8 +43,8 @@ most 45 iterations, more than 150 without (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Rod:
-    """A rod along the interface.
+class RodStiffness:
+    """Stiffness of a rod along the interface.
 
     The global length of the problem is the length s that is expected to slide, the
     local one the distance h of its points. So k of a point is `FRICTION_FACTOR` times
@@ -89,10 +89,10 @@ class Rod:
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
-    """Bodies in the plane, above and below an interface.
+class BodyStiffness:
+    """Stiffness of bodies in the plane, above and below an interface.
 
-    The stiffness beside it is that of a body as a whole, or of a point of the body. A
+    That is the stiffness of a body as a whole, or of a point of the body. A
     smaller k on cuts along slender substructures is no better, where the macro basis
     grows with their length (measured).
 
@@ -114,7 +114,7 @@ class Bodies:
     on_cuts: ClassVar[float] = 1.0
 
     def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of interfaces into that of all rows, as `Rod.choose`.
+        """Write the k of interfaces into that of all rows, as `RodStiffness.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its
         depth d.

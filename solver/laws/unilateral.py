@@ -29,21 +29,21 @@ class Unilateral:
     gap
         Opening between the undeformed bodies, shape (n_pairs,), scaled; negative where
         they overlap.
-    softness
+    compliance
         Compression per pressing force of each pair, shape (n_pairs,), scaled; None if
         there is none.
     """
 
     component: Component
     gap: Array
-    softness: Array | None = None
+    compliance: Array | None = None
 
     def __post_init__(self) -> None:
         size = len(self.component.above)
         check(
             self,
             gap=Numbers(((size,),)),
-            softness=Numbers(((size,),), low=0.0, above=True),
+            compliance=Numbers(((size,),), low=0.0, above=True),
         )
 
     def opening(self, displacement: Array, force: Array) -> Array:
@@ -52,8 +52,8 @@ class Unilateral:
         From W and F of all rows, (n_rows, n_instants), scaled.
         """
         opening = self.component.jump(displacement) + self.gap[:, None]
-        if self.softness is not None:
-            opening = opening + self.softness[:, None] * force[self.component.above]
+        if self.compliance is not None:
+            opening = opening + self.compliance[:, None] * force[self.component.above]
         return np.asarray(opening)
 
 
@@ -69,16 +69,16 @@ class ContactRule:
         if normal is not None:
             self._across = Springs(normal.component, k)
             self._closed = -normal.gap[:, None]
-            self._pressed = _share(self._across.soft, normal.softness)
+            self._pressed = _share(self._across.soft, normal.compliance)
             self._bonds = bool(along.bound.any())
         soft = self._springs.soft
         # The slider stays behind z by the friction force over both springs in series;
         # the jump by the share of the search direction's spring in that.
-        if along.softness is None:
+        if along.compliance is None:
             self._lag = soft
         else:
-            self._lag = soft + along.softness[:, None]
-        self._share = _share(soft, along.softness)
+            self._lag = soft + along.compliance[:, None]
+        self._share = _share(soft, along.compliance)
         if along.cap is not None:
             self._known_slack = None
         else:
@@ -135,12 +135,12 @@ class ContactRule:
         return np.asarray(self._along.without_slip(pressing, opening) * self._lag)
 
 
-def _share(soft: Array, softness: Array | None) -> Array | None:
+def _share(soft: Array, compliance: Array | None) -> Array | None:
     """Share of the search direction's compliance in that of both springs, (n_pairs, 1).
 
-    `soft` is its 1 / k, (n_pairs, 1), `softness` the law's compliance, (n_pairs,), or
+    `soft` is its 1 / k, (n_pairs, 1), `compliance` the law's compliance, (n_pairs,), or
     None, as is the share then.
     """
-    if softness is None:
+    if compliance is None:
         return None
-    return np.asarray(soft / (soft + softness[:, None]))
+    return np.asarray(soft / (soft + compliance[:, None]))

@@ -99,7 +99,11 @@ def decompose(
 
 
 def decompositions(
-    problem: Problem, field: Array, places: Indices | None = None, *, is_force: bool
+    problem: Problem,
+    field: Array,
+    substructures: Indices | None = None,
+    *,
+    is_force: bool,
 ) -> list[Decomposition]:
     """Decompositions of F or W on the rows that rub, of some substructures or all.
 
@@ -118,10 +122,10 @@ def decompositions(
     positions = problem.positions[problem.row_dofs]
     times = problem.time_weights * scales.time
     rubbing = [part.rows[slides[part.rows]] for part in problem.substructures]
-    if places is None:
+    if substructures is None:
         chosen = rubbing
     else:
-        chosen = [rubbing[place] for place in places]
+        chosen = [rubbing[number] for number in substructures]
     return [
         decompose(whole[rows], lengths[rows], times, positions[rows]) for rows in chosen
     ]

@@ -69,7 +69,7 @@ class IncrementalContact:
     def march(
         self,
         guess: States | None = None,
-        most: int | None = None,
+        max_systems: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
         """Solve instant by instant.
@@ -80,7 +80,7 @@ class IncrementalContact:
             States from which an instant starts, stacked as `Problem.sum_of_contact`
             says, shape (n_forces, n_instants), unless those of the instant before turn
             out to be better.
-        most
+        max_systems
             Largest number of linear systems to solve; the instants that are not reached
             then do not move, and are not `converged`.
         stop
@@ -112,7 +112,7 @@ class IncrementalContact:
         for instant in range(n_instants):
             if stop is not None and stop():
                 raise Interrupted
-            if most is not None and instants.system.solutions >= most:
+            if max_systems is not None and instants.system.solutions >= max_systems:
                 break
             for field, values in zip(done, instants(instant), strict=True):
                 field[:, instant] = values

@@ -187,7 +187,7 @@ def determinate_forces(problem: Problem) -> Flags:
     return np.asarray(moves[:, None] | slips)
 
 
-def kkt_residual(fields: Fields, problem: Problem, most: float = np.inf) -> float:
+def kkt_residual(fields: Fields, problem: Problem, max_ratio: float = np.inf) -> float:
     """Largest violation of equilibrium, laws and what is prescribed, as a share of the forces.
 
     By the equations alone, at every instant, however the fields were found: relative to
@@ -209,7 +209,7 @@ def kkt_residual(fields: Fields, problem: Problem, most: float = np.inf) -> floa
     missing = inner - outer - all_jumps.T @ force
     unbalanced = missing[free]
     elastic = abs(stiffness) @ np.abs(displacement)
-    size = force_size(force, outer, elastic, missing[fixed], most)
+    size = force_size(force, outer, elastic, missing[fixed], max_ratio)
     rules = rules_of(problem)
     # Lengths become forces by the stiffness of the jump's own degrees of freedom.
     unit = abs(all_jumps) @ stiffness.diagonal()
@@ -232,7 +232,7 @@ def force_size(
     outer: Array,
     elastic: Array,
     reaction: Array,
-    most: float,
+    max_ratio: float,
 ) -> float:
     """Size that violations of forces are a share of, scaled.
 
@@ -248,7 +248,7 @@ def force_size(
     if carried > NOTHING * float(elastic.max(initial=0.0)):
         acting = max(acting, carried)
     if acting > 0.0:
-        return min(size, most * acting)
+        return min(size, max_ratio * acting)
     return size
 
 

@@ -80,21 +80,24 @@ class IncrementalRod:
         self._general: IncrementalContact | None = None
 
     def _marched_in_general(
-        self, guess: States | None, most: int | None, stop: Callable[[], bool] | None
+        self,
+        guess: States | None,
+        max_systems: int | None,
+        stop: Callable[[], bool] | None,
     ) -> Reference:
         """Solve by the general solver, which follows friction that softens fast, too."""
         if self._general is None:
             self._general = IncrementalContact(self._problem, stop)
         dearer = 1 + len(self._dofs) // DEARER
         limit = None
-        if most is not None:
-            limit = most // dearer
+        if max_systems is not None:
+            limit = max_systems // dearer
         return self._general.march(guess, limit, stop)
 
     def march(
         self,
         guess: States | None = None,
-        most: int | None = None,
+        max_systems: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
         """Solve instant by instant, as `IncrementalContact.march`; a guess is one of statuses.
@@ -110,26 +113,26 @@ class IncrementalRod:
         starts = Starts()
         self._systems = 0
         minima: list[Minimum] = []
-        balance, status, gone = np.zeros((3, self._problem.n_dofs))
+        balance, status, accumulated_slip = np.zeros((3, self._problem.n_dofs))
         for instant in range(self._problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
-            if most is not None and self._systems >= most:
+            if max_systems is not None and self._systems >= max_systems:
                 break
             done = self._systems
             from_guess = starts.from_guess
             if guess is not None and from_guess:
                 status = self._on_dofs(guess[:, instant])
-            least = self._minimise(
-                instant, self._load_steps[instant] + balance, status, gone
+            minimum = self._minimise(
+                instant, self._load_steps[instant] + balance, status, accumulated_slip
             )
-            if least is None:
-                return self._marched_in_general(guess, most, stop)
-            minima.append(least)
+            if minimum is None:
+                return self._marched_in_general(guess, max_systems, stop)
+            minima.append(minimum)
             starts.took(self._systems - done, from_guess=from_guess)
-            balance = least.pull
-            status = least.status
-            gone = gone + np.abs(least.increment)
+            balance = minimum.pull
+            status = minimum.status
+            accumulated_slip = accumulated_slip + np.abs(minimum.increment)
         return self._gathered(minima)
 
     def _on_dofs(self, values: Array | States) -> Array:
@@ -139,7 +142,7 @@ class IncrementalRod:
         return spread
 
     def _minimise(
-        self, instant: int, force: Array, status: Array, gone: Array
+        self, instant: int, force: Array, status: Array, accumulated_slip: Array
     ) -> Minimum | None:
         """Minimise phi over one instant; None where there is no certain minimum.
 
@@ -152,22 +155,22 @@ class IncrementalRod:
         given[self._fixed] = move
         load = self._movable * (force - self._stiffness.product(given))
         bound = self._on_dofs(rules.bound_at(instant))
-        least: Minimum | None
+        minimum: Minimum | None
         if rules.changes_with_slip:
-            least = self._with_changing_bound(bound, load, status, gone)
+            minimum = self._with_changing_bound(bound, load, status, accumulated_slip)
         else:
             search = self._search
             if rules.bound.shape[1] > 1:
                 search = Search(self._stiffness, bound * self._movable, self._movable)
             done = search.solutions
-            least = search(load, status * search.rubs)
+            minimum = search(load, status * search.rubs)
             self._systems += search.solutions - done
-        if least is not None:
-            least.increment[self._fixed] = move
-        return least
+        if minimum is not None:
+            minimum.increment[self._fixed] = move
+        return minimum
 
     def _with_changing_bound(
-        self, first: Array, force: Array, status: Array, gone: Array
+        self, first: Array, force: Array, status: Array, accumulated_slip: Array
     ) -> Minimum | None:
         """Minimum that certainly continues the instant before; None without certainty.
 
@@ -179,35 +182,41 @@ class IncrementalRod:
         rules = self._rules
         movable = self._movable
         dofs = self._dofs
-        end = gone
+        end = accumulated_slip
         for _ in range(TRIALS):
             factor = rules.strength(end[dofs])
             slope = rules.strength.slope(end[dofs])
             slope = first * self._on_dofs(slope) * movable
-            bound = (first * self._on_dofs(factor) - slope * (end - gone)) * movable
+            bound = (
+                first * self._on_dofs(factor) - slope * (end - accumulated_slip)
+            ) * movable
             search = Search(self._stiffness.stiffened(slope), bound, movable)
             try:
-                least = search(force, status * search.rubs)
-                reached = gone + np.abs(least.increment)
+                minimum = search(force, status * search.rubs)
+                reached = accumulated_slip + np.abs(minimum.increment)
                 if np.array_equal(
                     rules.strength.segment(end[dofs]),
                     rules.strength.segment(reached[dofs]),
                 ):
                     growth = self._on_dofs(
-                        rules.strength.lowest_slope(gone[dofs], reached[dofs])
+                        rules.strength.lowest_slope(
+                            accumulated_slip[dofs], reached[dofs]
+                        )
                     )
                     softest = self._stiffness.stiffened(first * growth * movable)
-                    slips = movable * (least.increment != 0.0)
+                    slips = movable * (minimum.increment != 0.0)
                     softest.solve_kept(slips, np.zeros_like(force))
                     if np.any(bound[slips > 0.0] < 0.0):
                         return None
-                    return replace(least, pull=least.pull + slope * least.increment)
+                    return replace(
+                        minimum, pull=minimum.pull + slope * minimum.increment
+                    )
             except LinAlgError:
                 return None
             finally:
                 self._systems += search.solutions
             end = reached
-            status = least.status
+            status = minimum.status
         return None
 
     def _gathered(self, minima: list[Minimum]) -> Reference:
@@ -215,11 +224,11 @@ class IncrementalRod:
         problem = self._problem
         dofs = self._dofs
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
-        for instant, least in enumerate(minima):
-            increments[instant] = least.increment
-            pulls[instant] = least.pull
+        for instant, minimum in enumerate(minima):
+            increments[instant] = minimum.increment
+            pulls[instant] = minimum.pull
         solved = np.zeros(problem.n_instants, dtype=bool)
-        solved[: len(minima)] = [least.residual <= BALANCED for least in minima]
+        solved[: len(minima)] = [minimum.residual <= BALANCED for minimum in minima]
         moved = np.cumsum(increments, axis=0).T
         inside = self._stiffness.largest_row * float(np.abs(moved).max(initial=0.0))
         displacement = moved * problem.scales.displacement
@@ -232,8 +241,8 @@ class IncrementalRod:
             deformation=displacement,
             contact_force=friction * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
-            residual=max([0.0, *(least.residual for least in minima)]),
-            unbalanced=max([0.0, *(least.violation for least in minima)])
+            residual=max([0.0, *(minimum.residual for minimum in minima)]),
+            unbalanced=max([0.0, *(minimum.violation for minimum in minima)])
             * problem.scales.force,
             rounding=LEFT_INSIDE * inside * problem.scales.force,
             converged=solved,

@@ -206,8 +206,10 @@ class _Points:
             if along.cap is not None:
                 bound = np.minimum(bound, law.by_point(along.cap)[:, None])
         if along.strength is not None:
-            gone = np.cumsum(np.abs(slip), axis=1)
-            bound *= np.interp(gone, along.strength.slips, along.strength.factors)
+            accumulated_slip = np.cumsum(np.abs(slip), axis=1)
+            bound *= np.interp(
+                accumulated_slip, along.strength.slips, along.strength.factors
+            )
         return np.asarray(bound)
 
 
@@ -218,8 +220,10 @@ def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Po
         places = problem.rubbing.forces[name]
         friction = force[places[-1]]
         slider = jump = _jump(problem, law, law.tangent, displacement)
-        if law.tangential.softness is not None:
-            slider = jump + law.in_parallel(law.tangential.softness)[:, None] * friction
+        if law.tangential.compliance is not None:
+            slider = (
+                jump + law.in_parallel(law.tangential.compliance)[:, None] * friction
+            )
         opening = pressing = None
         is_given = np.zeros(len(law.positions), dtype=bool)
         jumps = [jump]
@@ -228,8 +232,8 @@ def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Po
             across = _jump(problem, law, law.normal.component, displacement)
             jumps.append(across)
             opening = across + law.mean_by_point(law.normal.gap)[:, None]
-            if law.normal.softness is not None:
-                opening += law.in_parallel(law.normal.softness)[:, None] * pressing
+            if law.normal.compliance is not None:
+                opening += law.in_parallel(law.normal.compliance)[:, None] * pressing
             is_given[law.points] = _is_held(problem, law.normal.component, held)
         yield _Points(law, slider, friction, opening, pressing, tuple(jumps), is_given)
 

@@ -208,7 +208,7 @@ def _components(law: Contact, places: Indices) -> list[Rules]:
     is_normal = np.ones(size, dtype=bool)
     bound = law.by_point(along.bound)
     friction = law.mean_by_point(along.friction)
-    compliance = law.in_parallel(along.softness)
+    compliance = law.in_parallel(along.compliance)
     cap = endless
     if along.cap is not None:
         cap = law.by_point(along.cap)
@@ -221,7 +221,7 @@ def _components(law: Contact, places: Indices) -> list[Rules]:
             friction=zeros,
             bound=zeros[:, None],
             cap=endless,
-            compliance=law.in_parallel(law.normal.softness),
+            compliance=law.in_parallel(law.normal.compliance),
         )
         rules.append(normal)
         # Without friction what is in series along changes nothing, and tells the jump

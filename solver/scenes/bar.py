@@ -134,16 +134,23 @@ def _ends_in_words(rods: Rods) -> tuple[str, str]:
             outward = end.force if side == "right" else -end.force
             moved.append(f"{name} is {shared.acting(outward, 'pulled', 'pushed')}")
         elif end.displacement is not None and end.displacement.any():
-            subject = f"the spring at {name}" if end.is_on_spring else name
+            subject = name
+            if end.is_on_spring:
+                subject = f"the spring at {name}"
             action = shared.acting(end.displacement, "moved", "moved back")
             moved.append(f"{subject} is {action}")
         else:
             at_rest.setdefault(_rest_of(end), []).append(name)
     clauses = []
     for word, names in at_rest.items():
-        where = "both ends" if len(names) == 2 else names[0]
+        if len(names) == 2:
+            where = "both ends"
+        else:
+            where = names[0]
         clauses.append(f"{word} at {where}")
-    rest = shared.listed(clauses) if clauses else ""
+    rest = ""
+    if clauses:
+        rest = shared.listed(clauses)
     return rest, ", and ".join(moved)
 
 
@@ -366,7 +373,9 @@ class BarSettings(Settings):
             table = "rough"
         elif bound.any():
             table = "partly rough"
-        body = "A steel bar" if shared.is_steel(self.young) else "An elastic bar"
+        body = "An elastic bar"
+        if shared.is_steel(self.young):
+            body = "A steel bar"
         head = f"{body} lies on a {table} table"
         rest, moved = _ends_in_words(rods)
         if rest:

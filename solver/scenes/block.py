@@ -427,11 +427,15 @@ class BlockSettings(SideSettings):
 
     def sentence(self) -> str:
         """Describe the block in a sentence."""
-        block = "A steel block" if shared.is_steel(self.young) else "An elastic block"
+        block = "An elastic block"
+        if shared.is_steel(self.young):
+            block = "A steel block"
         support = {"flat": "flat", "parabola": "round"}.get(str(self.gap), "uneven")
         rough = "rough" if self.is_rough else "smooth"
         clauses = [*self._side_clauses(), *self._other_clauses()]
-        done = shared.listed(clauses) if clauses else "left alone"
+        done = "left alone"
+        if clauses:
+            done = shared.listed(clauses)
         return f"{block} lies on a {support} {rough} support; it is {done}."
 
     def _side_clauses(self) -> Iterator[str]:

@@ -224,9 +224,9 @@ def _elastic_stiffness(
     """Bending stiffness of layers apart or of one beam, N/m; None of others."""
     law = body.friction_law
     is_plain = law == replace(FrictionLaw(), strength=law.strength)
-    is_graduated = bool(np.any(body.reach < 1.0))
+    is_graduated = bool(np.any(body.relative_lengths < 1.0))
     if is_plain and not np.any(body.friction):
-        beams: float | None = 1.0 * len(body.reach)
+        beams: float | None = 1.0 * len(body.relative_lengths)
         if is_graduated:
             beams = _leaves(body)
         if beams is None:
@@ -251,7 +251,11 @@ def _two_leaves(body: Stack) -> TwoLeaves | None:
         and np.any(body.friction)
         and not given.prescribed
     )
-    if not np.array_equal(body.reach, [1.0, 1.0]) or not is_plain or not len(acts):
+    if (
+        not np.array_equal(body.relative_lengths, [1.0, 1.0])
+        or not is_plain
+        or not len(acts)
+    ):
         return None
     pressure = -given.mean[max(acts[0] - 1, 0) :]
     mu = np.asarray(body.friction)
@@ -268,10 +272,10 @@ def _leaves(body: Stack) -> float | None:
     that no pressure holds together.
     """
     bent = body.sides["right"].y.mean
-    steps = np.diff(body.reach)
+    steps = np.diff(body.relative_lengths)
     grows = np.all(steps < 0.0) and np.all(bent >= 0.0)
     falls = np.all(steps > 0.0) and np.all(bent <= 0.0)
     pressed = any(not body.sides[side].y.is_zero for side in ("top", "bottom"))
     if pressed or not (grows or falls):
         return None
-    return leaf_spring(np.sort(body.length * body.reach)[::-1])
+    return leaf_spring(np.sort(body.length * body.relative_lengths)[::-1])

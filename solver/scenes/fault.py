@@ -110,7 +110,7 @@ class Fault:
             lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
         )
 
-    def described(self) -> Description:
+    def description(self) -> Description:
         """Description for drawing."""
         body = self.body
         return Description(

@@ -181,8 +181,8 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
     forces = wire_forces(rope, displacement, slice(None))
     largest = 0.0
     for wire, force in zip(rope.wires, forces, strict=True):
-        axial = np.abs(force).max(initial=0.0) / wire.made.stiffness
-        bent = 0.5 * wire.made.diameter * np.abs(wire.curvature).max(initial=0.0)
+        axial = np.abs(force).max(initial=0.0) / wire.layer_data.stiffness
+        bent = 0.5 * wire.layer_data.diameter * np.abs(wire.curvature).max(initial=0.0)
         largest = max(largest, float(axial + bent))
     return largest
 

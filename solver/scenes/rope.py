@@ -261,20 +261,22 @@ class RopeSettings(Settings):
         if self.tension_load == "steady":
             bounds = bounds[:, 0]
         curvature = self._curvature_at_nodes()
-        for layer, made in enumerate(section.layers):
-            count = made.wires if self.is_clamped else 1
+        for layer, layer_data in enumerate(section.layers):
+            count = 1
+            if self.is_clamped:
+                count = layer_data.wires
             for number in range(count):
                 yield RopeWire(
                     layer=layer,
                     number=number,
-                    made=made,
+                    layer_data=layer_data,
                     radius=section.radii[layer],
-                    start=2.0 * np.pi * number / made.wires,
+                    start=2.0 * np.pi * number / layer_data.wires,
                     length=self._length_of(layer),
                     bound=bounds[layer],
                     curvature=curvature,
                     tension=section.wire_tension(layer, tension),
-                    stands_for=made.wires // count,
+                    stands_for=layer_data.wires // count,
                 )
 
     def _curvature_at_nodes(self) -> Array:
@@ -297,7 +299,9 @@ class RopeSettings(Settings):
         bent = shared.acting(
             self.path("load"), "bent up", "bent down", "bent up and down"
         )
-        where = "near a clamp" if self.is_clamped else "alike all along"
+        where = "alike all along"
+        if self.is_clamped:
+            where = "near a clamp"
         tension = ""
         if self.tension_load != "steady":
             tension = "; its tension changes"

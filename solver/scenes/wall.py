@@ -283,17 +283,23 @@ class WallSettings(PlaneSettings):
             f"{verb} to and fro",
         )
         is_tilted = np.any(self.path("slope_load"))
-        ground = "a tilted ground" if is_tilted else "the ground"
+        ground = "the ground"
+        if is_tilted:
+            ground = "a tilted ground"
         pressed = ""
         if np.any(self.path("pressure_load")):
             pressed = ", pressed from above,"
         if self.n_substructures == 1:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
-        bond = "in running bond" if self.bond == "running" else "one above the other"
+        bond = "one above the other"
+        if self.bond == "running":
+            bond = "in running bond"
         bricks = f"{self.n_substructures} bricks {bond}"
         if self.opening:
             bricks = f"{bricks} round an opening"
-        touch = "rub on" if self.is_rough else "slide freely on"
+        touch = "slide freely on"
+        if self.is_rough:
+            touch = "rub on"
         return (
             f"{bricks}{pressed} only touch, and {touch} each other and {ground}; the "
             f"top is {driven}."

@@ -421,7 +421,9 @@ def _checked_row(
             raise SettingError(name, value, can, f"raise the negative {column}")
         is_counted = isinstance(low, int)
         if not low <= entry <= high or (is_counted and entry != int(entry)):
-            kind = "a whole number" if is_counted else "a number"
+            kind = "a number"
+            if is_counted:
+                kind = "a whole number"
             minimum = f"{plain(low)} {unit}".strip()
             maximum = f"{plain(high)} {unit}".strip()
             raise refuse(

@@ -82,13 +82,12 @@ class LoadSettings(FrictionSettings):
     @property
     def paths(self) -> tuple[str, ...]:
         """Names of the curves over time that do something."""
-        return tuple(
-            name
-            for name, definition in self.definitions().items()
-            if isinstance(definition, CurveParameter)
-            and definition.abscissa == "time"
-            and self.applies(name)
-        )
+        names = []
+        for name, definition in self.definitions().items():
+            is_curve = isinstance(definition, CurveParameter)
+            if is_curve and definition.abscissa == "time" and self.applies(name):
+                names.append(name)
+        return tuple(names)
 
     @classmethod
     @cache
@@ -108,7 +107,9 @@ class LoadSettings(FrictionSettings):
         for name in sizes:
             if about(definitions[name]).applies(self):
                 return name
-        return sizes[0] if sizes else None
+        if sizes:
+            return sizes[0]
+        return None
 
     def size_of(self, path: str) -> float:
         """Largest value that a preset of a path over time reaches."""

@@ -247,7 +247,7 @@ class Comparison:
         if self.counted < FEWEST:
             return float("nan")
         if self._places is None:
-            field = self._problem.at_rest(fields.displacement)
+            field = self._problem.absolute(fields.displacement)
         else:
             field = fields.contact_force[self._places] / self._sizes
         ours = _interpolated(field[self._order], self._at)

@@ -32,7 +32,15 @@ from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
 from solver.study.compared_runs import ComparedRun, ComparedRuns, fittable
 from solver.study.measured_loop import MeasuredLoop
-from solver.study.valley import BROAD, LIMIT, SILENT, WALK, LowerPlace, Profile, Valley
+from solver.study.valley import (
+    BROAD,
+    LIMIT,
+    SILENT,
+    WALK,
+    LikelihoodProfile,
+    LowerPlace,
+    Valley,
+)
 
 MOST = 4
 """Largest number of settings that are fitted at once."""
@@ -190,7 +198,7 @@ def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
         raise SettingError("the measured loop", measured.source, can, remedy)
 
 
-def _explored(runs: ComparedRuns) -> tuple[Valley, list[Profile]]:
+def _explored(runs: ComparedRuns) -> tuple[Valley, list[LikelihoodProfile]]:
     """Valley of the nearest run that is found, and the profiles of all settings."""
     settings = np.eye(len(runs.names))
     z = runs.solve(runs.coarse(), LOOSE * settings)
@@ -238,7 +246,7 @@ def _near_start(valley: Valley, blind: Array) -> Array:
     return valley.z
 
 
-def _margins(valley: Valley, profiles: list[Profile]) -> tuple[Array, Array]:
+def _margins(valley: Valley, profiles: list[LikelihoodProfile]) -> tuple[Array, Array]:
     """Lower and upper ends of settings by their profiles, (p,) each, in SI."""
     below, above = np.array([profile.ends() for profile in profiles]).T
     with np.errstate(invalid="ignore"):

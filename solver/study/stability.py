@@ -283,7 +283,7 @@ def _measured(solution: Solution) -> Outcome:
         seconds=last.seconds if last else iterate.seconds,
         estimated_error=last.estimated_error if last else math.nan,
         indicator=iterate.indicator,
-        behaviour=iterate.behaviour,
+        behaviour=iterate.violation,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=error,
         laws=laws.largest,

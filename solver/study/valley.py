@@ -73,7 +73,7 @@ class LowerPlace(Exception):  # noqa: N818
 
 
 @dataclass(frozen=True)
-class Side:
+class ProfileSide:
     """Side of a profile: places along a direction, and the misfit there.
 
     Attributes
@@ -112,7 +112,7 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Profile:
+class LikelihoodProfile:
     """Both sides of the profile along a direction, and the levels of their valley.
 
     Attributes
@@ -124,8 +124,8 @@ class Profile:
         noise and mesh.
     """
 
-    below: Side
-    above: Side
+    below: ProfileSide
+    above: ProfileSide
     noise: float
     doubt: float
 
@@ -242,13 +242,13 @@ class Valley:
             for along in (-weakest, weakest):
                 self._side(along, WALK)
 
-    def profile(self, along: Array, limit: float = LIMIT) -> Profile:
+    def profile(self, along: Array, limit: float = LIMIT) -> LikelihoodProfile:
         """Profile along a direction, shape (p,), up to a distance `limit` in z."""
         below = self._seen(-along, limit) or self._side(-along, limit)
         above = self._seen(along, limit) or self._side(along, limit)
-        return Profile(below, above, self.noise, self.doubt)
+        return LikelihoodProfile(below, above, self.noise, self.doubt)
 
-    def _seen(self, along: Array, limit: float) -> Side | None:
+    def _seen(self, along: Array, limit: float) -> ProfileSide | None:
         """Side along a direction, (p,), that is already known to be open.
 
         It is open if a place beyond the limit has been seen within doubt. None
@@ -260,9 +260,11 @@ class Valley:
             return None
         places = [self.z, self._inside[farthest]]
         rises = [self.runs.misfit(place) - self.minimum for place in places]
-        return Side(np.array([0.0, limit]), np.array(rises), np.array(places), False)
+        return ProfileSide(
+            np.array([0.0, limit]), np.array(rises), np.array(places), False
+        )
 
-    def _side(self, along: Array, limit: float) -> Side:
+    def _side(self, along: Array, limit: float) -> ProfileSide:
         """Side of a profile along a direction, (p,), up to a distance `limit` in z.
 
         The side ends where the misfit has risen above the doubt.
@@ -292,7 +294,9 @@ class Valley:
             places.append(place)
             rises.append(rise)
         is_at_bound = distances[-1] == room
-        return Side(np.array(distances), np.array(rises), np.array(places), is_at_bound)
+        return ProfileSide(
+            np.array(distances), np.array(rises), np.array(places), is_at_bound
+        )
 
     def _rise(self, place: Array) -> float:
         """Misfit of a place, (p,), less the least one; places within doubt are kept.

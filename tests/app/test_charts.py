@@ -1,4 +1,6 @@
-"""Charts are drawn of plain data, in units that are read, and stand in pages by themselves."""
+"""Charts are drawn of plain data,
+in units that are read, and stand in pages by themselves.
+"""
 
 from __future__ import annotations
 

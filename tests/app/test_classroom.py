@@ -15,7 +15,7 @@ import pytest
 from panel.io.state import set_curdoc
 
 from app import classroom
-from app.classroom import ClassMember, find
+from app.classroom import ClassMember, begin_with_class, find
 from app.frame import Frame
 from app.messages import Needs, Order, Ready, Start
 from app.state import History, PageState, default_settings
@@ -28,7 +28,9 @@ Callback = Callable[[], Any]
 
 
 class Document:
-    """A document whose next tick comes when it is called for, in the context that asked for it."""
+    """A document whose next tick comes when it is called for,
+    in the context that asked for it.
+    """
 
     def __init__(self) -> None:
         self.due: list[Callback] = []
@@ -41,7 +43,9 @@ class Document:
 
 
 class Worker:
-    """What stands for a page's supervisor: whether its process is there, and its orders."""
+    """What stands for a page's supervisor:
+    whether its process is there, and its orders.
+    """
 
     def __init__(self, state: PageState) -> None:
         self.state = state
@@ -145,6 +149,18 @@ def test_who_comes_late_has_the_present_frame_at_once(
 ) -> None:
     shown = show(leader, frame)
     assert Seat("rope", code_of(leader).lower()).state.frame is shown
+
+
+@pytest.mark.parametrize("leads_on", [True, False])
+def test_a_page_is_made_with_what_its_class_shows(leader: Seat, leads_on: bool) -> None:
+    leader.state.change(peak=600.0)
+    leader.state.lesson = LESSON
+    address = leader.state.room if leads_on else code_of(leader)
+    made = PageState(default_settings("rope"), room=address)
+    begin_with_class(made)
+    assert made.settings is leader.state.settings
+    assert made.lesson == LESSON
+    assert made.room == address
 
 
 def test_of_several_news_a_follower_takes_the_last(leader: Seat, frame: Frame) -> None:

@@ -1,4 +1,6 @@
-"""Nothing of a page that was closed stays in the server: no state, no document, no process."""
+"""Nothing of a page that was closed stays in the server:
+no state, no document, no process.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,9 @@ async def until(condition: Any) -> None:
 
 
 async def open_and_close(address: str) -> None:
-    """Open three pages one after the other, each until it has a picture, and close them."""
+    """Open three pages one after the other,
+    each until it has a picture, and close them.
+    """
     visitors = []
     tasks = []
     for query in QUERIES:

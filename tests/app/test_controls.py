@@ -1,4 +1,6 @@
-"""The controls at the side show every setting, and refuse at the control what does not hold."""
+"""The controls at the side show every setting,
+and refuse at the control what does not hold.
+"""
 
 from __future__ import annotations
 
@@ -112,7 +114,7 @@ def test_a_field_keeps_its_unit_whatever_is_typed() -> None:
         assert control.field.label.endswith(", kN")
 
 
-def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_holds_is_back() -> (
+def test_a_refusal_stands_at_the_field_in_its_unit_and_the_value_before_is_back() -> (
     None
 ):
     state = of_scene("bar")
@@ -157,9 +159,7 @@ def test_an_empty_field_is_the_default() -> None:
     assert (held(state, "peak"), control.field.value) == (900.0, "900")
 
 
-def test_a_slider_stops_at_what_other_settings_allow_and_says_so_when_it_is_let_go() -> (
-    None
-):
+def test_a_slider_stops_at_what_others_allow_and_says_so_when_it_is_let_go() -> None:
     state = of_scene("strand")
     told: list[str] = []
     state.param.watch(lambda event: told.append(event.new), "refusal")

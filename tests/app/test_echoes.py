@@ -7,9 +7,7 @@ from app.controls import SettingControl
 from app.state import PageState, default_settings
 
 
-def test_a_value_that_a_field_showed_on_the_way_changes_nothing_when_it_comes_back() -> (
-    None
-):
+def test_a_value_that_a_field_showed_on_the_way_changes_nothing_later() -> None:
     state = PageState(default_settings("bar"))
     control = SettingControl("peak", state)
     for peak in (1000.0, 1100.0):

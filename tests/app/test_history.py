@@ -1,4 +1,6 @@
-"""One goes back and forth among the iterates that were shown, though not each of them was."""
+"""One goes back and forth among the iterates that were shown,
+though not each of them was.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A reference is used again only where the problem asks for just that, and kept only as it pays."""
+"""A reference is used again only where the problem asks for just that,
+and kept only as it pays.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
 
 
 def made(scene: str, **changes: Any) -> tuple[Settings, Problem]:
-    settings = CATALOGUE[scene].checked({**SMALL[scene], **changes})
+    settings = CATALOGUE[scene].checked(SMALL[scene] | changes)
     return settings, discretise(settings)
 
 

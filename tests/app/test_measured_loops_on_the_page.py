@@ -1,4 +1,6 @@
-"""A loop that is opened on the page is read as its dialog says, drawn, compared and fitted."""
+"""A loop that is opened on the page is read as its dialog says,
+drawn, compared and fitted.
+"""
 
 from __future__ import annotations
 

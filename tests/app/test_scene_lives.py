@@ -90,7 +90,7 @@ def test_it_plays_until_somebody_does_something(
     assert page.state.selection.phase == Selection.phase
 
 
-def test_the_range_of_iterations_moves_seldom_while_a_run_goes_on_and_is_exact_at_its_end(
+def test_the_range_of_iterations_moves_seldom_in_a_run_and_is_exact_at_its_end(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     page = Watched(monkeypatch)

@@ -245,8 +245,10 @@ def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:
     areas = 0.5 * np.abs(
         np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
     )
-    described = geometry.description
-    assert areas.sum() == pytest.approx(described.length * described.height, rel=1e-2)
+    description = geometry.description
+    assert areas.sum() == pytest.approx(
+        description.length * description.height, rel=1e-2
+    )
 
 
 def test_a_tap_selects_the_substructure_that_is_there() -> None:

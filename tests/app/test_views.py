@@ -46,24 +46,18 @@ MORE = {
     "two points": (
         "block",
         {
-            **{
-                "gap": "flat",
-                "length": 0.1,
-                "height": 0.1,
-                "elements": 1,
-                "elements_up": 1,
-            },
-            **{
-                "substructures": 1,
-                "substructures_up": 1,
-                "friction": 0.7,
-                "duration": 8.0,
-            },
-            **{
-                "top_normal_slope": 0.5,
-                "top_tangential_load": "cycles",
-                "instants": 65,
-            },
+            "gap": "flat",
+            "length": 0.1,
+            "height": 0.1,
+            "elements": 1,
+            "elements_up": 1,
+            "substructures": 1,
+            "substructures_up": 1,
+            "friction": 0.7,
+            "duration": 8.0,
+            "top_normal_slope": 0.5,
+            "top_tangential_load": "cycles",
+            "instants": 65,
         },
     ),
 }

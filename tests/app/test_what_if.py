@@ -1,4 +1,6 @@
-"""What if: runs reach the chart as they come. Reports: commands are run in turn, and read."""
+"""What if: runs reach the chart as they come. Reports:
+commands are run in turn, and read.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""LATIN beside the incremental solver on the same mesh: who is first, and how LATIN gets there.
+"""LATIN beside the incremental solver on the same mesh: who is first, and how LATIN
+gets there.
 
 `python tests/benchmarks/ahead.py`, of one group `ahead.py strand`; `--large` for those
 of minutes
@@ -42,14 +43,16 @@ HEAD = (
     *("own way to 1 %", "and known there"),
 )
 NOTES = (
-    "Medians, in seconds of the processor from settings to result, in turns; every problem in a "
-    "process of its own. LATIN: `solve` with the scene's defaults. incr.: the incremental solver.",
-    "found at: error of the iterate from which a status step found the solution; with * above "
-    f"{NEAR:.0%}, so the incremental solver answered, from LATIN's statuses.",
-    f"own way: iterations and seconds until the contact force is within {GOAL:.0%}, without a "
-    f"status step at the end and without what judges iterates; - is more than {MOST}.",
-    "known: when such a run says itself that it has converged, all billed, and whether a status "
-    "step certifies that or it is an estimate.",
+    "Medians, in seconds of the processor from settings to result, in turns; every "
+    "problem in a process of its own. LATIN: `solve` with the scene's defaults. "
+    "incr.: the incremental solver.",
+    "found at: error of the iterate from which a status step found the solution; with "
+    f"* above {NEAR:.0%}, so the incremental solver answered, from LATIN's statuses.",
+    f"own way: iterations and seconds until the contact force is within {GOAL:.0%}, "
+    "without a status step at the end and without what judges iterates; - is more "
+    f"than {MOST}.",
+    "known: when such a run says itself that it has converged, all billed, and "
+    "whether a status step certifies that or it is an estimate.",
 )
 Problem = tuple[str, dict[str, Any]]
 """A scene, and what differs from its settings."""
@@ -61,7 +64,7 @@ def _block(elements: int) -> Problem:
         "substructures": elements // CELL,
         "substructures_up": elements // 2 // CELL,
     }
-    return "block", {**sizes, **cuts}
+    return "block", sizes | cuts
 
 
 def _strand(wires: int) -> Problem:
@@ -115,7 +118,9 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
 
 
 def _course(settings: Settings) -> tuple[bool, int, int, str]:
-    """When LATIN's own way is within the goal, and when and by what it is known; 0 for never."""
+    """When LATIN's own way is within the goal,
+    and when and by what it is known; 0 for never.
+    """
     problem = discretise(settings)
     try:
         distance = distance_to(reference_of(problem), problem)

@@ -46,7 +46,9 @@ class BlockFields(NamedTuple):
 
 @cache
 def interpreter() -> str | None:
-    """This interpreter, or that of the system, of which its package mostly is; None without it."""
+    """This interpreter, or that of the system,
+    of which its package mostly is; None without it.
+    """
     for python in (sys.executable, shutil.which("python3", path=os.defpath)):
         if python is not None:
             try:
@@ -58,7 +60,9 @@ def interpreter() -> str | None:
 
 
 def by_getfem(settings: Any, python: str) -> BlockFields:
-    """Have it solve a block of bilinear elements on a support, moved at its top alone."""
+    """Have it solve a block of bilinear elements on a support,
+    moved at its top alone.
+    """
     body = settings.structure()
     assert body.support is not None
     top = body.sides["top"]
@@ -93,7 +97,9 @@ def by_increments(settings: Any) -> BlockFields:
 
 
 def differences(settings: Any, python: str) -> dict[str, float]:
-    """Largest difference of the two at any node and instant, over the largest of the field."""
+    """Largest difference of the two at any node and instant,
+    over the largest of the field.
+    """
     theirs = by_getfem(settings, python)
     ours = by_increments(settings)
     force, moved = (

@@ -1,4 +1,5 @@
-"""How small a rank the argument of a clip has in the plane, where the bound is mu N(x, t) as it is.
+"""How small a rank the argument of a clip has in the plane, where the bound is mu N(x,
+t) as it is.
 
 A matrix of low rank is sought that is the friction where a point sticks, and beyond the
 bound where it slips: clipped at the bound it is the friction. Both factors are found at
@@ -30,7 +31,8 @@ Loss = Callable[[Array], tuple[float, Array]]
 
 @dataclass(frozen=True)
 class Traction:
-    """Friction and its bound, times the roots of lengths and of weights of the instants.
+    """Friction and its bound, times the roots of lengths and of weights of the
+    instants.
 
     Attributes
     ----------
@@ -116,7 +118,9 @@ def best_products(field: Array) -> Array:
 
 
 def cattaneo() -> Traction:
-    """Give the traction of Cattaneo and Mindlin, on a ramp to 0.95 of full slip, over mu p0."""
+    """Give the traction of Cattaneo and Mindlin,
+    on a ramp to 0.95 of full slip, over mu p0.
+    """
     x = np.linspace(-1.0, 1.0, 402)[1:-1, None]
     stuck = 1.0 - np.linspace(0.0, 0.95, 101) - x**2
     bound = np.broadcast_to(np.sqrt(1.0 - x**2), stuck.shape)

@@ -1,4 +1,5 @@
-"""What many cycles of a load cost: LATIN and LATIN-PGD, at once and in slabs of a cycle.
+"""What many cycles of a load cost: LATIN and LATIN-PGD, at once and in slabs of a
+cycle.
 
 `python tests/benchmarks/cycles.py`, of one problem `cycles.py strand`; `--large` up to
 100 cycles. Iterations to 1 % of the contact force are counted without the clock, then
@@ -69,11 +70,13 @@ PROBLEMS: dict[str, tuple[str, dict[str, Any], int]] = {
 """Scene, settings but for the load, and most cycles that the limits on settings
 allow."""
 NOTES = (
-    f"Cycles of {INSTANTS} instants. Iterations and seconds of the processor until the contact "
-    f"force is within {GOAL:.0%} of the incremental solver's over all instants; share of the local "
-    "stage in them, most modes of a substructure, and MB that the state holds (of a slab, if in "
-    "slabs). S: time of the incremental solver over it, and of LATIN at once over it.",
-    f"- is not there after {MOST} iterations or {LONGEST:.0f} s, and not tried with more cycles.",
+    f"Cycles of {INSTANTS} instants. Iterations and seconds of the processor until the "
+    f"contact force is within {GOAL:.0%} of the incremental solver's over all "
+    "instants; share of the local stage in them, most modes of a substructure, and MB "
+    "that the state holds (of a slab, if in slabs). S: time of the incremental solver "
+    "over it, and of LATIN at once over it.",
+    f"- is not there after {MOST} iterations or {LONGEST:.0f} s, and not tried with "
+    "more cycles.",
 )
 
 
@@ -108,7 +111,7 @@ def settings_of(name: str, cycles: int) -> Settings:
         }
     modes = {"pgd_modes": MODES[scene == "wall"], **changes}
     times = {"instants": INSTANTS * cycles + 1, "duration": float(cycles)}
-    return CATALOGUE[scene].checked({**modes, **times, **load})
+    return CATALOGUE[scene].checked(modes | times | load)
 
 
 def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -51,7 +51,9 @@ HEAD = "fitted", "loops", "known", "within", "products", "within", "runs", "s"
 
 @dataclass(frozen=True, eq=False)
 class MadeLoop:
-    """A made loop: the settings from which a fit begins, and the values by name that made it."""
+    """A made loop: the settings from which a fit begins,
+    and the values by name that made it.
+    """
 
     start: Settings
     true: dict[str, float]
@@ -59,7 +61,9 @@ class MadeLoop:
 
 
 def loop_of(settings: Settings, noise: float, rng: np.random.Generator) -> MeasuredLoop:
-    """Loop of a run as if it were measured, with noise as a share of the displacement's range."""
+    """Loop of a run as if it were measured,
+    with noise as a share of the displacement's range.
+    """
     run = finished_run(settings, errors=False, indicators=False)
     loop = settings.structure().loop(run.problem)
     size = noise * np.ptp(run.displacement)
@@ -83,9 +87,9 @@ def made_loop(names: tuple[str, ...], seed: int) -> MadeLoop:
         true["friction"] * true.get("pressure", bar.values()["pressure"]) * bar.length
     )
     settings = BarSettings.checked(
-        {
-            **KINDS[names],
-            **true,
+        KINDS[names]
+        | true
+        | {
             "load": "cycle",
             "peak": rng.uniform(0.2, 0.98) * largest,
             "elements": int(rng.choice(ELEMENTS)),
@@ -98,7 +102,9 @@ def made_loop(names: tuple[str, ...], seed: int) -> MadeLoop:
 
 
 def judge(found: Fit, true: dict[str, float]) -> tuple[list[bool], list[bool]]:
-    """Whether what made a loop is within the margins: of known settings, and of products."""
+    """Whether what made a loop is within the margins:
+    of known settings, and of products.
+    """
     values = np.array(list(true.values()))
     is_known = np.isfinite(found.errors)
     is_within = (found.lower <= values) & (values <= found.upper)
@@ -145,7 +151,8 @@ def report(seed: int, found: Fit, true: dict[str, float]) -> None:
     )
     for (name, made), value, lower, upper in rows:
         print(
-            f"seed {seed}: {name} {value:.4g}, {lower:.4g} to {upper:.4g}, made {made:.4g}"
+            f"seed {seed}: {name} {value:.4g}, {lower:.4g} to {upper:.4g}, made "
+            f"{made:.4g}"
         )
     for one in found.together:
         product = math.prod(true[name] ** power for name, power in one.powers.items())

@@ -1,4 +1,5 @@
-"""A block on a rough support, solved by GetFEM: a program for whichever Python has that.
+"""A block on a rough support, solved by GetFEM: a program for whichever Python has
+that.
 
 It reads JSON and writes JSON, and imports nothing of this project. The elements are
 those of `solver.discrete.elements`, told in GetFEM's own language: bilinear, with the
@@ -37,9 +38,9 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
 
     Returns
     -------
-    Pressing forces `normal` and friction on the block `tangential` of the nodes of the support,
-    (n_instants, n_lowest) each, and how far all nodes have `moved`, row by row from below,
-    (n_instants, n_nodes, 2).
+    Pressing forces `normal` and friction on the block `tangential` of the nodes of the
+    support, (n_instants, n_lowest) each, and how far all nodes have `moved`, row by row
+    from below, (n_instants, n_nodes, 2).
     """
     model, mesh, nodes = _elastic(asked)
     lowest = nodes[: asked["elements"][0] + 1]
@@ -65,7 +66,9 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
 
 
 def _elastic(asked: dict[str, Any]) -> tuple[Any, Any, Any]:
-    """Make the block, moved at its top; with its displacements, x and y of nodes row by row."""
+    """Make the block, moved at its top;
+    with its displacements, x and y of nodes row by row.
+    """
     import getfem as gf
 
     gf.util("trace level", 0)

@@ -1,4 +1,5 @@
-"""What one iteration costs: by stage, and against the arithmetic that it cannot do without.
+"""What one iteration costs: by stage, and against the arithmetic that it cannot do
+without.
 
 `python tests/benchmarks/iteration_cost.py`, `iteration_cost.py 3` with medians of three
 """
@@ -145,7 +146,8 @@ def print_iteration_cost(repeats: int) -> None:
         cells = " ".join(f"{1e3 * part:8.3f}" for part in parts)
         each = 1e9 * cost.iteration / (nodes * instants)
         print(
-            f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} {each:9.1f}"
+            f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} "
+            f"{each:9.1f}"
         )
 
 
@@ -185,7 +187,9 @@ class _Unproven(ErrorEstimate):
 
 
 def overhead(settings: Settings, repeats: int) -> Overhead:
-    """Measure a run up to its accuracy in three ways, interleaved: bare, with iterates, judged."""
+    """Measure a run up to its accuracy in three ways,
+    interleaved: bare, with iterates, judged.
+    """
     settings = settings.replace(finish="none")
     problem = discretise(settings)
     method = method_of(settings)
@@ -221,7 +225,8 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
 def print_overheads(repeats: int) -> None:
     """Print what runs pay for their snapshots and their stop rules."""
     print(
-        f"\nbeside the stages, as shares of an iteration's own work; medians of {repeats}"
+        "\n"
+        f"beside the stages, as shares of an iteration's own work; medians of {repeats}"
     )
     print(f"{'scene':<8} {'method':<8} {'own, ms':>8} {'snapshot':>9} {'stop test':>9}")
     for scene, changes in OVERHEADS:

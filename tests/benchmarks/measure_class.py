@@ -1,4 +1,5 @@
-"""Measure a server with many pages: `python tests/benchmarks/measure_class.py [PAGES] [--waves N]`.
+"""Measure a server with many pages: `python tests/benchmarks/measure_class.py [PAGES]
+[--waves N]`.
 
 Serves the page and opens all pages, thirty without a number, at once: websockets that
 say *painted* at once, as browsers of thirty machines do, for which these two cores are
@@ -136,14 +137,15 @@ async def measure(server: Server, number: int) -> None:
         got = [len(v.pictures) - old for v, old in zip(visitors, before, strict=True)]
         rate = sum(got) / number / (time.perf_counter() - began)
         print(
-            f"{pace}: {rate:.1f} pictures a second and page; {memory(server):.0f} MB a worker"
+            f"{pace}: {rate:.1f} pictures a second and page; {memory(server):.0f} MB "
+            "a worker"
         )
         await close(visitors, tasks)
         print(f"{pace}: {len(server.processes()) - idle} processes left")
 
 
 async def measure_waves(server: Server, number: int, waves: int) -> None:
-    """Print what the server keeps of pages that were opened and closed again and again."""
+    """Print what the server keeps of pages that were opened and closed repeatedly."""
     idle = len(server.processes())
     before = resident(server)
     print(f"at first: {before:.0f} MB")
@@ -153,7 +155,8 @@ async def measure_waves(server: Server, number: int, waves: int) -> None:
         left = len(server.processes()) - idle
         each = (kept - before) / number
         print(
-            f"wave {wave}: {kept:.0f} MB, {each:.2f} MB more a page; {left} processes left"
+            f"wave {wave}: {kept:.0f} MB, {each:.2f} MB more a page; {left} processes "
+            "left"
         )
         before = kept
 

@@ -1,4 +1,6 @@
-"""Measure a served page in headless Chromium: `python tests/benchmarks/measure_page.py http://localhost:5006/app`.
+"""Measure a served page in headless Chromium, by its address.
+
+`python tests/benchmarks/measure_page.py http://localhost:5006/app`
 
 Prints, of a first visit and three more, seconds until the first picture is painted and
 the bytes received; from a slider's move, by the mouse and by a key, to the picture that
@@ -14,7 +16,10 @@ from statistics import median
 
 from playwright.sync_api import BrowserContext, Locator, Page, sync_playwright
 
-PULSE = "Bokeh.documents.find(d => d.get_model_by_name('pulse'))?.get_model_by_name('pulse')"
+PULSE = (
+    "Bokeh.documents.find(d => "
+    "d.get_model_by_name('pulse'))?.get_model_by_name('pulse')"
+)
 PAINTED = f"(n) => window.Bokeh && Bokeh.documents.length && {PULSE}?.painted > n"
 ANSWER = "start=nested&finish=at-once"
 ENDLESS = (
@@ -58,7 +63,8 @@ def measure(address: str) -> None:
             ):
                 taken = to_picture(page)
                 print(
-                    f"{scene}: {way} to picture {median(taken):.0f} ms, {max(taken):.0f} at most"
+                    f"{scene}: {way} to picture {median(taken):.0f} ms, "
+                    f"{max(taken):.0f} at most"
                 )
                 page.wait_for_timeout(2000.0)
         for scene in ("bar", "block", "layers", "rope"):
@@ -109,7 +115,9 @@ def slider_to_picture(page: Page) -> list[float]:
 
 
 def key_to_picture(page: Page) -> list[float]:
-    """Milliseconds from each key on the friction's slider to the picture of the run of it."""
+    """Milliseconds from each key on the friction's
+    slider to the picture of the run of it.
+    """
     slider = _friction(page)
     taken = []
     for move in range(MOVES):

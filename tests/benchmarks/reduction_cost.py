@@ -1,4 +1,6 @@
-"""What the linear stage costs on separated bases, against the full one, by size and modes."""
+"""What the linear stage costs on separated bases,
+against the full one, by size and modes.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +63,9 @@ class ReductionCost:
 
     @property
     def pays_up_to(self) -> int:
-        """Most of the measured modes with which projecting is cheaper than the full stage."""
+        """Most of the measured modes with which projecting
+        is cheaper than the full stage.
+        """
         return max(
             (n for n, seconds in self.reduced.items() if seconds < self.full), default=0
         )
@@ -70,7 +74,9 @@ class ReductionCost:
 def samples_of(
     parts: Sequence[Callable[[], object]], repeats: int, calls: int = 1
 ) -> list[list[float]]:
-    """Seconds of a call of each part, in turns: a machine that slows down slows all of them."""
+    """Seconds of a call of each part, in turns:
+    a machine that slows down slows all of them.
+    """
     samples: list[list[float]] = [[] for _ in parts]
     for _ in range(repeats):
         for part, own in zip(parts, samples, strict=True):
@@ -89,7 +95,8 @@ def medians_of(
 
 
 def half_plane(points: int, instants: int) -> Problem:
-    """Make a body whose boundary response is dense: the surface of an elastic half plane.
+    """Make a body whose boundary response is dense: the surface of an elastic half
+    plane.
 
     Its surface stiffness is the root of the negative second derivative (Johnson,
     Contact Mechanics, 1985, chapter 2), here with a spring to rest so that it cannot
@@ -202,12 +209,14 @@ TIGHT = 1e-14
 def whole_iterations(
     nodes: int, instants: int, repeats: int
 ) -> dict[str, tuple[float, float]]:
-    """Measure whole iterations of the bar with 5 substructures, in full and in reduced forms.
+    """Measure whole iterations of the bar with 5 substructures, in full and in reduced
+    forms.
 
     Returns
     -------
-    By form: seconds per iteration between two late iterations, median of repeats taken in turns;
-    and the relative L2 distance of the displacement from that of the full form.
+    By form: seconds per iteration between two late iterations, median of repeats taken
+    in turns; and the relative L2 distance of the displacement from that of the full
+    form.
     """
     seconds: dict[str, list[float]] = {form: [] for form in FORMS}
     fields: dict[str, Array] = {}
@@ -252,7 +261,8 @@ def _step(stage: LinearStage, target: Array) -> Callable[[], None]:
 def print_reduction_cost(repeats: int) -> None:
     """Print the table of all sizes."""
     print(
-        f"one linear stage, ms; medians of {repeats}; bars have 5 substructures, multiscale"
+        f"one linear stage, ms; medians of {repeats}; bars have 5 substructures, "
+        "multiscale"
     )
     print("in brackets: with a pair added and one dropped in every substructure")
     print(
@@ -274,7 +284,9 @@ def print_reduction_cost(repeats: int) -> None:
         _print(reduction_cost("half plane", problem, MODES, repeats))
 
     print(
-        "\nwhole iterations, ms, of the bar with 5 substructures; in brackets: distance of the"
+        "\n"
+        "whole iterations, ms, of the bar with 5 substructures; in brackets: distance "
+        "of the"
     )
     print(f"displacement from the full form's, iteration {LAST}")
     print(f"{'nodes x instants':>17}", *(f"{form:>17}" for form in FORMS))
@@ -292,7 +304,8 @@ def _print(cost: ReductionCost) -> None:
         for size in MODES
     ]
     print(
-        f"{cost.operator:<11} {cost.points:>6} x {cost.instants:<6} {1e3 * cost.full:9.3f}",
+        f"{cost.operator:<11} {cost.points:>6} x {cost.instants:<6} "
+        f"{1e3 * cost.full:9.3f}",
         *(f"{cell:>15}" for cell in cells),
         f" pays up to {cost.pays_up_to} modes",
     )

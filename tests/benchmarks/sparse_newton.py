@@ -111,7 +111,9 @@ class SparseNewton:
     def _instant(
         self, instant: int, states: States, before: Array
     ) -> tuple[States, Array, Array] | None:
-        """States, displacements of what is free and forces; None where the states cycle."""
+        """States, displacements of what is free and forces;
+        None where the states cycle.
+        """
         rules = self._rules
         seen = set[bytes]()
         held = np.where(rules.normal, -rules.gap, before)
@@ -135,7 +137,9 @@ class SparseNewton:
     def _solve(
         self, states: States, load: Array, held: Array, instant: int
     ) -> tuple[Array, Array]:
-        """Solve the linear system of some states: it is factored anew where they have changed."""
+        """Solve the linear system of some states:
+        it is factored anew where they have changed.
+        """
         rules = self._rules
         touching = np.flatnonzero(states == HELD)
         slips = np.abs(states) == 1
@@ -162,7 +166,9 @@ class SparseNewton:
         return moved, carried[touching].T @ pressed
 
     def _corrected(self, states: States, moved: Array, force: Array) -> States:
-        """States that jumps and forces call for; what is up to rounding calls for none."""
+        """States that jumps and forces call for;
+        what is up to rounding calls for none.
+        """
         rules = self._rules
         slack = LEAST * self._size
         held = states == HELD

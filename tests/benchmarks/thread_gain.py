@@ -1,4 +1,6 @@
-"""What threads gain: the same iterations of a block by one thread and by several, in turn."""
+"""What threads gain: the same iterations of a block by
+one thread and by several, in turn.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ INSTANTS = 51
 
 
 def thread_gain(elements: int, threads: int, repeats: int) -> tuple[float, float]:
-    """Measure the median seconds of an iteration by one thread and by several, interleaved.
+    """Measure the median seconds of an iteration by one thread and by several,
+    interleaved.
 
     Parameters
     ----------

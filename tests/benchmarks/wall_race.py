@@ -70,20 +70,22 @@ KNOWN = "LATIN, until known"
 INCREMENTAL = "incremental"
 SPARSE = "sparse incremental"
 NOTES = (
-    f"Until the contact force is within {GOAL:.0%} of the incremental solvers'; - is not after "
-    f"{MOST} iterations. Medians of {REPEATS} (of one from {LONG:.0f} s on), s: of the processor, "
-    "and by the clock on the wall, by which two threads are to be judged; MB that the process "
-    "grows by, the problem apart. Ratio: to the faster incremental solver.",
-    "Until known: until the run says itself that it is within 1 %, by an estimate or certified.",
-    "Sparse incremental: tests/benchmarks/sparse_newton.py; its answer differs from the other's by "
-    f"less than {SAME:g}, or there is no row.",
+    f"Until the contact force is within {GOAL:.0%} of the incremental solvers'; - is "
+    f"not after {MOST} iterations. Medians of {REPEATS} (of one from {LONG:.0f} s on), "
+    "s: of the processor, and by the clock on the wall, by which two threads are to "
+    "be judged; MB that the process grows by, the problem apart. Ratio: to the faster "
+    "incremental solver.",
+    "Until known: until the run says itself that it is within 1 %, by an estimate or "
+    "certified.",
+    "Sparse incremental: tests/benchmarks/sparse_newton.py; its answer differs from "
+    f"the other's by less than {SAME:g}, or there is no row.",
 )
 
 
 def settings_of(courses: int, changes: dict[str, Any]) -> Settings:
     """Settings of a wall of as many bricks a course."""
     size = {"bricks": courses, "courses": courses}
-    return CATALOGUE["wall"].checked({**WALL, **size, **changes})
+    return CATALOGUE["wall"].checked(WALL | size | changes)
 
 
 def counts_of(courses: int) -> tuple[int, dict[str, int]]:

@@ -31,7 +31,9 @@ SIZES: tuple[tuple[str, dict[str, Any]], ...] = (
 
 
 def print_whole_cost() -> None:
-    """Print seconds of the processor and memory of runs without a reference, and its seconds."""
+    """Print seconds of the processor and memory of runs
+    without a reference, and its seconds.
+    """
     settle()
     print(machine())
     print("expected beside measured; the reference apart")

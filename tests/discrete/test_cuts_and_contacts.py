@@ -1,4 +1,6 @@
-"""Cut or not, a structure is the same; contacts alike are one; driven points obey their law."""
+"""Cut or not, a structure is the same;
+contacts alike are one; driven points obey their law.
+"""
 
 from __future__ import annotations
 
@@ -118,7 +120,7 @@ def test_a_support_that_settles_moves_no_rod_that_does_not_rub() -> None:
     still = rods(3, bound=np.zeros(13)).discretise()
     moved = rods(3, bound=np.zeros(13), settlement=settlement).discretise()
     assert np.abs(reference_of(moved).displacement).max() > 0.0
-    assert moved.at_rest(reference_of(moved).displacement) == pytest.approx(
+    assert moved.absolute(reference_of(moved).displacement) == pytest.approx(
         reference_of(still).displacement, abs=1e-14
     )
 
@@ -168,7 +170,7 @@ def by_place(problem: Problem) -> dict[tuple[Any, ...], int]:
     return {
         (int(body), *np.round(place, 9).tolist(), int(component)): dof
         for dof, (body, place, component) in enumerate(
-            zip(bodies, inside.places, inside.components, strict=True)
+            zip(bodies, inside.positions, inside.components, strict=True)
         )
     }
 
@@ -453,18 +455,18 @@ def test_driven_points_rub_against_their_slip_and_else_as_their_neighbour() -> N
     even = np.clip(0.5 * forces[1], -bound, bound)
     assert friction[~slips] == pytest.approx(even[~slips])
     assert np.count_nonzero(~slips) == 6
-    assert found.places.tolist() == [0, 2]
+    assert found.rubbing.tolist() == [0, 2]
 
 
 def test_driven_points_on_springs_lag_like_play_and_on_stiff_ones_not() -> None:
     soft = np.array([0.4, 1.0, 0.6])
-    found, values = driven(softness=soft)
+    found, values = driven(compliance=soft)
     still = np.zeros((3, 30))
     friction = found.force(still, still)
     bound = np.array([0.2, 0.5])
     slider = play(values, bound * soft[[0, 2]])
     assert friction == pytest.approx((slider - values) / soft[[0, 2], None])
-    stiff, _ = driven(softness=np.full(3, 1e-9))
+    stiff, _ = driven(compliance=np.full(3, 1e-9))
     rigid, _ = driven()
     slips = np.diff(values, axis=1, prepend=0.0) != 0.0
     assert stiff.force(still, still)[slips] == pytest.approx(

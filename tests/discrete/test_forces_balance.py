@@ -1,4 +1,6 @@
-"""All that acts, contact forces and reactions sum to zero at every instant, moments too."""
+"""All that acts, contact forces and reactions sum to
+zero at every instant, moments too.
+"""
 
 from __future__ import annotations
 
@@ -89,7 +91,9 @@ def assert_rods_balance(rods: Rods, problem: Problem, fields: LoopFields) -> Non
 
 
 def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
-    """Resultants of all loads, N, and their moment about the origin, N m, (n_instants,) each."""
+    """Resultants of all loads, N,
+    and their moment about the origin, N m, (n_instants,) each.
+    """
     assert problem.inside is not None
     force = external_force(problem) * problem.scales.force
     (x, y) = problem.positions.T
@@ -100,7 +104,9 @@ def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
 def on_supports(
     problem: Problem, fields: LoopFields
 ) -> tuple[list[Array], list[Array], list[Array]]:
-    """Forces along x and y of supports and springs, and their moments about the origin."""
+    """Forces along x and y of supports and springs,
+    and their moments about the origin.
+    """
     x = []
     y = []
     moments = []
@@ -123,7 +129,9 @@ def on_supports(
 
 
 def assert_bodies_balance(problem: Problem, fields: LoopFields) -> None:
-    """In the plane: sides, loads, supports and springs, along x and y, and about the origin."""
+    """In the plane: sides, loads, supports and springs,
+    along x and y, and about the origin.
+    """
     loads = loads_of(problem)
     every = [
         [load, *more]
@@ -166,7 +174,7 @@ def small(scene: str, law: str) -> Settings:
         sizes = {**SMALL_ROPE, "elements": 6, "instants": 7}
     if scene == "wall":
         del sizes["substructures"]
-    return CATALOGUE[scene].checked({**sizes, **law_of(kind, law)})
+    return CATALOGUE[scene].checked(sizes | law_of(kind, law))
 
 
 @pytest.mark.parametrize("law", [*LAWS, "general"])
@@ -246,9 +254,9 @@ def test_a_block_balances_whatever_is_at_its_sides(
         }.items()
     }
     settings = CATALOGUE["block"].checked(
-        {
-            **sides,
-            **given_there,
+        sides
+        | given_there
+        | {
             "top_normal_load": "hold",
             "gap": "flat",
             "body_force_y": -1e6 * abs(sizes[5]),
@@ -258,8 +266,8 @@ def test_a_block_balances_whatever_is_at_its_sides(
             "instants": 7,
             "substructures": 2,
             "substructures_up": 1,
-            **law_of("plane", law),
         }
+        | law_of("plane", law)
     )
     problem = discretise(settings)
     reference = reference_of(problem)
@@ -312,7 +320,9 @@ def largest(name: str, run: FinishedRun) -> float:
 def test_the_force_of_an_end_is_that_of_its_closed_form_on_every_mesh(
     elements: int,
 ) -> None:
-    """900 N move the end of Table 1's bar by 0.409 mm, and whatever moves it so far needs 900 N."""
+    """900 N move the end of Table 1's bar by 0.409 mm,
+    and whatever moves it so far needs 900 N.
+    """
     path = [[0.0, 0.0], [1.0, 900.0**2 / (2.0 * 659_400.0 * 1500.0)]]
     held = {
         "right_end": "held",
@@ -357,7 +367,9 @@ def test_a_pushed_side_carries_all_friction() -> None:
 def test_a_clamp_carries_what_friction_leaves_of_a_pull_on_every_mesh(
     elements: int,
 ) -> None:
-    """1800 N pull Table 1's bar, of which friction holds 1500 N up to the clamp itself."""
+    """1800 N pull Table 1's bar,
+    of which friction holds 1500 N up to the clamp itself.
+    """
     pulled = {"load": [[0.0, 0.0], [1.0, 1800.0]], "instants": 5, "elements": elements}
     run = run_of("bar", **pulled)
     assert largest("left_force", run) == pytest.approx(-300.0, rel=1e-9)

@@ -1,4 +1,6 @@
-"""Rectangular elements are right, and on cycles work is what bodies store and friction takes."""
+"""Rectangular elements are right,
+and on cycles work is what bodies store and friction takes.
+"""
 
 from __future__ import annotations
 

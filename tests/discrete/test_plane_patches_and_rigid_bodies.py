@@ -1,4 +1,6 @@
-"""Uniform states, resultants, sliding everywhere, and any decomposition: exact on every mesh."""
+"""Uniform states, resultants, sliding everywhere,
+and any decomposition: exact on every mesh.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,7 @@ def test_pressing_without_friction_leaves_a_uniform_stress(decomposition, plane)
 
 @pytest.mark.parametrize("decomposition", DECOMPOSITIONS)
 def test_a_stuck_block_without_lateral_strain_is_sheared_uniformly(decomposition):
-    case = {**PATCH, **SHEARED, **cut(decomposition), "violation": 1e-13}
+    case = PATCH | SHEARED | cut(decomposition) | {"violation": 1e-13}
     iterate = solved("block", friction=1.0, poisson=0.0, **case)
     fields = iterate.contact("support")
     friction = fields.tangential_force[:, -1:] / lengths(iterate)
@@ -67,7 +69,7 @@ def test_a_stuck_block_without_lateral_strain_is_sheared_uniformly(decomposition
     assert not fields.status[:, -1].any()
 
 
-def test_a_block_dragged_far_enough_slides_everywhere_and_its_reaction_balances_friction():
+def test_a_block_dragged_far_slides_everywhere_and_its_reaction_balances_friction():
     iterate = solved(
         "block",
         gap="flat",

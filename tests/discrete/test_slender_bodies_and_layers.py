@@ -24,13 +24,15 @@ def problem_of(scene, **values):
 
 
 def layers_of(ratio, **values):
-    """Layers so many times as long as thick, pressed so that they slide a part of the time."""
+    """Layers so many times as long as thick,
+    pressed so that they slide a part of the time.
+    """
     own = {
         "thickness": 0.5 / ratio,
         "pressure": 2e6 * (50 / ratio) ** 2,
         "instants": 33,
     }
-    return problem_of("layers", **{**own, **values})
+    return problem_of("layers", **(own | values))
 
 
 def error_after(most, settings, problem):
@@ -65,7 +67,9 @@ def test_a_column_cut_into_parts_twenty_times_as_high_as_wide_takes_twenty_itera
 
 @pytest.mark.parametrize("elements_up", [1, 2, 8, 24])
 def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(elements_up):
-    """A fault of 40 m below 1600 m: 24 elements up are 80 times as high as wide, one 1920 times."""
+    """A fault of 40 m below 1600 m:
+    24 elements up are 80 times as high as wide, one 1920 times.
+    """
     uncut = {"substructures": 1, "substructures_up": 1, "elements_up": elements_up}
     column = {
         "length": 40.0,
@@ -146,7 +150,9 @@ def bent(layers, friction, elements=48, elements_up=2, pressure=1e6):
 
 
 def stiffness(iterate):
-    """End force that bending adds to that of pressing, for a unit of deflection, N/m."""
+    """End force that bending adds to that of pressing,
+    for a unit of deflection, N/m.
+    """
     force = reaction(iterate, "right")[1]
     return (force[-1] - force[-2]) / DEFLECTION
 

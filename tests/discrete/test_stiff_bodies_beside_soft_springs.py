@@ -1,4 +1,5 @@
-"""A stiff body beside a soft spring, and the other way round: rigid motion hides no deformation.
+"""A stiff body beside a soft spring, and the other way round: rigid motion hides no
+deformation.
 
 Balance and closed forms: MATHEMATICS.md, 9.
 """
@@ -22,7 +23,9 @@ STEEL = 2.1e11
 
 
 class Slope:
-    """A slope and the forces on its block: of the ground at all nodes, and of the spring."""
+    """A slope and the forces on its block:
+    of the ground at all nodes, and of the spring.
+    """
 
     def __init__(self, found, values):
         self.angle = np.radians(values.path("slope_load"))
@@ -66,7 +69,7 @@ contrasts = st.fixed_dictionaries(
 @settings(max_examples=25)
 @given(contrasts)
 def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
-    values = InclineSettings.checked({**SMALL, **values})
+    values = InclineSettings.checked(SMALL | values)
     problem = discretise(values)
     found = reference_of(problem)
     forces = Slope(found, values)
@@ -99,7 +102,7 @@ HARD = {
 
 @pytest.mark.parametrize("case", HARD)
 def test_a_run_ends_certified_and_its_forces_balance(case):
-    values = InclineSettings.checked({**SMALL, **HARD[case]})
+    values = InclineSettings.checked(SMALL | HARD[case])
     run = solved(values)
     assert run.is_certified
     assert run.records[-1].error_force < 1e-9
@@ -127,7 +130,7 @@ def test_a_run_ends_certified_and_its_forces_balance(case):
 def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiffness):
     law = {"friction_law": "compliant", "contact_stiffness": stiffness}
     sizes = {"elements": 8, "substructures": 2, "instants": 13}
-    problem = discretise(CATALOGUE[scene].checked({**sizes, **law, **changes}))
+    problem = discretise(CATALOGUE[scene].checked(sizes | law | changes))
     found = reference_of(problem)
     assert found.converged.all()
     assert kkt_residual(found, problem) < 1e-10
@@ -135,7 +138,9 @@ def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiff
 
 @pytest.mark.parametrize("method", ["paper", "fast"])
 def test_the_iteration_itself_does_not_see_how_soft_the_spring_is(method):
-    """What the body's own deformation takes is all: a shift of the whole body takes nothing."""
+    """What the body's own deformation takes is all:
+    a shift of the whole body takes nothing.
+    """
     own = {**SMALL, "young": STEEL, "method": method, "finish": "none"}
     soft, steel, hard = (
         errors(InclineSettings.checked({**own, "spring": spring}), 100)

@@ -1,4 +1,6 @@
-"""Structures need no scene: their probes give what the inside gives, their loops balance."""
+"""Structures need no scene:
+their probes give what the inside gives, their loops balance.
+"""
 
 from __future__ import annotations
 
@@ -60,8 +62,10 @@ def whole(problem: Problem, iterate: Iterate) -> tuple[np.ndarray, np.ndarray]:
 def test_mean_displacement_of_a_side_is_that_of_the_recovered_nodes(
     side: str, component: int
 ) -> None:
-    """Also where nothing is prescribed, and loads inside move the side beside the skeleton."""
-    _, iterate = iterate_of("block", {**SMALL, **PULLED, **HEAVY}, 4)
+    """Also where nothing is prescribed,
+    and loads inside move the side beside the skeleton.
+    """
+    _, iterate = iterate_of("block", SMALL | PULLED | HEAVY, 4)
     nodes, found = whole(iterate.problem, iterate)
     axis = 1 if side == "top" else 0
     if side == "left":
@@ -85,7 +89,7 @@ def test_reaction_is_the_force_that_holds_the_prescribed_end() -> None:
 
 
 def test_shear_force_on_the_support_is_the_traction_on_the_top() -> None:
-    settings, iterate = iterate_of("block", {**SMALL, **PULLED}, 200)
+    settings, iterate = iterate_of("block", SMALL | PULLED, 200)
     loop = settings.structure().loop(iterate.problem)
     expected = settings.path("top_tangential_load") * settings.values()["length"]
     assert loop.force(iterate) == pytest.approx(
@@ -130,11 +134,11 @@ BEAMS = replace(
 def test_a_side_that_is_not_named_is_free() -> None:
     free = Side(Given(False, 0.0 * T), Given(False, 0.0 * T))
     named = replace(
-        BODY, sides={**dict.fromkeys(("left", "right", "bottom"), free), **BODY.sides}
+        BODY, sides=dict.fromkeys(("left", "right", "bottom"), free) | BODY.sides
     )
     assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
-    assert {act.where for act in BODY.described().acts} == {"top x", "top y"}
-    assert [hold.kind for hold in BODY.described().holds] == ["support"]
+    assert {act.where for act in BODY.description().acts} == {"top x", "top y"}
+    assert [hold.kind for hold in BODY.description().holds] == ["support"]
 
 
 @pytest.mark.parametrize(
@@ -162,7 +166,9 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 
 def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
-    """Of an extreme s over three heights h each: 3 s h^2 / 6, against the clock where s is up."""
+    """Of an extreme s over three heights h each:
+    3 s h^2 / 6, against the clock where s is up.
+    """
     problem = BEAMS.discretise()
     still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
     force = BEAMS.loop(problem).force(still)

@@ -1,4 +1,6 @@
-"""Each script in `solver/examples` runs, and what it prints is physics that is known."""
+"""Each script in `solver/examples` runs,
+and what it prints is physics that is known.
+"""
 
 from __future__ import annotations
 

@@ -118,5 +118,7 @@ def test_lessons_and_cases_hold(kind: str, command: str, tmp_path: Path) -> None
     (text,) = blocks(kind)
     file = tmp_path / "mine.toml"
     file.write_text(text, encoding="utf-8")
-    options = ["--out", str(tmp_path / "proof")] if command == "proof" else []
+    options = []
+    if command == "proof":
+        options = ["--out", str(tmp_path / "proof")]
     assert main([command, str(file), *options]) == 0

@@ -1,4 +1,6 @@
-"""One loop, as testing machines, spreadsheets and programs write it, is read as that loop."""
+"""One loop, as testing machines,
+spreadsheets and programs write it, is read as that loop.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,10 @@ DISPLACEMENTS = [0.0, 1.5, 2.25, -1.0]
 FORCES = [0.0, 1234.5, 2000.0, -500.25]
 """Newtons."""
 
-PLAIN = "time [s],displacement [mm],force [N]\n0,0,0\n0.5,1.5,1234.5\n1,2.25,2000\n1.5,-1,-500.25\n"
+PLAIN = (
+    "time [s],displacement [mm],force [N]\n0,0,0\n0.5,1.5,1234.5\n1,2.25,2000\n"
+    "1.5,-1,-500.25\n"
+)
 GERMAN = "0;0;0\n0,5;1,5;1234,5\n1;2,25;2000\n1,5;-1;-500,25\n"
 ROWS = "0 0 0\n0.5 1.5 1234.5\n1 2.25 2000\n1.5 -1 -500.25\n"
 KINDS: dict[str, str | bytes] = {
@@ -35,7 +40,8 @@ KINDS: dict[str, str | bytes] = {
     "tabs and a mark at the beginning": PLAIN.replace(",", "\t").encode("utf-8-sig"),
     "of UTF-16": PLAIN.replace(",", "\t").encode("utf-16"),
     "columns the other way round": (
-        "force (N);disp (mm);t (s)\n0;0;0\n1234.5;1.5;0.5\n2000;2.25;1\n-500.25;-1;1.5\n"
+        "force (N);disp (mm);t (s)\n0;0;0\n1234.5;1.5;0.5\n2000;2.25;1\n"
+        "-500.25;-1;1.5\n"
     ),
     "separators at the ends": (
         "t [s];u [mm];F [N];\n0;0;0;\n0.5;1.5;1234.5;\n1;2.25;2000;\n1.5;-1;-500.25;\n"
@@ -49,7 +55,8 @@ KINDS: dict[str, str | bytes] = {
         '"1,5","-1","-500,25"\n'
     ),
     "quoted, with quantities and units in lines of their own": (
-        '"Time","Extension","Load"\n"(s)","(mm)","(N)"\n"0","0","0"\n"0.5","1.5","1234.5"\n'
+        '"Time","Extension","Load"\n"(s)","(mm)","(N)"\n"0","0","0"\n'
+        '"0.5","1.5","1234.5"\n'
         '"1","2.25","2000"\n"1.5","-1","-500.25"\n'
     ),
     "units in capitals": "Zeit;Weg;Kraft\nSEC;MM;N\n" + GERMAN,
@@ -66,7 +73,8 @@ KINDS: dict[str, str | bytes] = {
         "1,0.088582677165,449.617886195\n1.5,-0.039370078740,-112.460673784\n"
     ),
     "feet and kips": (
-        "time min,pos ft,load kips\n0,0,0\n0.0083333333333,0.0049212598425,0.277526640257\n"
+        "time min,pos ft,load kips\n0,0,0\n"
+        "0.0083333333333,0.0049212598425,0.277526640257\n"
         "0.0166666666667,0.0073818897638,0.449617886195\n"
         "0.025,-0.0032808398950,-0.112460673784\n"
     ),
@@ -83,7 +91,8 @@ KINDS: dict[str, str | bytes] = {
     "comments behind semicolons": "t u[mm] F[N]\n"
     + ROWS.replace("1.5 1234.5", "1.5 1234.5 ; slips"),
     "saved by NumPy": (
-        "# time displacement_mm force_N\n0.0e+00,0.0e+00,0.0e+00\n5.0e-01,1.5e+00,1.2345e+03\n"
+        "# time displacement_mm force_N\n0.0e+00,0.0e+00,0.0e+00\n"
+        "5.0e-01,1.5e+00,1.2345e+03\n"
         "1.0e+00,2.25e+00,2.0e+03\n1.5e+00,-1.0e+00,-5.0025e+02\n"
     ),
     "exponents of Fortran": (
@@ -103,10 +112,12 @@ KINDS: dict[str, str | bytes] = {
         "1.5   -1   -500.25\n"
     ),
     "commas between thousands": (
-        "t\tu [mm]\tF [N]\n0\t0\t0\n0.5\t1.5\t1,234.5\n1\t2.25\t2,000\n1.5\t-1\t-500.25\n"
+        "t\tu [mm]\tF [N]\n0\t0\t0\n0.5\t1.5\t1,234.5\n1\t2.25\t2,000\n"
+        "1.5\t-1\t-500.25\n"
     ),
     "quoted commas between thousands": (
-        'time,disp [mm],force [N]\n0,0,0\n0.5,1.5,"1,234.5"\n1,2.25,"2,000"\n1.5,-1,-500.25\n'
+        'time,disp [mm],force [N]\n0,0,0\n0.5,1.5,"1,234.5"\n1,2.25,"2,000"\n'
+        "1.5,-1,-500.25\n"
     ),
     "points between thousands": (
         "t;u [mm];F [N]\n0;0;0\n0,5;1,5;1.234,5\n1;2,25;2.000\n1,5;-1;-500,25\n"
@@ -123,7 +134,8 @@ KINDS: dict[str, str | bytes] = {
     + PLAIN,
     "sums before the data": "4 2000 2.25 -500.25\nt u[mm] F[N]\n" + ROWS,
     "a head that comes again": (
-        "t u[mm] F[N]\n0 0 0\n0.5 1.5 1234.5\n\fSlip rig   Page 2\nt u[mm] F[N]\n-----------\n"
+        "t u[mm] F[N]\n0 0 0\n0.5 1.5 1234.5\n\fSlip rig   Page 2\nt u[mm] F[N]\n"
+        "-----------\n"
         "1 2.25 2000\n1.5 -1 -500.25\n"
     ),
     "text between head and data": (
@@ -142,14 +154,17 @@ KINDS: dict[str, str | bytes] = {
     "remarks without a name": "t u[mm] F[N]\n"
     + ROWS.replace("1234.5\n", "1234.5 slips here\n"),
     "a column of names in front": (
-        "point,t,u [mm],F [N]\nA,0,0,0\nB,0.5,1.5,1234.5\nC,1,2.25,2000\nD,1.5,-1,-500.25\n"
+        "point,t,u [mm],F [N]\nA,0,0,0\nB,0.5,1.5,1234.5\nC,1,2.25,2000\n"
+        "D,1.5,-1,-500.25\n"
     ),
     "the time of day beside the time": (
-        "Time;Time [s];Disp. [mm];Axial Force [N]\n12:00:00;0;0;0\n12:00:00;0,5;1,5;1234,5\n"
+        "Time;Time [s];Disp. [mm];Axial Force [N]\n12:00:00;0;0;0\n"
+        "12:00:00;0,5;1,5;1234,5\n"
         "12:00:01;1;2,25;2000\n12:00:01;1,5;-1;-500,25\n"
     ),
     "rows without a number": (
-        "t,u [mm],F [N]\n0,0,0\n0.2,NaN,3\n0.3,,\n0.4,0.1,n/a\n0.5,1.5,1234.5\n0.6,-,-\n"
+        "t,u [mm],F [N]\n0,0,0\n0.2,NaN,3\n0.3,,\n0.4,0.1,n/a\n0.5,1.5,1234.5\n"
+        "0.6,-,-\n"
         "1,2.25,2000\n1.2,*****,7\n1.5,-1,-500.25\n"
     ),
     "a last line that was cut off": "t u[mm] F[N]\n" + ROWS + "2.0 -3\n",

@@ -57,7 +57,9 @@ def table(quantity: str, x: Any, t: Any, values: Any) -> str:
 
 
 def own_friction(scene: str) -> tuple[Any, Any, Any]:
-    """Give our force per length or area where it is determinate, with its points and instants."""
+    """Give our force per length or area where it is determinate,
+    with its points and instants.
+    """
     _, problem, reference = solved(scene)
     (name, *_) = problem.rubbing
     law = next(iter(problem.rubbing.values()))
@@ -83,7 +85,9 @@ def test_our_own_friction_times_a_factor_is_as_far_as_the_factor_says(
 
 
 def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
-    """It is given at places that are no nodes, and at instants that are not those of the run."""
+    """It is given at places that are no nodes,
+    and at instants that are not those of the run.
+    """
     rng = np.random.default_rng(1)
     distances = []
     for elements in (20, 40, 80):

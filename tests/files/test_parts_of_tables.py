@@ -1,4 +1,6 @@
-"""Numerals, heads, files, lines and workbooks: what is written is read, by whatever way."""
+"""Numerals, heads, files, lines and workbooks:
+what is written is read, by whatever way.
+"""
 
 from __future__ import annotations
 

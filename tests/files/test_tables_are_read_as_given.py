@@ -1,4 +1,6 @@
-"""Whatever a table looks like, the solver gets the numbers that were given, or says why not."""
+"""Whatever a table looks like,
+the solver gets the numbers that were given, or says why not.
+"""
 
 from __future__ import annotations
 
@@ -273,7 +275,10 @@ def test_the_command_says_what_it_understood(tmp_path: Path, capsys: Any) -> Non
     file.write_bytes(
         "Prüfung\nZeit;Weg (mm);Kraft (kN)\n0;0;0\n1;2;0,9\n".encode("cp1252")
     )
-    said = "Zeit in s (no unit given), Kraft in kN, 2 points, from 0 to 0.9 kN; passed over: 'Weg'"
+    said = (
+        "Zeit in s (no unit given), Kraft in kN, 2 points, from 0 to 0.9 kN; passed "
+        "over: 'Weg'"
+    )
     sizes = ["--set=elements=10", "--set=substructures=2", "--set=instants=11"]
     command = ["run", "bar", *sizes, f"--set=load={file}", "--json"]
     assert main(command) == 0

@@ -26,7 +26,7 @@ def table(forces):
 
 
 def pulled(bar, load, **changes):
-    """The same bar, held at its left end and pulled at its right one, at any instants."""
+    """Hold a bar at its left end, and pull it at its right one at any instants."""
     load = np.asarray(load, dtype=float)
     changes = {"pressure": None, **changes}
     ends = {"left": End(displacement=np.zeros_like(load)), "right": End(force=load)}
@@ -38,7 +38,9 @@ def relative(found, expected):
 
 
 def boundary_of(problem, reference):
-    """Give W and F of a reference on every row, scaled: what elasticity leaves goes to the ends."""
+    """Give W and F of a reference on every row,
+    scaled: what elasticity leaves goes to the ends.
+    """
     law = problem.friction
     displacement = reference.displacement / problem.scales.displacement
     friction = reference.friction_force / problem.scales.force

@@ -1,4 +1,6 @@
-"""A served page and a browser to look at it, for the tests and measurements of the page."""
+"""A served page and a browser to look at it,
+for the tests and measurements of the page.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,9 @@ def free_port() -> int:
 
 
 def chromium() -> str:
-    """The system's Chromium; without it the test is skipped, where nobody promised one (CI)."""
+    """The system's Chromium; without it the test is skipped,
+    where nobody promised one (CI).
+    """
     for name in ("chromium", "chromium-browser", "google-chrome"):
         if path := shutil.which(name):
             return path
@@ -78,7 +82,9 @@ class Chrome:
         return page
 
     def leave(self, page: Page) -> None:
-        """Close a page: what it has stored is forgotten, and its window is free for another."""
+        """Close a page: what it has stored is forgotten,
+        and its window is free for another.
+        """
         page.evaluate("localStorage.clear(), sessionStorage.clear()")
         page.context.clear_cookies()
         page.mouse.move(0.0, 0.0)
@@ -91,7 +97,9 @@ class Chrome:
 
 
 class Server:
-    """`panel serve app` in a process group of its own, or another command that serves the page."""
+    """`panel serve app` in a process group of its own,
+    or another command that serves the page.
+    """
 
     def __init__(
         self,
@@ -176,5 +184,7 @@ def serving(log: Path, port: int = 0, *options: str, **more: Any) -> Iterator[Se
 
 
 def _take_interrupts() -> None:
-    """Undo what a shell does to all that it runs in the background: it has interrupts ignored."""
+    """Undo what a shell does to all that it runs in the background:
+    it has interrupts ignored.
+    """
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -6,7 +6,14 @@ from solver.discrete.plane.bricks import Brick
 from solver.discrete.plane.stack import Given, Side, Stack, Support
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Elasticity, Substructure
-from solver.laws import Bodies, Component, Contact, Dirichlet, Friction, Unilateral
+from solver.laws import (
+    BodyStiffness,
+    Component,
+    Contact,
+    Dirichlet,
+    Friction,
+    Unilateral,
+)
 
 COURSES = ("random", "reversal", "open and close", "wander")
 
@@ -75,12 +82,14 @@ def contact(normal, tangent, below, gap, friction):
         points=points,
         positions=1.0 * points,
         weights=ones,
-        around=Bodies(),
+        stiffness_beside=BodyStiffness(),
     )
 
 
 def rubbing_points(seed, *, opens, two):
-    """Random numbers, sliders, and what else a contact of them needs: a normal law or none."""
+    """Random numbers, sliders,
+    and what else a contact of them needs: a normal law or none.
+    """
     random = np.random.default_rng(seed)
     pairs = 4
     rows = random.permutation(4 * pairs).reshape(4, pairs)
@@ -101,7 +110,9 @@ def rubbing_points(seed, *, opens, two):
 
 
 def local_stage(law, random, *, rows=16, times=20):
-    """Displacements and forces that a law finds along random search directions, and these."""
+    """Displacements and forces that a law finds along
+    random search directions, and these.
+    """
     k = 10.0 ** random.uniform(-1.0, 1.0, rows)
     incoming = random.normal(size=(rows, times))
     moved = incoming.copy()
@@ -110,7 +121,7 @@ def local_stage(law, random, *, rows=16, times=20):
 
 
 def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
-    """One body, tangential and normal displacement of each point in turn, on a support."""
+    """A body on a support: tangential and normal displacement of each point in turn."""
     size = 2 * points
     part = substructure(stiffness(rng, size), (0, 0), course(rng, load, size, instants))
     if gap is None:
@@ -179,7 +190,8 @@ def block(
     slope=0.0,
     **given,
 ):
-    """A block that is pressed on a rough support, then sheared back and forth on its top.
+    """A block that is pressed on a rough support, then sheared back and forth on its
+    top.
 
     Shear and its change along the top are shares of the pressure, 1e-3 E.
     """

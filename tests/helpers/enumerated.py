@@ -1,4 +1,6 @@
-"""All equilibria of one instant of a short rod, by trying every status of every point."""
+"""All equilibria of one instant of a short rod,
+by trying every status of every point.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +15,25 @@ ROUNDING = 1e-9
 
 
 def numbers_of_equilibria(solution):
-    """How many equilibria each instant has after the instants before it, as they were solved.
+    """How many equilibria each instant has after the instants before it, as they were
+    solved.
 
     Of a rod on a support with friction that changes with slip. What is singular is left
     out: there a rod may lie anywhere.
     """
     problem = solution.problem
     numbers = []
-    gone, before = np.zeros((2, problem.n_dofs))
+    accumulated_slip, before = np.zeros((2, problem.n_dofs))
     for instant, now in enumerate(
         (solution.displacement / problem.scales.displacement).T
     ):
-        numbers.append(len(equilibria(problem, instant, before, gone)))
-        gone = gone + np.abs(now - before)
+        numbers.append(len(equilibria(problem, instant, before, accumulated_slip)))
+        accumulated_slip = accumulated_slip + np.abs(now - before)
         before = now
     return np.array(numbers)
 
 
-def equilibria(problem, instant, before, gone):
+def equilibria(problem, instant, before, accumulated_slip):
     """All increments of an instant, shape (n_equilibria, n_dofs), scaled.
 
     A point sticks, or slips either way and comes to rest between two points of the
@@ -58,7 +61,7 @@ def equilibria(problem, instant, before, gone):
     # The bound at the end of a slip is linear in it: what is left without slip, and the
     # slope.
     left = bound[rubbing] * (
-        factors[piece] + slopes[piece] * (gone[rubbing] - starts[piece])
+        factors[piece] + slopes[piece] * (accumulated_slip[rubbing] - starts[piece])
     )
     slope = np.abs(way) * bound[rubbing] * slopes[piece]
     matrices = np.tile(stiffness, (len(choices), 1, 1))
@@ -79,8 +82,8 @@ def equilibria(problem, instant, before, gone):
     slack = ROUNDING * max(np.abs(force).max(), bound.max())
     pulled = np.abs(force - moved @ stiffness)[:, rubbing]
     slip = way * moved[:, rubbing]
-    rests = gone[rubbing] + slip
-    sticks = pulled <= bound[rubbing] * strength(gone[rubbing]) + slack
+    rests = accumulated_slip[rubbing] + slip
+    sticks = pulled <= bound[rubbing] * strength(accumulated_slip[rubbing]) + slack
     slips = (slip > 0.0) & (starts[piece] <= rests) & (rests <= ends[piece])
     found = moved[np.where(way == 0, sticks, slips).all(axis=1)]
     size = np.abs(found).max(initial=0.0) or 1.0

@@ -1,4 +1,5 @@
-"""One BLAS thread for every process of the tests: they share the processors as the workers do.
+"""One BLAS thread for every process of the tests: they share the processors as the
+workers do.
 
 Those of several processes spin against each other, and a dense factor takes twenty
 times as long.

@@ -16,7 +16,8 @@ ANSWER = "start=nested&finish=at-once"
 """In an address: a run whose answer is there at once."""
 IGNORED = re.compile(
     "GL Driver Message|Failed to repull session"
-    "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not open websocket"
+    "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not "
+    "open websocket"
 )
 """In the console: a hint on speed, and what is said of a network that is cut, and
 was."""
@@ -43,7 +44,9 @@ Visit = Callable[..., Page]
 
 @contextmanager
 def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
-    """Open pages, and close them; neither they nor the server may complain meanwhile."""
+    """Open pages, and close them;
+    neither they nor the server may complain meanwhile.
+    """
     pages: list[Page] = []
     complaints: list[str] = []
     before = len(server.log)
@@ -104,7 +107,9 @@ def is_solved(page: Page) -> None:
 
 
 def holds(page: Page, expression: str, arg: Any = None) -> None:
-    """Wait until an expression holds, of `model`, the way to the page's models by their names."""
+    """Wait until an expression holds, of `model`,
+    the way to the page's models by their names.
+    """
     page.wait_for_function(
         f"(arg) => {{ const model = {MODEL}; return ({expression}) }}",
         arg=arg,
@@ -128,6 +133,18 @@ def field(page: Page, name: str) -> Locator:
     return page.get_by_role("textbox", name=re.compile(rf"^{re.escape(name)}"))
 
 
+def enter(page: Page, name: str, text: str, over: str) -> None:
+    """Type a value into a field, once it shows the one that it is to replace.
+
+    A figure may be there before a field has its new value, which then would be written
+    over what was selected.
+    """
+    typed = field(page, name)
+    expect(typed).to_have_value(over)
+    typed.fill(text)
+    typed.press("Enter")
+
+
 def button(page: Page, name: str) -> Locator:
     """The button in sight that a name begins with."""
     pattern = re.compile(rf"^{re.escape(name)}")
@@ -135,14 +152,18 @@ def button(page: Page, name: str) -> Locator:
 
 
 def figure(page: Page, number: int) -> Locator:
-    """A figure of the page: 0 is the scene, 1 the time line, others are those of the cards."""
+    """A figure of the page: 0 is the scene,
+    1 the time line, others are those of the cards.
+    """
     return page.locator(".bk-Figure").nth(number)
 
 
 def drag(
     page: Page, place: Locator, start: float, end: float, height: float = 0.5
 ) -> None:
-    """Press on a place, at a share of its width, and move to another; the button stays down."""
+    """Press on a place, at a share of its width,
+    and move to another; the button stays down.
+    """
     box = place.bounding_box()
     assert box is not None
     y = box["y"] + height * box["height"]

@@ -18,7 +18,7 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
     for iterate in islice(
         iterations(problem, method_of(settings)), LOOK - 1, most, LOOK
     ):
-        found = iterate.behaviour
+        found = iterate.violation
         if found <= violation:
             return iterate
     raise AssertionError(
@@ -33,7 +33,9 @@ def lengths(iterate, name="support"):
 
 
 def reaction(iterate, side):
-    """Resultant of the forces on a held side, along x and y, shape (2, n_instants), N."""
+    """Resultant of the forces on a held side,
+    along x and y, shape (2, n_instants), N.
+    """
     problem = iterate.problem
     rows = problem.interfaces[side].rows
     force = iterate.boundary_force[rows] * problem.scales.force
@@ -42,14 +44,18 @@ def reaction(iterate, side):
 
 
 def stress(iterate, instant=-1):
-    """Stresses (xx, yy, xy) of all elements at an instant, shape (n_elements, 3), Pa."""
+    """Stresses (xx, yy, xy) of all elements at an instant,
+    shape (n_elements, 3), Pa.
+    """
     inside = iterate.problem.inside
     found = inside.displacement(iterate.displacement, [instant])
     return inside.stress(found[:, :, 0])
 
 
 def whole_force_error(reference, iterate):
-    """How wrong the contact force is as one field, pressure and friction together, (-)."""
+    """How wrong the contact force is as one field,
+    pressure and friction together, (-).
+    """
     wanted = reference.contact_force
     return float(
         np.linalg.norm(iterate.contact_force - wanted) / np.linalg.norm(wanted)

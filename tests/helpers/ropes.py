@@ -21,7 +21,7 @@ STRAND: dict[str, Any] = {"bending": "uniform", "elements": 40, "substructures":
 
 
 def settings_of(**changes: Any) -> RopeSettings:
-    return RopeSettings.checked({**STRAND, **changes})
+    return RopeSettings.checked(STRAND | changes)
 
 
 def solved(settings: RopeSettings) -> tuple[Rope, Reference]:

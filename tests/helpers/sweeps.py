@@ -29,7 +29,7 @@ class Here(ThreadPoolExecutor):
 
 
 def tiny(vary: list[str], of: list[str], scene: str = "bar", **changes: Any) -> Plan:
-    settings = CATALOGUE[scene].checked({**TINY, **changes})
+    settings = CATALOGUE[scene].checked(TINY | changes)
     return plan_of(settings, vary, of)
 
 

@@ -1,4 +1,6 @@
-"""The page on a phone, on a projector, in the dark, and for whoever sees or moves otherwise."""
+"""The page on a phone, on a projector,
+in the dark, and for whoever sees or moves otherwise.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ LIGHT_TAB = "rgb(25, 118, 210)"
 BACKGROUND = "getComputedStyle(document.body).backgroundColor"
 SIZE = """() => {
   const models = Bokeh.documents[0].roots().flatMap((root) => [...root.references()])
-  return models.find((model) => model.axis_label == "force, kN/m").major_label_text_font_size
+  const axis = models.find((model) => model.axis_label == "force, kN/m")
+  return axis.major_label_text_font_size
 }"""
 
 OF_THE_WIDGETS = ("aria-prohibited-attr", "aria-progressbar-name", "button-name")

@@ -1,4 +1,6 @@
-"""A person finds a case like theirs, brings a measured loop, and leaves with its parameters."""
+"""A person finds a case like theirs,
+brings a measured loop, and leaves with its parameters.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A person loses the network or the worker, reloads, goes back, or comes by a foolish address."""
+"""A person loses the network or the worker,
+reloads, goes back, or comes by a foolish address.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +18,7 @@ from pages import (
     ENDLESS,
     Visit,
     button,
+    enter,
     field,
     figures,
     is_solved,
@@ -52,12 +55,6 @@ def newest_worker(server: Server, before: list[int]) -> int:
     return new[-1]
 
 
-def change_peak(page: Page, value: str) -> None:
-    typed = field(page, "Peak load")
-    typed.fill(value)
-    typed.press("Enter")
-
-
 def test_a_network_that_breaks_and_is_mended_costs_no_settings(
     visit: Visit, proxy: Proxy
 ) -> None:
@@ -71,7 +68,7 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
         proxy.cut()
     with page.expect_console_message(lambda message: "is now open" in message.text):
         proxy.mend()
-    change_peak(page, "1100")
+    enter(page, "Peak load", "1100", over="1000")
     expect(figures(page)).to_contain_text("Force −1.1 kN")
     is_solved(page)
 
@@ -79,7 +76,7 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
 def test_a_reload_keeps_the_settings_and_back_undoes_them(visit: Visit) -> None:
     page = visit(f"?{ANSWER}")
     is_solved(page)
-    change_peak(page, "1100")
+    enter(page, "Peak load", "1100", over="900")
     expect(figures(page)).to_contain_text("Force −1.1 kN")
     button(page, "Block").click()
     expect(page.locator(".sentence")).to_contain_text("block")
@@ -141,7 +138,7 @@ def test_what_a_foolish_address_has_is_said_on_its_page(visit: Visit) -> None:
     is_solved(page)
     # Bokeh's figures would not follow what moves them.
     place = page.locator(".scene").bounding_box()
-    change_peak(page, "1000")
+    enter(page, "Peak load", "1000", over="900")
     expect(page.locator(".status")).not_to_contain_text("From the address: ")
     assert page.locator(".scene").bounding_box() == place
 

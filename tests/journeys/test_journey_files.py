@@ -57,7 +57,7 @@ def opens_alone(browser: Browser, path: Path) -> None:
     ] == []
 
 
-def test_what_if_draws_a_chart_by_itself_and_a_run_is_taken_away_as_table_program_and_page(
+def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_program_and_page(
     visit: Visit, tmp_path: Path
 ) -> None:
     page = visit(f"?{SMALL}")
@@ -153,7 +153,9 @@ PLACES = (
 
 @contextmanager
 def watched(page: Page) -> Iterator[None]:
-    """Check that nothing that was written for a page has become a part of it, or has run."""
+    """Check that nothing that was written for a page has
+    become a part of it, or has run.
+    """
     done: list[str] = []
 
     def ask(request: Request) -> None:

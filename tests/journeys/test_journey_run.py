@@ -10,6 +10,7 @@ from pages import (
     Visit,
     button,
     drag,
+    enter,
     field,
     figure,
     figures,
@@ -26,14 +27,18 @@ from solver.scenes import CATALOGUE
 
 HIGH = {"block", "fault", "incline"}
 """Scenes whose bodies are not long."""
-WHOLE = """() => Bokeh.documents.every((document) => [...document.all_models].every((model) => {
-  const range = model.x_range
-  return !range?.bounds?.length || (range.start == range.bounds[0] && range.end == range.bounds[1])
-}))"""
+WHOLE = """() => {
+  const models = Bokeh.documents.flatMap((document) => [...document.all_models])
+  return models.every((model) => {
+    const range = model.x_range
+    if (!range?.bounds?.length) return true
+    return range.start == range.bounds[0] && range.end == range.bounds[1]
+  })
+}"""
 """Whether the time line has the whole interval."""
 
 
-def test_whoever_opens_the_page_sees_a_search_goes_back_in_it_and_may_have_the_answer_at_once(
+def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_once(
     visit: Visit,
 ) -> None:
     page = visit()
@@ -98,50 +103,52 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
     assert len(set(told)) == 1 + len(CATALOGUE)
 
 
-def test_what_is_typed_runs_or_is_refused_beside_it_and_leaves_the_pinned_run_and_the_views(
+def test_typed_values_run_or_are_refused_and_leave_the_pinned_run_and_the_views(
     visit: Visit,
 ) -> None:
     page = visit(f"?{ANSWER}")
     is_solved(page)
-    typed = field(page, "Peak load")
-    typed.fill("1.2 kN")
-    typed.press("Enter")
-    expect(typed).to_have_value("1200")
+    enter(page, "Peak load", "1.2 kN", over="900")
+    expect(field(page, "Peak load")).to_have_value("1200")
     expect(figures(page)).to_contain_text("Force −1.2 kN")
-    friction = field(page, "Friction coefficient")
-    friction.fill("-1")
-    friction.press("Enter")
+    enter(page, "Friction coefficient", "-1", over="0.3")
     expect(page.get_by_text("cannot be −1").first).to_be_visible()
-    expect(friction).to_have_value("0.3")
+    expect(field(page, "Friction coefficient")).to_have_value("0.3")
     expect(figures(page)).to_contain_text("Force −1.2 kN")
 
     button(page, "Keep this run").click()
-    for value in ("1000", "1100"):
-        typed.fill(value)
-        typed.press("Enter")
+    for before, value in (("1200", "1000"), ("1000", "1100")):
+        enter(page, "Peak load", value, over=before)
         expect(figures(page)).to_contain_text(f"Force −{int(value) / 1000:g} kN")
     legend = "model('pulse').document._all_models"
     holds(
         page,
-        f"[...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)",
+        f"[...{legend}.values()].some(m => m.label?.value === 'pinned run' && "
+        "m.visible)",
     )
     button(page, "Keep this run").click()
     holds(
         page,
-        f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)",
+        f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && "
+        "m.visible)",
     )
 
-    hidden = f"[...{legend}.values()].filter(m => m.type === 'GlyphRenderer' && !m.visible).length"
+    hidden = (
+        f"[...{legend}.values()].filter(m => m.type === 'GlyphRenderer' && "
+        "!m.visible).length"
+    )
     # The curve and its copy in the legend.
     for count in (2, 0):
         page.get_by_text("closed form", exact=True).first.click()
         holds(page, f"{hidden} === {count}")
 
     page.get_by_role("tab", name="Loop").click()
-    titles = "[...model('pulse').document._all_models.values()].filter(m => m.type === 'Title')"
+    titles = (
+        "[...model('pulse').document._all_models.values()].filter(m => m.type === "
+        "'Title')"
+    )
     holds(page, f"{titles}.some(m => m.text.startsWith('End displacement'))")
-    field(page, "Peak load").fill("1000")
-    field(page, "Peak load").press("Enter")
+    enter(page, "Peak load", "1000", over="1100")
     expect(figures(page)).to_contain_text("Force −1 kN")
     expect(page.get_by_role("tab", name="Loop")).to_have_attribute(
         "aria-selected", "true"

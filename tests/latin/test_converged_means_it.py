@@ -1,4 +1,6 @@
-"""What is called converged has its contact force within the accuracy, or is told not to."""
+"""What is called converged has its contact force
+within the accuracy, or is told not to.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +20,9 @@ from solver.scenes.method import method_of
 from solver.study.stability import Verdict, judge, run
 
 BLOCK = (
-    "block gap=flat plane=stress poisson=0.499 length=0.01 height=0.321 elements=59 elements_up=5 "
-    "substructures=5 substructures_up=3 instants=3 friction=2.273 top=traction "
-    "top_normal_load=[[0,0],[0.5,-119201409.28],[1,-119201409.28]] "
+    "block gap=flat plane=stress poisson=0.499 length=0.01 height=0.321 elements=59 "
+    "elements_up=5 substructures=5 substructures_up=3 instants=3 friction=2.273 "
+    "top=traction top_normal_load=[[0,0],[0.5,-119201409.28],[1,-119201409.28]] "
     "top_tangential_load=[[0,0],[0.5,937242.781],[1,0]]"
 )
 FINE = ["bar elements=800", "bar elements=800 substructures=5 max_iterations=3000"]
@@ -29,8 +31,8 @@ seconds each."""
 HARD = [
     *FINE,
     "bar elements=200",
-    "bar instants=7 friction=0.317 k_scale=0.437 k_update=status elements=128 load=random "
-    "peak=6444.1 substructures=5 start=nested section_profile=rising",
+    "bar instants=7 friction=0.317 k_scale=0.437 k_update=status elements=128 "
+    "load=random peak=6444.1 substructures=5 start=nested section_profile=rising",
     "bar instants=48 friction=0.133 k_scale=0.904 elements=6 load=hold peak=9862.8 "
     "substructures=5 support_displacement=5.7068957715271356e-05",
     "bar tolerance=1",
@@ -76,12 +78,12 @@ def test_the_fast_method_finds_the_solution_of_a_hard_command(command):
         "bar substructures=11 peak=6708 instants=44 support_displacement=0.000112 "
         "body_force=3836 elements=105",
         # Statuses that never settle: acceleration is off, and k changes on the way.
-        "bar substructures=36 acceleration=none k_update=status peak=-19551 instants=28 "
-        "support_displacement=-0.00656 body_force=-36209 friction=1.3126 friction_profile=gap "
-        "elements=307",
+        "bar substructures=36 acceleration=none k_update=status peak=-19551 "
+        "instants=28 support_displacement=-0.00656 body_force=-36209 friction=1.3126 "
+        "friction_profile=gap elements=307",
         # An instant alone: the condensation is dear beside an iteration.
-        "strand substructures=40 multiscale=false k_scale=3.83 load=hold peak=933 instants=1 "
-        "wires=9 elements=91",
+        "strand substructures=40 multiscale=false k_scale=3.83 load=hold peak=933 "
+        "instants=1 wires=9 elements=91",
     ],
 )
 def test_a_step_that_needs_more_systems_gets_them_in_time(command):
@@ -106,7 +108,7 @@ def test_friction_does_not_hide_behind_a_large_pressure(finish, friction):
 
 
 @pytest.mark.parametrize(("size", "error"), [(0.1, 0.5), (1e-3, 0.05), (0.0, 0.0)])
-def test_an_error_is_that_of_friction_and_one_of_next_to_nothing_counts_beside_the_pressure(
+def test_an_error_is_that_of_friction_and_of_next_to_nothing_beside_the_pressure(
     size, error
 ):
     problem = discretise(

@@ -1,4 +1,6 @@
-"""Driven on, the iteration reaches the incremental reference, whatever path it takes there."""
+"""Driven on, the iteration reaches the incremental reference,
+whatever path it takes there.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,17 @@ PATHS = ["ramp", "triangle", "cycle", "sine", "decaying", "random"]
 
 
 def balanced(substructures, **values):
-    """Give options whose friction k is 100 ES/L^2 per length for any number of substructures."""
+    """Give options whose friction k is 100 ES/L^2 per
+    length for any number of substructures.
+    """
     factor = 100.0 / substructures**2
     return options(substructures=substructures, k_scale=factor, **values)
 
 
 def driven(chosen):
-    """Iterate until the LATIN indicator, looked at now and then, is below the tolerance."""
+    """Iterate until the LATIN indicator,
+    looked at now and then, is below the tolerance.
+    """
     problem = discretise(chosen)
     for iterate in islice(
         iterations(problem, method_of(chosen)), LOOK - 1, chosen.max_iterations, LOOK
@@ -88,7 +94,7 @@ def test_every_load_path_reaches_the_reference(load):
     ids=str,
 )
 def test_every_kind_of_bar_reaches_the_reference(change):
-    assert_reached(options(**{**SMALL, **change}))
+    assert_reached(options(**(SMALL | change)))
 
 
 @pytest.mark.parametrize("substructures", [1, 7, 50])
@@ -160,7 +166,7 @@ SCENES: dict[str, dict[str, Any]] = {
 )
 @pytest.mark.parametrize("scene", SCENES)
 def test_an_iterate_at_the_end_shows_stick_and_slip_of_the_solution(scene, changes):
-    settings = CATALOGUE[scene].checked({**SCENES[scene], **changes})
+    settings = CATALOGUE[scene].checked(SCENES[scene] | changes)
     problem = discretise(settings)
     solution = solve(problem, method_of(settings), watch=False)
     assert solution.status.ending == "converged"

@@ -1,4 +1,6 @@
-"""A run knows its error, heeds the accuracy or the limit that is asked, and bills every second."""
+"""A run knows its error,
+heeds the accuracy or the limit that is asked, and bills every second.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,7 @@ ROUNDING = 1e-9
 
 
 def small(scene: str, **changes: Any) -> Any:
-    return CATALOGUE[scene].checked({**SMALL[scene], **changes})
+    return CATALOGUE[scene].checked(SMALL[scene] | changes)
 
 
 @pytest.mark.parametrize("scene", SMALL)
@@ -164,8 +166,8 @@ FEW = {"bricks": 3, "courses": 3, "displacement": 5e-5}
 
 
 def options(scene: str = "bar", **changes: Any) -> Settings:
-    sizes = {**SHORT, **(FEW if scene == "wall" else {})}
-    return CATALOGUE[scene].checked({**sizes, "finish": "accuracy", **changes})
+    sizes = SHORT | (FEW if scene == "wall" else {})
+    return CATALOGUE[scene].checked(sizes | {"finish": "accuracy"} | changes)
 
 
 @cache

@@ -1,4 +1,6 @@
-"""Automatic k and its update, Anderson, nested meshes: a shorter path to the same limit."""
+"""Automatic k and its update, Anderson,
+nested meshes: a shorter path to the same limit.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,7 @@ FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested
 
 
 def options(**changes: object) -> BarSettings:
-    return BarSettings.checked({"method": "paper", **FAST, **changes})
+    return BarSettings.checked({"method": "paper"} | FAST | changes)
 
 
 def within(solution, level: float) -> int:
@@ -39,7 +41,9 @@ def test_all_together_reach_one_percent_of_friction_force_early(changes):
 
 
 def test_a_run_starts_from_no_mesh_that_has_other_instants():
-    """The points of a table are all instants where a mesh is coarse, and few where it is fine."""
+    """The points of a table are all instants where a mesh is coarse,
+    and few where it is fine.
+    """
     times = np.linspace(0.0, 1.0, 2000)
     wave = 300.0 * np.sin(20.0 * np.pi * times)
     fine = options(elements=1200, load=np.stack([times, wave], axis=1).tolist())
@@ -113,7 +117,7 @@ def test_it_makes_the_plain_iteration_shorter(substructures):
 )
 def test_the_limit_is_the_same_once_k_is_updated(change):
     solution = solved(updating(**FAST, tolerance=1e-24, max_iterations=3000, **change))
-    assert solution.iterate.course.phase == "updated"
+    assert solution.iterate.k_update.state == "updated"
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-8
 
@@ -124,11 +128,11 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
     chosen = updating(**{**FAST, "acceleration": acceleration})
     constant = iterates(chosen.replace(k_update="none"), CALM + 20)
     found = iterates(chosen, 600)
-    phases = [iterate.course.phase for iterate in found]
-    assert [phase for phase, _ in groupby(phases)] == ["first", "updated", "returned"]
+    states = [iterate.k_update.state for iterate in found]
+    assert [state for state, _ in groupby(states)] == ["first", "updated", "returned"]
     # An iterate says what follows: the next is the first with the new k.
-    start = phases.index("updated") + 1
-    back = phases.index("returned") + 1
+    start = states.index("updated") + 1
+    back = states.index("returned") + 1
     assert (back - start) % TRIAL == 0
     assert np.array_equal(found[back].k, constant[0].k)
     if (

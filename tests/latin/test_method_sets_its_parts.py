@@ -1,4 +1,6 @@
-"""`method` sets the parts of the method at once; what is set by hand beside it is kept."""
+"""`method` sets the parts of the method at once;
+what is set by hand beside it is kept.
+"""
 
 from __future__ import annotations
 
@@ -68,7 +70,7 @@ def test_what_is_called_a_default_is_what_the_fast_method_sets(scene):
     "change", [Settings.replace, Settings.with_change], ids=["replace", "with_change"]
 )
 def test_another_method_brings_its_parts_and_all_else_stays(method, change):
-    before = BarSettings.checked({"method": other(method), **OTHERS, **BY_HAND})
+    before = BarSettings.checked({"method": other(method)} | OTHERS | BY_HAND)
     if change is Settings.replace:
         after = before.replace(method=method)
     else:

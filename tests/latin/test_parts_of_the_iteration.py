@@ -1,4 +1,6 @@
-"""Mixtures, separated bases, indicators, starts and ends: each by what it must not change."""
+"""Mixtures, separated bases, indicators,
+starts and ends: each by what it must not change.
+"""
 
 from __future__ import annotations
 
@@ -31,10 +33,10 @@ from solver.latin.end.certified import (
 )
 from solver.latin.end.status_step import Certificate, states_of, status_step
 from solver.latin.indicators import (
-    behaviour_of,
     contact_status,
     latin_indicator,
     ratio,
+    violation_of,
 )
 from solver.latin.stages.blocks import Blocks
 from solver.latin.stages.linear import LinearStage
@@ -297,10 +299,10 @@ def test_a_certified_solution_violates_no_law_and_what_is_beside_it_does(
     of = iterate.problem
     displacement = iterate.boundary_displacement
     force = iterate.boundary_force
-    assert behaviour_of(of, displacement, force) <= 1e-6
+    assert violation_of(of, displacement, force) <= 1e-6
     noise = np.random.default_rng(0).normal(size=force.shape) * np.abs(force).max()
-    little = behaviour_of(of, displacement, force + 1e-4 * noise)
-    more = behaviour_of(of, displacement, force + 1e-2 * noise)
+    little = violation_of(of, displacement, force + 1e-4 * noise)
+    more = violation_of(of, displacement, force + 1e-2 * noise)
     assert 1e-5 < little < more
 
 

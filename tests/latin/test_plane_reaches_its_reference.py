@@ -1,4 +1,6 @@
-"""LATIN in the plane comes to the incremental reference, soon, and whatever the decomposition."""
+"""LATIN in the plane comes to the incremental reference,
+soon, and whatever the decomposition.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ def errors_of(scene, most, **values):
         size = SMALL
     else:
         size = {"instants": 41}
-    return errors(settings_of(scene, **{**size, **values}), most)
+    return errors(settings_of(scene, **(size | values)), most)
 
 
 def within(found, level):

@@ -1,4 +1,6 @@
-"""A run starts, ends and resumes as it should, alike by threads, and refuses what it cannot do."""
+"""A run starts, ends and resumes as it should,
+alike by threads, and refuses what it cannot do.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Slabs of time have the solution of the whole interval, and settle where a load repeats itself."""
+"""Slabs of time have the solution of the whole interval,
+and settle where a load repeats itself.
+"""
 
 from __future__ import annotations
 
@@ -30,11 +32,11 @@ ROUGH = replace(TIGHT, stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=400))
 
 LOADED: dict[str, dict[str, Any]] = {
     "block": {
-        **{"elements": 16, "elements_up": 8, "substructures": 2},
-        **{
-            "top_normal_load": [[0.0, 0.0], [0.25, -4e-5]],
-            "top_tangential_displacement": 2e-5,
-        },
+        "elements": 16,
+        "elements_up": 8,
+        "substructures": 2,
+        "top_normal_load": [[0.0, 0.0], [0.25, -4e-5]],
+        "top_tangential_displacement": 2e-5,
         "top_tangential_load": "sine",
     },
     "bar": {"load": "sine", "elements": 20, "substructures": 4},
@@ -46,7 +48,7 @@ LOADED: dict[str, dict[str, Any]] = {
 def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
     """Make a scene whose load repeats itself, 12 instants a cycle."""
     own = {"cycles": cycles, "instants": CYCLE * cycles + 1, "duration": float(cycles)}
-    return discretise(settings_of(scene, **{**LOADED[scene], **own, **changes}))
+    return discretise(settings_of(scene, **(LOADED[scene] | own | changes)))
 
 
 @pytest.mark.parametrize(

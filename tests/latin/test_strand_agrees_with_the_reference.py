@@ -22,7 +22,7 @@ reference."""
 
 
 def options(**changes: object) -> StrandSettings:
-    return StrandSettings.checked({**SMALL, **FAST, **changes})
+    return StrandSettings.checked(SMALL | FAST | changes)
 
 
 @pytest.mark.parametrize("grip", ["force", "displacement"])
@@ -76,7 +76,7 @@ ACCELERATED = {"search_direction": "auto", "acceleration": "anderson"}
 
 
 def by_paper(**changes: object) -> StrandSettings:
-    return StrandSettings.checked({**SMALL, **PLAIN, **TIGHT, **changes})
+    return StrandSettings.checked(SMALL | PLAIN | TIGHT | changes)
 
 
 def solution_of(settings):

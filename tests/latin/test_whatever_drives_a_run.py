@@ -1,4 +1,5 @@
-"""Runs without loads: overlaps and prescribed displacements drive as loads do, whatever their size.
+"""Runs without loads: overlaps and prescribed displacements drive as loads do, whatever
+their size.
 
 The smallest and the largest sizes are far from any that is physical: what is rounding
 is so beside what drives, and not beside one newton or one metre.
@@ -31,7 +32,9 @@ def gap(left: float, right: float) -> list[list[float]]:
 
 
 def driven(size: float) -> dict[str, tuple[str, dict[str, Any]]]:
-    """Scenes that something of a size, in m, drives, and no load but a tiny one in one of them."""
+    """Scenes that something of a size, in m,
+    drives, and no load but a tiny one in one of them.
+    """
     clamped = {**PLANE, "top": "clamped"}
     moved = {**PLANE, "top": "displacement", "top_normal_displacement": 0.0}
     overlap = gap(-size, -size)
@@ -98,7 +101,7 @@ def test_an_overlap_between_rollers_presses_as_uniaxial_strain_does(
     size: float, friction: float
 ) -> None:
     held = dict.fromkeys(("left", "right", "top"), "roller")
-    values = {**PLANE, **held, "gap": gap(-size, -size), "friction": friction}
+    values = PLANE | held | {"gap": gap(-size, -size), "friction": friction}
     problem = discretise(CATALOGUE["block"].checked(values))
     found = reference_of(problem)
     modulus = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
@@ -127,7 +130,9 @@ def test_a_body_that_falls_or_rises_onto_its_support_presses_with_its_weight(
 
 
 def test_forces_that_rounding_of_a_fall_hides_are_not_called_found() -> None:
-    """A body of steel that falls by 1000 km: a double has no digits left of how it deforms."""
+    """A body of steel that falls by 1000 km:
+    a double has no digits left of how it deforms.
+    """
     values = {**PLANE, "top": "free", "body_force_y": -WEIGHT, "gap": gap(1e6, 1e6)}
     found = reference_of(discretise(CATALOGUE["block"].checked(values)))
     assert not found.converged[1:].any()

@@ -1,4 +1,5 @@
-"""A law that no incremental solver knows: LATIN solves it, and nobody claims a proof of it.
+"""A law that no incremental solver knows: LATIN solves it, and nobody claims a proof of
+it.
 
 References here are dense time stepping that reads nothing of the engine but the
 stiffness.
@@ -66,7 +67,9 @@ def viscous(rows: Indices, damping: Array, force: Array, k: Array) -> Rule:
 
 @dataclass(frozen=True)
 class Dashpot(Interface):
-    """Viscous dampers that are pulled by forces: a law that consists of its local stage."""
+    """Viscous dampers that are pulled by forces:
+    a law that consists of its local stage.
+    """
 
     rows: Indices
     damping: Array
@@ -120,7 +123,8 @@ def damped(law: type[Interface], damping: float = 2.0, **rest: Any) -> Problem:
 
 
 def stepped(of: Problem, load: Array, damping: Array, bound: Array) -> Array:
-    """Dense time stepping, node by node until nothing changes, (n_dofs, n_instants), scaled.
+    """Dense time stepping, node by node until nothing changes, (n_dofs, n_instants),
+    scaled.
 
     The increment minimises an energy with a term |v| at each node, held at the first of
     them.

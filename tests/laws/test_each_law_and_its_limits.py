@@ -1,4 +1,6 @@
-"""Local stages obey their laws along E+, compliant laws tend to rigid ones, cuts change no k."""
+"""Local stages obey their laws along E+,
+compliant laws tend to rigid ones, cuts change no k.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from contact_problems import friction_of, local_stage, rubbing_points
 
 from solver.arrays import Array
 from solver.laws import (
-    Bodies,
+    BodyStiffness,
     Component,
     Contact,
     Dirichlet,
@@ -18,11 +20,11 @@ from solver.laws import (
     FrictionLaw,
     Neumann,
     Perfect,
-    Rod,
+    RodStiffness,
     Strength,
     Unilateral,
 )
-from solver.laws.friction import is_intact, softness_of
+from solver.laws.friction import compliance_of, is_intact
 from solver.laws.play import play
 from solver.refusal import RefusedError
 
@@ -147,11 +149,11 @@ FALLING = Strength((0.0, 0.5, 2.0), (1.0, 0.6, 0.4))
 RISING = Strength((0.0, 1.0, 5.0), (1.0, 1.2, 1.5))
 ALONG = {
     "plain": {},
-    "spring": {"softness": np.full(PAIRS, 0.7)},
+    "spring": {"compliance": np.full(PAIRS, 0.7)},
     "cap": {"cap": np.linspace(0.05, 0.3, PAIRS)},
     "falling": {"strength": FALLING},
-    "rising, spring": {"strength": RISING, "softness": np.full(PAIRS, 0.2)},
-    "cap, spring": {"cap": np.full(PAIRS, 0.1), "softness": np.full(PAIRS, 2.0)},
+    "rising, spring": {"strength": RISING, "compliance": np.full(PAIRS, 0.2)},
+    "cap, spring": {"cap": np.full(PAIRS, 0.1), "compliance": np.full(PAIRS, 2.0)},
     "start": {"start": np.linspace(-1.0, 1.0, PAIRS)},
 }
 
@@ -161,7 +163,7 @@ def contact_of(
 ) -> tuple[np.random.Generator, Contact]:
     random, sliders, common = rubbing_points(seed, opens=opens, two=two)
     if common["normal"] is not None:
-        common["normal"] = replace(common["normal"], softness=across)
+        common["normal"] = replace(common["normal"], compliance=across)
     return random, Contact(tangential=replace(sliders, **along), **common)
 
 
@@ -171,7 +173,9 @@ def contact_of(
 def test_a_local_stage_obeys_coulombs_law_and_action_is_reaction(
     along: str, two: bool, opens: bool
 ) -> None:
-    soft = np.full(PAIRS, 0.3) if opens and along != "plain" else None
+    soft = None
+    if opens and along != "plain":
+        soft = np.full(PAIRS, 0.3)
     random, law = contact_of(7, opens=opens, two=two, across=soft, **ALONG[along])
     displacement, force = local_stage(law, random)
     tangential = law.tangential
@@ -204,8 +208,8 @@ def test_a_local_stage_obeys_coulombs_law_and_action_is_reaction(
             assert force[component.above] == pytest.approx(
                 -force[component.below], abs=1e-12
             )
-    behaviour = law.behaviour(displacement, force, 1e-13)
-    assert behaviour.violation(1.0, 1.0).max() <= 1e-11
+    violation = law.violation(displacement, force, 1e-13)
+    assert violation.energy(1.0, 1.0).max() <= 1e-11
     if two:
         assert squares(law, displacement, force, np.ones(ROWS)).sum() <= 1e-20
 
@@ -217,20 +221,20 @@ def test_what_is_beside_a_local_stage_violates_the_law(two: bool, opens: bool) -
     displacement, force = local_stage(law, random)
     against = force.copy()
     against[law.tangent.above] *= -1.0
-    assert law.behaviour(displacement, against, 0.0).violation(1.0, 1.0).max() > 0.01
+    assert law.violation(displacement, against, 0.0).energy(1.0, 1.0).max() > 0.01
     weaker = force.copy()
     weaker[law.tangent.above] *= 0.5
-    assert law.behaviour(displacement, weaker, 0.0).violation(1.0, 1.0).max() > 0.01
-    still = law.behaviour(np.zeros_like(displacement), 3.0 * force, 0.0)
+    assert law.violation(displacement, weaker, 0.0).energy(1.0, 1.0).max() > 0.01
+    still = law.violation(np.zeros_like(displacement), 3.0 * force, 0.0)
     assert not still.slip.any()
     if law.normal is None:
         excess = np.maximum(np.abs(still.friction) - still.bound, 0.0)
-        assert still.violation(2.0, 1.0) == pytest.approx(2.0 * excess)
+        assert still.energy(2.0, 1.0) == pytest.approx(2.0 * excess)
         assert excess.max() > 0.01
     if law.normal is not None:
         pulled = force.copy()
         pulled[law.normal.component.above] -= 0.5
-        found = law.behaviour(displacement, pulled, 0.0).violation(1.0, 1.0)
+        found = law.violation(displacement, pulled, 0.0).energy(1.0, 1.0)
         assert found.max() > 0.01
 
 
@@ -241,7 +245,7 @@ def test_springs_in_series_that_stiffen_come_to_coulombs_law(opens: bool) -> Non
     wanted = local_stage(rigid, random)[0]
     for soft in (1e-2, 1e-4, 1e-6):
         none = np.full(PAIRS, soft)
-        random, law = contact_of(5, opens=opens, two=True, across=none, softness=none)
+        random, law = contact_of(5, opens=opens, two=True, across=none, compliance=none)
         apart.append(np.abs(local_stage(law, random)[0] - wanted).max())
     # Of first order: a hundredth of the compliance, a hundredth of the difference.
     assert apart[0] > 1e-4
@@ -257,8 +261,8 @@ def test_known_friction_along_stiff_springs_is_the_play_operator() -> None:
     moved = incoming.copy()
     law.rule(k, TIMES)(incoming, moved, ALL)
     above = law.tangent.above
-    reach = law.tangential.bound[:, 0] / k[above]
-    assert moved[above] == pytest.approx(play(incoming[above], reach), abs=1e-13)
+    slack = law.tangential.bound[:, 0] / k[above]
+    assert moved[above] == pytest.approx(play(incoming[above], slack), abs=1e-13)
 
 
 def test_a_law_begun_where_the_first_half_ended_goes_on_like_the_whole() -> None:
@@ -269,13 +273,15 @@ def test_a_law_begun_where_the_first_half_ended_goes_on_like_the_whole() -> None
     law.rule(k, TIMES)(incoming, whole, ALL)
     first = whole[:, :9]
     force = k[:, None] * (first - incoming[:, :9])
-    begun = law.begun(law.tangential.slider(first, force)[:, -1])
+    begun = law.with_start(law.tangential.slider(first, force)[:, -1])
     rest = incoming[:, 9:].copy()
     begun.rule(k, TIMES - 9)(incoming[:, 9:], rest, ALL)
     assert rest == pytest.approx(whole[:, 9:], abs=1e-14)
     assert begun.is_moved
     with pytest.raises(RefusedError):
-        contact_of(13, opens=True, two=True, strength=FALLING)[1].begun(np.zeros(PAIRS))
+        contact_of(13, opens=True, two=True, strength=FALLING)[1].with_start(
+            np.zeros(PAIRS)
+        )
 
 
 def test_a_bond_that_opens_once_has_friction_of_pressure_alone_from_then_on() -> None:
@@ -351,10 +357,10 @@ def test_friction_of_a_law_has_no_units_but_those_of_its_scales() -> None:
     before = np.minimum(3e3 * weights[:, None] + 0.3 * pressing, 4e3 * weights[:, None])
     assert found == pytest.approx(before * FALLING(np.cumsum(slip, axis=1)))
     assert law.without_slip(0.3 * 5e2, weights[0]) == pytest.approx(before[0, 0])
-    spring = softness_of(law.stiffness, weights, (length, force))
+    spring = compliance_of(law.stiffness, weights, (length, force))
     assert spring is not None
     assert spring * length / force == pytest.approx(1.0 / (2e9 * weights))
-    assert softness_of(np.inf, weights, (length, force)) is None
+    assert compliance_of(np.inf, weights, (length, force)) is None
 
 
 # Interfaces as one, and by points
@@ -433,20 +439,24 @@ def test_pairs_of_a_point_share_its_force_and_are_springs_in_parallel() -> None:
 # Search directions
 
 
-@pytest.mark.parametrize("around", [Rod(), Bodies(), Bodies(depth=0.01)])
-def test_cuts_change_no_k_of_a_point(around: Rod | Bodies) -> None:
-    opens = isinstance(around, Bodies)
-    cut = cut_contact(normal=opens, around=around)
-    whole = whole_contact(normal=opens, around=around)
+@pytest.mark.parametrize(
+    "stiffness_beside", [RodStiffness(), BodyStiffness(), BodyStiffness(depth=0.01)]
+)
+def test_cuts_change_no_k_of_a_point(
+    stiffness_beside: RodStiffness | BodyStiffness,
+) -> None:
+    opens = isinstance(stiffness_beside, BodyStiffness)
+    cut = cut_contact(normal=opens, stiffness_beside=stiffness_beside)
+    whole = whole_contact(normal=opens, stiffness_beside=stiffness_beside)
     found, wanted = np.full((2, 8), np.nan)
-    around.choose(cut, found, 3.0)
-    around.choose(whole, wanted, 3.0)
+    stiffness_beside.choose(cut, found, 3.0)
+    stiffness_beside.choose(whole, wanted, 3.0)
     for first in (0, 4)[: 1 + opens]:
         of_points = cut.by_point(found[first : first + 4])
         assert of_points == pytest.approx(wanted[first : first + 3])
 
 
-def two_sided(around: Bodies) -> Contact:
+def two_sided(stiffness_beside: BodyStiffness) -> Contact:
     rows = np.arange(12).reshape(4, 3)
     return Contact(
         tangential=friction_of(Component(rows[0], rows[1])),
@@ -454,14 +464,14 @@ def two_sided(around: Bodies) -> Contact:
         points=np.arange(3),
         positions=np.array([0.0, 1.0, 2.0]),
         weights=np.array([0.5, 1.0, 0.5]),
-        around=around,
+        stiffness_beside=stiffness_beside,
     )
 
 
 def test_k_of_a_body_is_in_proportion_to_its_modulus_and_to_area() -> None:
     found, wanted = np.zeros((2, 12))
-    Bodies(3.0, 5.0).choose(two_sided(Bodies(3.0, 5.0)), found, 1.0)
-    Bodies(1.0, 1.0).choose(two_sided(Bodies(1.0, 1.0)), wanted, 1.0)
+    BodyStiffness(3.0, 5.0).choose(two_sided(BodyStiffness(3.0, 5.0)), found, 1.0)
+    BodyStiffness(1.0, 1.0).choose(two_sided(BodyStiffness(1.0, 1.0)), wanted, 1.0)
     factors = np.repeat([3.0, 5.0, 3.0, 5.0], 3)
     assert found == pytest.approx(factors * wanted)
     assert wanted.reshape(4, 3)[:, 1] == pytest.approx(2.0 * wanted.reshape(4, 3)[:, 0])
@@ -470,34 +480,34 @@ def test_k_of_a_body_is_in_proportion_to_its_modulus_and_to_area() -> None:
 def test_k_of_a_rod_grows_with_stiffness_and_the_root_of_what_stays() -> None:
     law = whole_contact()
     plain, more, stiff = np.zeros((3, 3))
-    Rod().choose(law, plain, 1.0)
-    Rod().choose(law, more, 4.0)
+    RodStiffness().choose(law, plain, 1.0)
+    RodStiffness().choose(law, more, 4.0)
     modulus = np.array([1.0, 2.0, 3.0])
-    Rod(modulus).choose(law, stiff, 1.0)
+    RodStiffness(modulus).choose(law, stiff, 1.0)
     assert more == pytest.approx(2.0 * plain)
     assert stiff == pytest.approx(modulus * plain)
 
 
 def test_bodies_that_stick_are_never_softer_and_as_stiff_as_their_depth() -> None:
-    around = Bodies(2.0, 3.0, depth=1e-3)
-    law = two_sided(around)
+    stiffness_beside = BodyStiffness(2.0, 3.0, depth=1e-3)
+    law = two_sided(stiffness_beside)
     before = np.zeros(12)
-    around.choose(law, before, 1.0)
+    stiffness_beside.choose(law, before, 1.0)
     after = before.copy()
-    around.stick(law, after)
+    stiffness_beside.stick(law, after)
     assert np.all(after >= before)
     assert after == pytest.approx(np.tile(2.0 * law.weights / 1e-3, 4))
-    thick = Bodies(2.0, 3.0, depth=1e3)
+    thick = BodyStiffness(2.0, 3.0, depth=1e3)
     same = before.copy()
     thick.stick(law, same)
     assert np.array_equal(same, before)
 
 
 def test_a_thin_body_on_a_support_is_squeezed_with_its_modulus_over_its_depth() -> None:
-    around = Bodies(depth=1e-3)
-    law = whole_contact(normal=True, around=around)
+    stiffness_beside = BodyStiffness(depth=1e-3)
+    law = whole_contact(normal=True, stiffness_beside=stiffness_beside)
     k = np.zeros(8)
-    around.choose(law, k, 1.0)
+    stiffness_beside.choose(law, k, 1.0)
     assert k[:3] == pytest.approx(law.weights / 1e-3)
     assert k[4:7] == pytest.approx(law.weights / 1e-3)
 

@@ -1,4 +1,6 @@
-"""The interface laws hold pointwise on any input, bit by bit where no arithmetic is involved."""
+"""The interface laws hold pointwise on any input,
+bit by bit where no arithmetic is involved.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ REACH = st.floats(0.0, 1e6)
 
 @st.composite
 def targets_and_reaches(draw, varying=True):
-    """Targets, and reaches that vary over points, and over instants too where wanted."""
+    """Targets, and reaches that vary over points,
+    and over instants too where wanted.
+    """
     shape = draw(SHAPES)
     if varying and draw(st.booleans()):
         each = shape
@@ -43,10 +47,12 @@ def dominating(target):
 @ANY
 @given(targets_and_reaches())
 def test_play_is_coulombs_law(case):
-    """A force within the bound, all of it against slip, and none where the point may stick."""
-    target, reach = case
-    bound = np.broadcast_to(reach.T, target.T.shape).T
-    position = play(target, reach)
+    """A force within the bound, all of it against slip,
+    and none where the point may stick.
+    """
+    target, slack = case
+    bound = np.broadcast_to(slack.T, target.T.shape).T
+    position = play(target, slack)
     before = np.concatenate([np.zeros((len(target), 1)), position[:, :-1]], axis=1)
     rounding = 2.0 * EPS * (np.abs(target) + bound)
     assert np.all(np.abs(position - target) <= bound + rounding)
@@ -61,27 +67,27 @@ def test_play_is_coulombs_law(case):
 @ANY
 @given(targets_and_reaches(), st.data())
 def test_play_is_monotone_in_its_target(case, data):
-    target, reach = case
+    target, slack = case
     more = data.draw(arrays(float, target.shape, elements=REACH))
-    assert np.all(play(target, reach) <= play(target + more, reach))
+    assert np.all(play(target, slack) <= play(target + more, slack))
 
 
 @ANY
 @given(targets_and_reaches())
 def test_play_is_causal(case):
-    target, reach = case
+    target, slack = case
     half = target.shape[1] // 2 + 1
-    if reach.ndim == 2:
-        some = reach[:, :half]
+    if slack.ndim == 2:
+        some = slack[:, :half]
     else:
-        some = reach
-    assert np.array_equal(play(target[:, :half], some), play(target, reach)[:, :half])
+        some = slack
+    assert np.array_equal(play(target[:, :half], some), play(target, slack)[:, :half])
 
 
 @ANY
 @given(targets_and_reaches(varying=False), st.floats(0.0, 1.0))
 def test_instants_on_the_way_change_nothing(case, share):
-    target, reach = case
+    target, slack = case
     between = target[:, :-1] + share * np.diff(target, axis=1)
     between = np.clip(
         between,
@@ -91,19 +97,19 @@ def test_instants_on_the_way_change_nothing(case, share):
     finer = np.empty((len(target), 2 * target.shape[1] - 1))
     finer[:, ::2] = target
     finer[:, 1::2] = between
-    assert np.array_equal(play(finer, reach)[:, ::2], play(target, reach))
+    assert np.array_equal(play(finer, slack)[:, ::2], play(target, slack))
 
 
 @ANY
 @given(targets_and_reaches(varying=False), st.floats(-1.0, 1.0))
 def test_a_closed_loop_inside_the_past_leaves_no_trace(case, turn):
     target = case[0][:1]
-    reach = case[1][:1]
+    slack = case[1][:1]
     top = dominating(target)
     loop = np.array([[turn * target[0, top], target[0, top]]])
     longer = np.concatenate([target[:, : top + 1], loop, target[:, top + 1 :]], axis=1)
-    found = np.delete(play(longer, reach), [top + 1, top + 2], axis=1)
-    assert np.array_equal(found, play(target, reach))
+    found = np.delete(play(longer, slack), [top + 1, top + 2], axis=1)
+    assert np.array_equal(found, play(target, slack))
 
 
 @ANY
@@ -118,9 +124,9 @@ def test_without_reach_the_point_follows_and_with_infinite_reach_it_stays(target
 def test_what_a_point_does_depends_on_no_other(n_points):
     random = np.random.default_rng(n_points)
     target = random.normal(size=(n_points, 23)).cumsum(axis=1)
-    reach = random.uniform(0.0, 2.0, size=n_points)
-    alone = [play(target[j : j + 1], reach[j : j + 1]) for j in range(n_points)]
-    assert np.array_equal(np.concatenate(alone), play(target, reach))
+    slack = random.uniform(0.0, 2.0, size=n_points)
+    alone = [play(target[j : j + 1], slack[j : j + 1]) for j in range(n_points)]
+    assert np.array_equal(np.concatenate(alone), play(target, slack))
 
 
 @pytest.mark.parametrize("substructures", [1, 7])

@@ -1,4 +1,6 @@
-"""Separated bases follow the full stage as far as their modes reach, and may end certified."""
+"""Separated bases follow the full stage as far as their modes reach,
+and may end certified.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +64,9 @@ def test_the_force_follows_the_number_of_modes(scene, size):
 
 
 def test_every_mode_is_admissible():
-    """The force of a mode is what its displacement needs inside the substructure (eq. 3)."""
+    """The force of a mode is what its displacement needs
+    inside the substructure (eq. 3).
+    """
     chosen = options(substructures=5)
     problem = discretise(chosen)
     iterate = sample(chosen, 30)

@@ -1,4 +1,6 @@
-"""The incremental reference obeys the laws of contact exactly, or says where it does not."""
+"""The incremental reference obeys the laws of contact exactly,
+or says where it does not.
+"""
 
 from itertools import product
 
@@ -28,7 +30,9 @@ SMALL = 1e-10
 
 
 def components(of, found):
-    """Give opening or None, slip, normal force or bound, friction force of every interface."""
+    """Give opening or None, slip, normal force or bound,
+    friction force of every interface.
+    """
     displacement = found.displacement
     for name, law in of.rubbing.items():
         fields = found.contact(name)
@@ -49,7 +53,9 @@ def components(of, found):
 
 
 def assert_laws(of, found, slack=SMALL):
-    """Check Signorini and Coulomb on the fields, and equilibrium on the assembled structure."""
+    """Check Signorini and Coulomb on the fields,
+    and equilibrium on the assembled structure.
+    """
     for opening, slip, normal, bound, friction in components(of, found):
         if opening is not None:
             assert opening.min() >= -slack
@@ -69,7 +75,9 @@ def assert_laws(of, found, slack=SMALL):
 
 
 def all_solutions(of, before, instant):
-    """Enumerate the states of a body on a support; give the displacements that obey every law."""
+    """Enumerate the states of a body on a support;
+    give the displacements that obey every law.
+    """
     matrix = of.substructures[0].elasticity.stiffness
     load = external_force(of)[:, instant]
     law = of.rubbing["support"]

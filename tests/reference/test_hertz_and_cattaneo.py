@@ -1,4 +1,6 @@
-"""A parabola on a large block: Hertz, partial slip of Cattaneo and Mindlin, and its energy."""
+"""A parabola on a large block: Hertz,
+partial slip of Cattaneo and Mindlin, and its energy.
+"""
 
 from __future__ import annotations
 
@@ -120,7 +122,9 @@ def test_the_stuck_part_has_the_width_of_cattaneo_and_mindlin(elements):
 
 
 def stick_half_width(contact):
-    """The constant c after a reversal from sliding everywhere: twice the friction is at hand."""
+    """The constant c after a reversal from sliding everywhere:
+    twice the friction is at hand.
+    """
     shear = -contact.fields.tangential_force[:, -1].sum() / (FRICTION * contact.total)
     return contact.exact.stuck(0.5 * (1.0 + shear))
 

@@ -1,4 +1,6 @@
-"""Balance and the laws of contact alone tell a solution from an answer that is nearly one."""
+"""Balance and the laws of contact alone tell a solution
+from an answer that is nearly one.
+"""
 
 from __future__ import annotations
 
@@ -25,17 +27,12 @@ SEEN = 1e-6
 GENERAL = {"friction_law": "general"}
 PRESSED = {**SMALL["block"], "gap": "flat"}
 WITH_STRENGTH = {
-    "bar": {
-        **SMALL["bar"],
-        **GENERAL,
-        "peak": 1200.0,
-        "strength": [[0.0, 1.0], [2e-4, 1.2], [1e-3, 0.8]],
-    },
-    "block": {
-        **PRESSED,
-        **GENERAL,
-        "strength": [[0.0, 1.0], [1e-6, 1.2], [1e-5, 0.8]],
-    },
+    "bar": (
+        SMALL["bar"]
+        | GENERAL
+        | {"peak": 1200.0, "strength": [[0.0, 1.0], [2e-4, 1.2], [1e-3, 0.8]]}
+    ),
+    "block": (PRESSED | GENERAL | {"strength": [[0.0, 1.0], [1e-6, 1.2], [1e-5, 0.8]]}),
 }
 """Small runs of a rod and in the plane whose friction grows and falls with slip."""
 LAWS = {
@@ -51,22 +48,22 @@ LAWS = {
     "friction of the block": ("block", PRESSED, {"friction": 0.301}),
     "stiffness of the block": (
         "block",
-        {**PRESSED, **GENERAL, "tangential_stiffness": 1e13},
+        PRESSED | GENERAL | {"tangential_stiffness": 1e13},
         {"tangential_stiffness": 1.01e13},
     ),
     "stiffness across the block": (
         "block",
-        {**PRESSED, **GENERAL, "normal_stiffness": 1e13},
+        PRESSED | GENERAL | {"normal_stiffness": 1e13},
         {"normal_stiffness": 1.01e13},
     ),
     "cohesion of the block": (
         "block",
-        {**PRESSED, **GENERAL, "cohesion": 1e6},
+        PRESSED | GENERAL | {"cohesion": 1e6},
         {"cohesion": 1.01e6},
     ),
     "cap of the block": (
         "block",
-        {**PRESSED, **GENERAL, "friction_cap": 1e7},
+        PRESSED | GENERAL | {"friction_cap": 1e7},
         {"friction_cap": 1.01e7},
     ),
     "strength of the block": (
@@ -96,7 +93,9 @@ def spoiled(answer, *, displacement=None, force=None):
 
 
 def largest_work(problem, answer):
-    """Place of the friction force that takes most, at which instant, and the sliding node."""
+    """Place of the friction force that takes most,
+    at which instant, and the sliding node.
+    """
     along = ~rules_of(problem).normal
     all_jumps = jumps(problem)
     slip = np.diff(all_jumps @ answer.displacement, axis=1, prepend=0.0)
@@ -198,9 +197,9 @@ def test_overlap_and_tension_and_force_at_a_distance_break_the_law_across(scene)
 @pytest.mark.parametrize("differs", LAWS)
 def test_the_answer_to_another_law_of_contact_breaks_this_one(differs):
     scene, values, changes = LAWS[differs]
-    all_values = {**SMALL[scene], **values}
+    all_values = SMALL[scene] | values
     problem = problem_of(scene, all_values)
-    other = problem_of(scene, {**all_values, **changes})
+    other = problem_of(scene, all_values | changes)
     found = reference_of(other)
     own = law_residuals(found, other)
     assert own.largest < ROUNDED
@@ -212,14 +211,16 @@ def test_the_answer_to_another_law_of_contact_breaks_this_one(differs):
 def test_a_bond_that_has_opened_is_gone_for_good():
     # Lifted until it opens, and then pressed and sheared, where cohesion would carry
     # again.
-    values = {
-        **PRESSED,
-        **GENERAL,
-        "top": "displacement",
-        "top_normal_displacement": 1e-5,
-        "top_normal_load": [[0.0, 0.0], [0.4, 1.0], [0.7, -1.0], [1.0, -1.0]],
-        "top_tangential_displacement": 2e-5,
-    }
+    values = (
+        PRESSED
+        | GENERAL
+        | {
+            "top": "displacement",
+            "top_normal_displacement": 1e-5,
+            "top_normal_load": [[0.0, 0.0], [0.4, 1.0], [0.7, -1.0], [1.0, -1.0]],
+            "top_tangential_displacement": 2e-5,
+        }
+    )
     bonded = problem_of("block", {**values, "cohesion": 2e7})
     loose = problem_of("block", values)
     assert law_residuals(reference_of(loose), bonded).largest < ROUNDED

@@ -27,15 +27,20 @@ N_CYCLES = 4
 LOADS = {"layers": "bend_load", "block": "top_tangential_load"}
 MESH = {"substructures": 1, "substructures_up": 1, "duration": 8.0, "instants": 129}
 TWINS = {**MESH, "layers": 2, "elements": 12, "elements_up": 1, "pressure": 2e6}
-FREE = {
-    **MESH,
-    **{"gap": "flat", "elements": 12, "elements_up": 6, "friction": 0.2},
-    **{"top": "traction", "top_normal_load": ((0.0, -1e8),)},
+FREE = MESH | {
+    "gap": "flat",
+    "elements": 12,
+    "elements_up": 6,
+    "friction": 0.2,
+    "top": "traction",
+    "top_normal_load": ((0.0, -1e8),),
 }
 
 
 def path(swing: float, first: float = 0.0) -> tuple[tuple[float, float], ...]:
-    """Give cycles of a load after a push or none, so long that all turns are instants."""
+    """Give cycles of a load after a push or none,
+    so long that all turns are instants.
+    """
     turns = ((3.0 + 0.5 * n, swing * (-1.0) ** n) for n in range(2 * N_CYCLES + 2))
     return ((1.0, 0.0), (1.5, first), (2.0, 0.0), *turns, (8.0, 0.0))
 
@@ -79,7 +84,9 @@ SMALL = 1e-4
 def test_two_equal_layers_cease_to_slip_below_the_limit_from_any_start_and_not_above(
     first: float,
 ) -> None:
-    """The friction between them is mirrored, and so presses nothing: Melan's theorem holds."""
+    """The friction between them is mirrored,
+    and so presses nothing: Melan's theorem holds.
+    """
     swing = SMALL * factor(ran("layers", TWINS, SMALL))
     for share, expected in ((0.995, False), (1.005, True)):
         run = ran("layers", TWINS, share * swing, first * swing)
@@ -117,7 +124,7 @@ def test_just_below_the_limit_a_coupled_block_ceases_or_not_by_its_start() -> No
     ],
 )
 def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> None:
-    given = {**FREE, "elements": 4, "elements_up": 2, **changes}
+    given = FREE | {"elements": 4, "elements_up": 2} | changes
     settings = CATALOGUE["block"].checked({**given, LOADS["block"]: path(1e-6)})
     assert not QUANTITIES["shakedown_factor"].applies(settings)
     with pytest.raises(NoReferenceError):

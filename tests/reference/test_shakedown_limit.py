@@ -1,4 +1,6 @@
-"""The limit by Melan's theorem is where the simulation's slip ceases, and what closed forms say."""
+"""The limit by Melan's theorem is where the simulation's slip ceases,
+and what closed forms say.
+"""
 
 from __future__ import annotations
 
@@ -53,11 +55,13 @@ def test_just_below_the_limit_slip_ceases_and_just_above_it_goes_on(
     loads = [name for name in ("peak", "body_force") if name in changes]
     for share, goes_on in ((0.995, False), (1.005, True)):
         scaled = {name: share * factor * changes[name] for name in loads}
-        assert slips(scene, **SMALL, **{**changes, **scaled}) is goes_on, share
+        assert slips(scene, **SMALL, **(changes | scaled)) is goes_on, share
 
 
 def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:
-    """Uniform body force b over uniform friction mu p, which is on any mesh b = 2 mu p in swing."""
+    """Uniform body force b over uniform friction mu p,
+    which is on any mesh b = 2 mu p in swing.
+    """
     for elements in (10, 40):
         changes = {**SMALL, "elements": elements, "load": "hold", "peak": 0.0}
         swings = {"body_force": 100.0, "body_load": "cycles"}
@@ -67,7 +71,9 @@ def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:
 
 
 def test_the_limit_of_a_contact_that_gives_way_converges_to_that_of_shear_lag() -> None:
-    """Held at the far end, friction at the pulled end is F / l tanh(L / l), with l^2 = ES / k_t."""
+    """Held at the far end, friction at the pulled end is F / l tanh(L / l),
+    with l^2 = ES / k_t.
+    """
     soft = {"friction_law": "compliant", "contact_stiffness": 2.0}
     lag = LENGTH / np.sqrt(soft["contact_stiffness"])
     exact = BOUND * lag / np.tanh(LENGTH / lag) / 300.0
@@ -109,7 +115,7 @@ def test_what_the_theorem_does_not_cover_is_refused() -> None:
 def test_where_slip_presses_nothing_the_program_of_the_plane_gives_it_too(
     scene: str, changes: dict[str, Any]
 ) -> None:
-    rods = CATALOGUE[scene].checked({**SMALL, **changes})
+    rods = CATALOGUE[scene].checked(SMALL | changes)
     ends = ends_of(rods)
     some = slice(ends[-2], ends[-1] + 1)
     theorem = shakedown_limit(discretise(rods), some)

@@ -67,7 +67,9 @@ def _no_status_step(monkeypatch):
 
 
 def without_status_step(finish, iterations):
-    """Run the block up to a number of iterations, to a tolerance that nothing reaches."""
+    """Run the block up to a number of iterations,
+    to a tolerance that nothing reaches.
+    """
     settings = settings_of("block", **BLOCK, finish=finish)
     stop = Stop(tolerance=1e-300, iterations=iterations)
     return solve(discretise(settings), replace(method_of(settings), stop=stop))

@@ -1,4 +1,6 @@
-"""Jumps span displacements; states make a linear system; Newton finds them; time is play."""
+"""Jumps span displacements; states make a linear system;
+Newton finds them; time is play.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,9 @@ SEEDS = range(6)
 
 
 def random_jumps(seed: int, *, rings: bool) -> sparse.csr_array:
-    """Jumps between 12 points and the ground, in random order; as a forest, or with rings."""
+    """Jumps between 12 points and the ground,
+    in random order; as a forest, or with rings.
+    """
     random = np.random.default_rng(seed)
     n_points = 12
     edges = [
@@ -264,7 +268,9 @@ def test_springs_that_soften_lead_to_the_solution_from_any_states(seed: int) -> 
 
 
 def single(k_along: float, k_across: float, bound: float, mu: float, force: Array):
-    """One point with springs along and across it, on a support; force is (2, n_instants)."""
+    """One point with springs along and across it,
+    on a support; force is (2, n_instants).
+    """
     part = substructure(np.diag([k_along, k_across]), (0, 0), force)
     if mu > 0.0:
         law = contact(np.array([1]), np.array([0]), None, np.zeros(1), mu)

@@ -1,4 +1,6 @@
-"""A fluid along a fault drives a slip front, as published; what cannot be is refused."""
+"""A fluid along a fault drives a slip front,
+as published; what cannot be is refused.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,7 @@ SMALL = {"elements": 48, "elements_up": 24, "instants": 31}
 
 
 def solved(**changes: Any) -> tuple[FaultSettings, Problem, Reference]:
-    settings = FaultSettings.checked({**SMALL, **changes})
+    settings = FaultSettings.checked(SMALL | changes)
     problem = discretise(settings)
     return settings, problem, reference_of(problem)
 
@@ -48,7 +50,9 @@ def reached(problem: Problem, found: Reference) -> Array:
 
 
 def test_pressure_spreads_as_diffusion_has_it_whatever_is_given_at_the_well() -> None:
-    """Crank and Nicolson's steps on a fine line, for a pressure that jumps, rises and falls."""
+    """Crank and Nicolson's steps on a fine line,
+    for a pressure that jumps, rises and falls.
+    """
     length = 12.0
     parts = 600
     step = 0.05
@@ -77,7 +81,9 @@ def test_pressure_spreads_as_diffusion_has_it_whatever_is_given_at_the_well() ->
 
 
 def test_stress_ahead_of_a_zone_holds_the_balance_of_forces() -> None:
-    """What a zone no longer carries its surroundings do: the sum over the whole line is nothing."""
+    """What a zone no longer carries its surroundings do:
+    the sum over the whole line is nothing.
+    """
     place = np.linspace(0.0, 4.0, 4001)
     lack = (0.5 - erfc(place))[:, None]
     (front,) = fronts(place, lack)
@@ -99,7 +105,7 @@ def test_stress_ahead_of_a_zone_holds_the_balance_of_forces() -> None:
 def test_the_front_does_not_depend_on_the_elastic_constants(
     changes: dict[str, Any],
 ) -> None:
-    """As published: only slip does. The width of an element is what it may differ by."""
+    """As published: only slip does. It may differ by the width of an element."""
     _, problem, usual = solved()
     _, _, other = solved(**changes)
     apart = np.abs(reached(problem, usual) - reached(problem, other))
@@ -150,7 +156,7 @@ def test_a_barrier_stops_the_front() -> None:
     ids=lambda changes: str(changes),
 )
 def test_no_closed_form_is_drawn_where_none_holds(changes: dict[str, Any]) -> None:
-    settings = FaultSettings.checked({**SMALL, **changes})
+    settings = FaultSettings.checked(SMALL | changes)
     assert list(settings.exact(discretise(settings))) == []
 
 
@@ -189,9 +195,7 @@ JOINT = {
 }
 
 
-def test_a_joint_slips_by_the_shear_stress_over_its_stiffness_between_both_of_its_sides() -> (
-    None
-):
+def test_a_joint_slips_by_shear_over_stiffness_between_both_of_its_sides() -> None:
     """Some 6.5 mm between its sides, of which the body that is solved moves half."""
     settings, problem, found = solved(**JOINT)
     law = problem.rubbing["support"]
@@ -209,7 +213,7 @@ def test_a_joint_slips_by_the_shear_stress_over_its_stiffness_between_both_of_it
 
 def test_quantities_of_a_fault_are_those_between_both_of_its_sides() -> None:
     """A point over that across from it, which moves as much the other way."""
-    run = finished_run(FaultSettings.checked({**SMALL, **JOINT}), errors=False)
+    run = finished_run(FaultSettings.checked(SMALL | JOINT), errors=False)
     inside = run.problem.inside
     moved = inside.displacement(run.iterate.displacement, slice(None))[:, 0]
     contact = run.iterate.contact("support")
@@ -298,7 +302,9 @@ def test_the_front_of_a_fluid_runs_with_the_factor_of_its_stress(stress, factor)
 
 @pytest.mark.parametrize("place", [0.0, 0.3, 0.9])
 def test_slip_under_growing_strength_is_that_of_the_drop_of_stress(place):
-    """The slip at a place is an integral over the drop, with the logarithm of a point force."""
+    """The slip at a place is an integral over the drop,
+    with the logarithm of a point force.
+    """
     half = 2.0
     drop = 1e5
     stiffness = 5e8
@@ -316,7 +322,9 @@ def test_slip_under_growing_strength_is_that_of_the_drop_of_stress(place):
 
 
 def loosened(substructures):
-    """Shear a body over an interface whose strength falls from its middle, then comes back."""
+    """Shear a body over an interface whose strength falls
+    from its middle, then comes back.
+    """
     x = np.linspace(0.0, 1.0, 21)
     time = np.linspace(0.0, 1.0, 9)
     strength = 1e6 - 8e5 * np.sin(np.pi * time) * np.exp(-8.0 * x[:, None])

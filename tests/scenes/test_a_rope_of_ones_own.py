@@ -1,4 +1,6 @@
-"""A rope of one's own is given by its rows: wires, diameter, lay angle and Young's modulus."""
+"""A rope of one's own is given by its rows:
+wires, diameter, lay angle and Young's modulus.
+"""
 
 from __future__ import annotations
 
@@ -83,8 +85,8 @@ def test_it_comes_from_a_file_with_units_in_its_head_and_what_was_understood_is_
         np.array(settings.values()["construction"]), OWN, rtol=1e-12
     )
     assert messages["construction"] == (
-        "wires, diameter in mm, lay angle in deg, E in GPa, 3 points, from 70 to 200 GPa; "
-        "passed over: 'layer'"
+        "wires, diameter in mm, lay angle in deg, E in GPa, 3 points, from 70 to 200 "
+        "GPa; passed over: 'layer'"
     )
 
 

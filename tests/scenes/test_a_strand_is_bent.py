@@ -1,4 +1,6 @@
-"""A strand of helical wires is rods on supports of their own, held to the closed form."""
+"""A strand of helical wires is rods on supports of their own,
+held to the closed form.
+"""
 
 from __future__ import annotations
 
@@ -68,9 +70,7 @@ def test_along_any_path_it_follows_masings_rule_with_memory(load: str) -> None:
     assert np.abs(moment_of(scene, found) - exact).max() < 0.005 * np.abs(exact).max()
 
 
-def test_while_all_sticks_it_is_as_stiff_as_one_body_and_once_all_slips_as_loose_wires() -> (
-    None
-):
+def test_a_strand_that_sticks_is_stiff_as_one_body_and_slips_as_loose_wires() -> None:
     settings = settings_of(load="ramp", curvature=1.0, instants=401)
     scene, found = solved(settings)
     slopes = np.diff(moment_of(scene, found)) / np.diff(scene.curvature)
@@ -92,7 +92,9 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
 
 
 def test_outer_layers_press_on_what_is_below_them() -> None:
-    """All that is laid presses on the core, metre by metre of strand, and nothing on it."""
+    """All that is laid presses on the core,
+    metre by metre of strand, and nothing on it.
+    """
     section = CONSTRUCTIONS["mooring"](4)
     tension = np.array([2e5])
     below, above = section.line_pressures(tension)
@@ -140,9 +142,7 @@ def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None
     assert np.abs(found.contact_force - exact.contact_force).max() < 0.02 * scale
 
 
-def test_many_supports_of_known_bound_are_solved_as_rods_and_their_result_has_every_wire() -> (
-    None
-):
+def test_many_supports_of_known_bound_are_solved_as_rods_with_every_wire() -> None:
     settings = settings_of(**CLAMPED)
     problem = discretise(settings)
     assert isinstance(incremental_solver(problem), IncrementalRod)
@@ -197,7 +197,7 @@ def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> 
     cut, stress = section_of(scene, found.displacement, instant, 0.013)
     section = settings.section
     assert len(stress) == section.wires - 1 == 36
-    made = [scene.wires[number].made for number in cut.wire]
+    made = [scene.wires[number].layer_data for number in cut.wire]
     areas, lay = (
         np.array([getattr(one, name) for one in made]) for name in ("area", "lay")
     )
@@ -233,7 +233,7 @@ def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     assert reading("energy_per_metre@2")(run) == pytest.approx(energy, rel=0.01)
     # One wire stands for all of its layer: what is taken is that of the strand that is
     # drawn.
-    drawn = settings.structure().described().length
+    drawn = settings.structure().description().length
     assert reading("dissipation@2")(run) == pytest.approx(energy * drawn, rel=0.01)
     of_one = np.abs(run.iterate.contact("wire 1.1").tangential_force).sum(axis=0).max()
     assert taken("peak_friction", run) == pytest.approx(6.0 * 2.0 * of_one, rel=1e-9)

@@ -23,7 +23,7 @@ class Run:
     """A run on a slope: angle, spring force and displacement over time."""
 
     def __init__(self, **values):
-        self.settings = InclineSettings.checked({**SMALL, **values})
+        self.settings = InclineSettings.checked(SMALL | values)
         self.solution = solved(self.settings)
         iterate = self.solution.iterate
         problem = iterate.problem
@@ -68,7 +68,9 @@ def test_on_the_way_back_nothing_moves_until_the_spring_overcomes_friction(run):
 def test_the_spring_pulls_the_block_back_only_from_twice_the_angle_of_friction(
     slope, returns
 ):
-    """At the end it pulls W (sin - mu cos) of the steepest slope against mu W: tan half > mu."""
+    """At the end it pulls W (sin - mu cos) of the steepest
+    slope against mu W: tan half > mu.
+    """
     found = Run(slope=slope)
     assert (np.tan(np.radians(slope) / 2.0) > 0.3) == returns
     assert (found.force[-1] == pytest.approx(300.0, rel=1e-6)) == returns
@@ -100,7 +102,7 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     spring = Unilateral(
         component=Component(np.arange(3)),
         gap=random.uniform(0.0, 1.0, 3),
-        softness=10.0 ** random.uniform(-2.0, 2.0, 3),
+        compliance=10.0 ** random.uniform(-2.0, 2.0, 3),
     )
     law = Contact(
         normal=spring,
@@ -112,7 +114,7 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     moved, force = local_stage(law, random, rows=6)
     overlap = np.maximum(-(moved[:3] + spring.gap[:, None]), 0.0)
     np.testing.assert_allclose(
-        force[:3], overlap / spring.softness[:, None], atol=1e-12
+        force[:3], overlap / spring.compliance[:, None], atol=1e-12
     )
     assert not force[3:].any()
-    assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0, 1.0) < 1e-10)
+    assert np.all(law.violation(moved, force, 1e-14).energy(1.0, 1.0) < 1e-10)

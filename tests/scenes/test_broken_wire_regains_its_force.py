@@ -1,4 +1,6 @@
-"""A broken wire regains its force from its neighbours as friction allows, and no faster."""
+"""A broken wire regains its force from its neighbours
+as friction allows, and no faster.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ GRIPPED = {"grip": "displacement"}
 
 def solved(**changes):
     """Scene of some settings, and its converged iterate."""
-    settings = StrandSettings.checked({**FAST, **changes})
+    settings = StrandSettings.checked(FAST | changes)
     solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.status.ending is Ending.CONVERGED
     return settings.structure(), solution.iterate
@@ -58,7 +60,7 @@ def relative(found, exact):
 
 @pytest.mark.parametrize(
     "change",
-    [{"peak": 437.0}, {**PAIR, **GRIPPED, "break_position": 0.3}],
+    [{"peak": 437.0}, PAIR | GRIPPED | {"break_position": 0.3}],
     ids=["middle of three", "pair in a grip"],
 )
 def test_refinement_brings_it_to_the_closed_form(change):
@@ -165,7 +167,7 @@ def dissipation(iterate):
 
 
 @pytest.mark.parametrize(
-    "change", [PAIR, {"wires": 5}, {**PAIR, **GRIPPED, "peak": 2000.0}]
+    "change", [PAIR, {"wires": 5}, PAIR | GRIPPED | {"peak": 2000.0}]
 )
 def test_the_work_of_a_cycle_is_stored_or_dissipated(change):
     """By backward Euler a step also takes the strain energy of its increment."""

@@ -1,4 +1,6 @@
-"""Contact that gives way before it slips: closed forms, every scene (MATHEMATICS.md, 8)."""
+"""Contact that gives way before it slips:
+closed forms, every scene (MATHEMATICS.md, 8).
+"""
 
 from __future__ import annotations
 
@@ -18,11 +20,13 @@ COMPLIANT = {"friction_law": "compliant"}
 
 
 def run(scene="bar", **values):
-    return solved(settings_of(scene, **{**SMALL[scene], **COMPLIANT, **values}))
+    return solved(settings_of(scene, **(SMALL[scene] | COMPLIANT | values)))
 
 
 def pulled(force, stiffness):
-    """Give the end displacement of a clamped bar under a monotone pull, and its slip zone."""
+    """Give the end displacement of a clamped bar under a
+    monotone pull, and its slip zone.
+    """
     density = stiffness * AXIAL / LENGTH**2
     return pulled_compliant_bar(force, LENGTH, AXIAL, BOUND, density)
 

@@ -18,7 +18,7 @@ LAYERS: dict[str, Any] = {"elements": 16, "instants": 17, "layers": 4}
 
 
 def layers_of(**changes: Any) -> Any:
-    return reference_of(discretise(CATALOGUE["layers"].checked({**LAYERS, **changes})))
+    return reference_of(discretise(CATALOGUE["layers"].checked(LAYERS | changes)))
 
 
 def test_equal_factors_are_another_mu() -> None:
@@ -58,7 +58,9 @@ def test_layers_of_a_rope_that_rub_unequally_meet_the_closed_form() -> None:
 
 
 def test_a_broken_wire_regains_its_force_over_the_friction_of_both_its_sides() -> None:
-    """Its force grows by mu p of both sides per length from the break on: 0.6 and 1.4 are 2."""
+    """Its force grows by mu p of both sides per length
+    from the break on: 0.6 and 1.4 are 2.
+    """
     kind = CATALOGUE["strand"]
     changes: dict[str, Any] = {"load": "ramp", "instants": 11}
     uneven = kind.checked({**changes, "friction_factors": [[1, 0.6], [2, 1.4]]})
@@ -74,7 +76,7 @@ def test_a_broken_wire_regains_its_force_over_the_friction_of_both_its_sides() -
             np.testing.assert_allclose(force[slips], bound[slips], rtol=1e-9)
     # It holds less where one side has no friction at all.
     few = {"peak": 1000.0, "friction_factors": [[1, 1.0], [2, 0.0]]}
-    assert "below 750 N" in refusal(lambda: kind.checked({**changes, **few}))
+    assert "below 750 N" in refusal(lambda: kind.checked(changes | few))
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,9 @@ CHANGING = {"friction_law": "slip-dependent"}
 
 
 def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
-    """Give a clamped pulled_bar of 1 m whose end is pulled, or displaced by force L / ES."""
+    """Give a clamped pulled_bar of 1 m whose end is pulled,
+    or displaced by force L / ES.
+    """
     force = np.asarray(force, dtype=float)
     return (
         Rods(
@@ -74,7 +76,7 @@ STRENGTHS = [
     st.sampled_from([0.0, 0.4, 10.0]),
 )
 def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
-    seed, opens, two, softness, strength, cohesion, cap, gap, mu
+    seed, opens, two, compliance, strength, cohesion, cap, gap, mu
 ):
     """Signorini's law across, and Coulomb's along with what may be added to it."""
     random, plain, common = rubbing_points(seed, opens=opens, two=two)
@@ -84,8 +86,8 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
         along = replace(along, friction=np.full(4, mu))
         if cap is not None:
             along = replace(along, cap=np.full(4, cap))
-    if softness is not None:
-        along = replace(along, softness=softness / common["weights"])
+    if compliance is not None:
+        along = replace(along, compliance=compliance / common["weights"])
     law = Contact(tangential=along, **common)
     moved, force = local_stage(law, random)
     friction = force[law.tangent.above]
@@ -107,9 +109,9 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
     np.testing.assert_allclose(
         friction[slips], (-np.sign(slip) * bound)[slips], atol=1e-7
     )
-    assert law.behaviour(moved, force, 1e-14).violation(1.0, 1.0).max() < 1e-6
-    if softness is not None:
-        spring = (slider - law.tangent.jump(moved)) / along.softness[:, None]
+    assert law.violation(moved, force, 1e-14).energy(1.0, 1.0).max() < 1e-6
+    if compliance is not None:
+        spring = (slider - law.tangent.jump(moved)) / along.compliance[:, None]
         np.testing.assert_allclose(friction, spring, atol=1e-9)
     if two:
         for above, below in law.components:
@@ -239,7 +241,8 @@ STRIP = {
 
 
 def pull_out(length):
-    """Give displacement and force of the strip's end, up to where the other begins to slip.
+    """Give displacement and force of the strip's end, up to where the other begins to
+    slip.
 
     Behind the front friction softens over the same distance as long as it goes on, and
     beyond is its last value.

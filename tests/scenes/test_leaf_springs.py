@@ -1,4 +1,6 @@
-"""Layers may grow shorter, and a force may bend them: leaf springs, held to closed forms."""
+"""Layers may grow shorter, and a force may bend them:
+leaf springs, held to closed forms.
+"""
 
 from __future__ import annotations
 
@@ -82,7 +84,9 @@ def test_bent_the_other_way_the_longest_leaf_bends_alone() -> None:
 
 
 def test_many_leaves_tend_to_a_spring_of_uniform_strength() -> None:
-    """A triangle of n widths bends by F L^3 / (2 n E I), a leaf alone by F L^3 / (3 E I)."""
+    """A triangle of n widths bends by F L^3 / (2 n E I),
+    a leaf alone by F L^3 / (3 E I).
+    """
     off = []
     for count in (4, 16, 64):
         factor = leaf_spring(np.arange(count, 0, -1.0))
@@ -145,7 +149,7 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
     stack = settings.structure()
     assert isinstance(stack, Stack)
     assert stack.longest == 1
-    acts = {act.where: act.places for act in stack.described().acts}
+    acts = {act.where: act.points for act in stack.description().acts}
     np.testing.assert_allclose(acts["top y"][:, 1], [1.0, 2 / 3, 2 / 3])
     np.testing.assert_allclose(acts["bottom y"][:, 1], [0.0, 0.0, 1 / 3])
 

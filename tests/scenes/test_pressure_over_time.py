@@ -1,4 +1,6 @@
-"""Pressure that changes with time: what stuck slips as it falls, and a table says all of it."""
+"""Pressure that changes with time:
+what stuck slips as it falls, and a table says all of it.
+"""
 
 from __future__ import annotations
 

@@ -26,18 +26,24 @@ from solver.scenes.remarks import (
 from solver.study.quantities.finished import FinishedRun, finished_run
 
 TALL = {
-    **{"gap": "flat", "length": 0.05, "height": 0.1, "elements": 6, "elements_up": 12},
-    **{"top": "dragged", "top_normal_traction": -1e6, "instants": 21},
-    **{"top_tangential_displacement": 1e-4, "top_tangential_load": "ramp"},
+    "gap": "flat",
+    "length": 0.05,
+    "height": 0.1,
+    "elements": 6,
+    "elements_up": 12,
+    "top": "dragged",
+    "top_normal_traction": -1e6,
+    "instants": 21,
+    "top_tangential_displacement": 1e-4,
+    "top_tangential_load": "ramp",
 }
 PRESSED = {
-    **{
-        "gap": "parabola",
-        "radius": 30.0,
-        "friction": 0.5,
-        "top_normal_displacement": -2e-5,
-    },
-    **{"elements": 96, "elements_up": 16},
+    "gap": "parabola",
+    "radius": 30.0,
+    "friction": 0.5,
+    "top_normal_displacement": -2e-5,
+    "elements": 96,
+    "elements_up": 16,
 }
 
 
@@ -118,7 +124,7 @@ SOFT = {
 
 
 def beyond(scene: str, changes: dict[str, object]) -> str | None:
-    settings = CATALOGUE[scene].checked({**SMALL[scene], **changes})
+    settings = CATALOGUE[scene].checked(SMALL[scene] | changes)
     problem = discretise(settings)
     displacement = reference_of(problem).displacement
     return beyond_small_strain(settings.structure(), problem, displacement)

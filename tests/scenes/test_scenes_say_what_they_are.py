@@ -1,4 +1,6 @@
-"""A sentence says what a scene is: what lies where, what rubs, and what is done to it."""
+"""A sentence says what a scene is:
+what lies where, what rubs, and what is done to it.
+"""
 
 from __future__ import annotations
 

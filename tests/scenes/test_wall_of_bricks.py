@@ -1,4 +1,6 @@
-"""A wall of bricks that only touch: equilibrium, symmetry, rigid limits, and who needs what."""
+"""A wall of bricks that only touch: equilibrium,
+symmetry, rigid limits, and who needs what.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ PUSH = np.where(TIMES < 0.25, 0.0, np.sin(2.0 * np.pi * (TIMES - 0.25) / 0.75))
 
 
 def wall(columns=4, courses=4, *, bond="running", size=(4, 2), moved=5e-5, **others):
-    """A wall that is pressed by a quarter of the interval, and then moved to and fro."""
+    """A wall that is pressed by a quarter of the interval,
+    and then moved to and fro.
+    """
     return Stack(
         length=0.24,
         height=0.12,
@@ -65,7 +69,9 @@ def door():
 
 
 def test_the_weight_over_an_opening_goes_round_it():
-    """The lintel lies on half a brick at each end, and the ground beside it carries all."""
+    """The lintel lies on half a brick at each end,
+    and the ground beside it carries all.
+    """
     built = door()
     lintel = max(built.rectangles, key=lambda brick: brick.columns)
     assert (lintel.x, lintel.y, lintel.columns) == (6, 4, 12)
@@ -143,7 +149,9 @@ def test_the_order_of_the_bricks_changes_nothing():
 
 @pytest.mark.parametrize("cuts", [(2, 1), (3, 2)])
 def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
-    """Where cuts of one brick are not those of the next, a side has joints with several parts."""
+    """Where cuts of one brick are not those of the next,
+    a side has joints with several parts.
+    """
     whole = wall(3, 3, size=(6, 2))
     cut = replace(whole, substructures=cuts)
     found = []
@@ -158,7 +166,9 @@ def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
 
 
 def column(shear, courses, *, friction, **law):
-    """A pile of single bricks under a pressure, with a traction along its top that grows."""
+    """A pile of single bricks under a pressure,
+    with a traction along its top that grows.
+    """
     made = wall(1, courses, bond="stack", size=(8, 4), **law)
     grown = Given(False, shear * np.clip((TIMES - 0.25) / 0.75, 0.0, 1.0))
     return replace(
@@ -195,7 +205,9 @@ def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, l
     ],
 )
 def test_limit_analysis_finds_the_shear_that_no_contact_force_balances(law, limit):
-    """The load reaches its limit halfway; hardening that slip may bring is counted in."""
+    """The load reaches its limit halfway;
+    hardening that slip may bring is counted in.
+    """
     made = column(2.0 * limit * 1e6, 1, friction=0.3, friction_law=law)
     collapse = collapse_of(made.discretise())
     assert collapse.time == pytest.approx(0.25 + 0.75 * 0.5, rel=1e-9)
@@ -220,7 +232,9 @@ PILE = {
 def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(
     friction, instants
 ):
-    """It slides at mu p, and tips at p b / (2 h), whatever the path and its instants."""
+    """It slides at mu p, and tips at p b / (2 h),
+    whatever the path and its instants.
+    """
     values = {**PILE, "friction": friction, "instants": instants, "traction": 5e5}
     settings = CATALOGUE["wall"].checked(values)
     limit = min(friction, 0.25 / (2.0 * 0.36)) * 1e6
@@ -235,9 +249,11 @@ def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(
 
 
 def test_loads_of_which_no_share_is_carried_are_told_as_they_are():
-    """At its one instant the top is pulled by more than any share of what presses holds."""
+    """At its one instant the top is pulled by more than
+    any share of what presses holds.
+    """
     at_once = {"pressure_load": ((0.0, 1e6),), "top_load": ((0.0, 5e5),), "instants": 1}
-    problem = discretise(CATALOGUE["wall"].checked({**PILE, **at_once}))
+    problem = discretise(CATALOGUE["wall"].checked(PILE | at_once))
     words = known_reference(problem).doubt
     assert "no equilibrium with pressure_load = 1e6 Pa (1 times" in words
     assert "and top_load = 500000 Pa (1 times" in words
@@ -264,7 +280,7 @@ def test_the_limit_of_a_wall_is_said_to_be_its_meshs_and_rises_with_its_elements
             "elements_up": max(elements // 2, 2),
             "instants": 2,
         }
-        values = {**PILE, "bond": "running", "bricks": 3, "traction": 1e6, **size}
+        values = PILE | {"bond": "running", "bricks": 3, "traction": 1e6} | size
         problem = discretise(
             CATALOGUE["wall"].checked({**values, "top_load": "delayed"})
         )

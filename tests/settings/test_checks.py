@@ -1,4 +1,6 @@
-"""Kinds of values: what is allowed passes, and of the rest the message names value and remedy."""
+"""Kinds of values: what is allowed passes,
+and of the rest the message names value and remedy.
+"""
 
 from __future__ import annotations
 
@@ -128,7 +130,10 @@ def test_a_range_of_one_number_is_that_of_an_array_of_it(
     alone = Number(low, high, above=above).flaw(value)
     among = Numbers(((None,),), low, high, above=above).flaw(np.array([value, value]))
     assert (alone is None) == (among is None)
-    is_in = low < value <= high if above else low <= value <= high
+    if above:
+        is_in = low < value <= high
+    else:
+        is_in = low <= value <= high
     assert (alone is None) == is_in
 
 

@@ -1,4 +1,6 @@
-"""What a path over time or a table along a body has, a run sees, or says that it does not."""
+"""What a path over time or a table along a body has,
+a run sees, or says that it does not.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ SCENES_AND_PATHS = [
 
 
 def drawn(scene: str, name: str, seed: int) -> Any:
-    """Settings with a table of wide and narrow swings, of which the instants know nothing."""
+    """Settings with a table of wide and narrow swings,
+    of which the instants know nothing.
+    """
     random = np.random.default_rng([seed, *name.encode()])
     if scene == "strand":
         grip = {"grip": "displacement"}
@@ -74,7 +78,7 @@ def of_preset(scene: str, name: str, preset: str, **changes: Any) -> Any:
         grip = {"grip": "displacement"}
     else:
         grip = {}
-    return CATALOGUE[scene].checked({name: preset, "seed": 3, **grip, **changes})
+    return CATALOGUE[scene].checked({name: preset, "seed": 3} | grip | changes)
 
 
 @pytest.mark.parametrize(("scene", "name"), SCENES_AND_PATHS)
@@ -265,7 +269,7 @@ NOTCHED = [[0.0, 1.0], [0.51, 1.0], [0.511, 0.01], [0.512, 0.01], [0.513, 1.0]]
 
 
 def varying(**changes):
-    return BarSettings.checked({"method": "paper", **SMALL, **changes})
+    return BarSettings.checked({"method": "paper"} | SMALL | changes)
 
 
 @pytest.mark.parametrize("table", [GRADED, NOTCHED], ids=["graded", "notched"])

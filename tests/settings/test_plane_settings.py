@@ -1,4 +1,6 @@
-"""Settings of the plane scenes say what is meant, refuse what cannot be, and reach the files."""
+"""Settings of the plane scenes say what is meant,
+refuse what cannot be, and reach the files.
+"""
 
 from __future__ import annotations
 
@@ -92,7 +94,9 @@ def test_loads_that_contact_alone_cannot_hold_are_refused(values, word):
 
 @pytest.mark.parametrize("shear", [0.8e6, 1e6, 5e6])
 def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(shear):
-    """Its top is sheared more and more: it tips at b/(2 h) of what presses, and slides at mu."""
+    """Its top is sheared more and more:
+    it tips at b/(2 h) of what presses, and slides at mu.
+    """
     tall = {
         "gap": "flat",
         "length": 0.05,
@@ -108,9 +112,7 @@ def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(sh
     told = float(message.split("from ")[1].split(" s on")[0])
     assert told == pytest.approx(0.25e6 / shear, abs=2e-3)
     at_once = {"top_tangential_load": ((0.0, shear),)}
-    assert "tips over" in refusal(
-        BlockSettings, **{**tall, **sheared, **pressed, **at_once}
-    )
+    assert "tips over" in refusal(BlockSettings, **(tall | sheared | pressed | at_once))
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
-"""Whatever the settings, a run ends right, or says that it does not, or is refused in words.
+"""Whatever the settings, a run ends right, or says that it does not, or is refused in
+words.
 
 Here some go over all of the range that they may have, far beyond those that are drawn
 by `python -m solver stability --random`. SLIPFRONT_RANDOM_RUNS=500 makes that many runs
@@ -22,21 +23,24 @@ RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "8"))
 SMALLEST = 1e-12
 """Of a number whose range begins at zero, or below."""
 MOST = {
-    **{
-        "elements": 12,
-        "elements_up": 3,
-        "instants": 10,
-        "cycles": 2,
-        "max_iterations": 100,
-    },
-    **{"wires": 5, "layers": 3, "bricks": 3, "courses": 3},
+    "elements": 12,
+    "elements_up": 3,
+    "instants": 10,
+    "cycles": 2,
+    "max_iterations": 100,
+    "wires": 5,
+    "layers": 3,
+    "bricks": 3,
+    "courses": 3,
 }
 """Bounds that keep a run short."""
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}
 
 
 def values_of(scene: str, row: int) -> dict[str, Any]:
-    """Values of a small run that is drawn at random, some of them anywhere in their range."""
+    """Values of a small run that is drawn at random,
+    some of them anywhere in their range.
+    """
     generator = np.random.default_rng([row, *scene.encode()])
     settings = draw(scene, 1, row)
     values = settings.changed()

@@ -1,4 +1,6 @@
-"""Bad values in a script are refused where they are given: by name, value, range and remedy."""
+"""Bad values in a script are refused where they are given:
+by name, value, range and remedy.
+"""
 
 from __future__ import annotations
 
@@ -212,8 +214,12 @@ ROPES: list[Case] = [
     (WIRE, {"radius": nan}, "RopeWire.radius"),
     (WIRE, {"bound": -1.0}, "RopeWire.bound"),
     (WIRE, {"curvature": np.ones(5)}, "RopeWire.curvature"),
-    (WIRE, {"made": None}, "RopeWire.made"),
-    (ROPE.section, {"layers": (replace(WIRE.made, diameter=nan),)}, "CrossSection"),
+    (WIRE, {"layer_data": None}, "RopeWire.layer_data"),
+    (
+        ROPE.section,
+        {"layers": (replace(WIRE.layer_data, diameter=nan),)},
+        "CrossSection",
+    ),
 ]
 METHODS: list[Case] = [
     (Latin(), {"direction": "auto"}, "Latin.direction"),
@@ -404,13 +410,13 @@ def test_a_message_says_which_entry_is_wrong_and_what_to_do() -> None:
     with pytest.raises(RefusedError) as refused:
         replace(ROD, bound=spoilt(np.ones((7, 5)), nan, (3, 2)))
     assert str(refused.value) == (
-        "Rods.bound = NaN is refused; allowed: an array of numbers from 0, shape [7] or [7, 5]; "
-        "entry [3, 2] is no finite number, replace it"
+        "Rods.bound = NaN is refused; allowed: an array of numbers from 0, shape [7] "
+        "or [7, 5]; entry [3, 2] is no finite number, replace it"
     )
     with pytest.raises(RefusedError) as refused:
         replace(ROD, instants=spoilt(T, 0.1, 2))
     assert str(refused.value) == (
-        "Rods.instants = [..., 0.25, 0.1, ...] is refused; allowed: an array of instants that "
-        "increase, s, shape [n_instants], one or more; 0.1 comes after 0.25: sort them, and give "
-        "each once"
+        "Rods.instants = [..., 0.25, 0.1, ...] is refused; allowed: an array of "
+        "instants that increase, s, shape [n_instants], one or more; 0.1 comes after "
+        "0.25: sort them, and give each once"
     )

@@ -1,4 +1,6 @@
-"""The general friction law by its settings, and mu by place (MATHEMATICS.md, 8 and 14)."""
+"""The general friction law by its settings,
+and mu by place (MATHEMATICS.md, 8 and 14).
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,7 @@ PEAK = ((0.0, 1.0), (1e-5, 1.3), (1e-4, 0.5))
 
 
 def chosen(scene, **values):
-    return CATALOGUE[scene].checked({**SMALL[scene], **values})
+    return CATALOGUE[scene].checked(SMALL[scene] | values)
 
 
 def run(scene, **values):
@@ -71,14 +73,13 @@ def test_two_points_of_strength_are_friction_that_changes_with_slip(scene):
 
 def test_cohesion_alone_holds_its_length_and_slips_beyond():
     given = {
-        **{
-            "gap": "flat",
-            "friction": 0.0,
-            "cohesion": 2e6,
-            "poisson": 0.0,
-            "plane": "stress",
-        },
-        **{"top_normal_displacement": -1e-5, "top_tangential_displacement": 4e-5},
+        "gap": "flat",
+        "friction": 0.0,
+        "cohesion": 2e6,
+        "poisson": 0.0,
+        "plane": "stress",
+        "top_normal_displacement": -1e-5,
+        "top_tangential_displacement": 4e-5,
     }
     result = run("block", **GENERAL, **given, top_tangential_load="ramp")
     assert result.is_certified
@@ -88,8 +89,11 @@ def test_cohesion_alone_holds_its_length_and_slips_beyond():
 
 def test_a_block_is_refused_what_cohesion_and_cap_cannot_hold_and_only_that():
     pressed = {
-        **{"gap": "flat", "top": "traction", "top_normal_traction": -1e6},
-        **{"friction": 0.0, "top_tangential_traction": 2e5},
+        "gap": "flat",
+        "top": "traction",
+        "top_normal_traction": -1e6,
+        "friction": 0.0,
+        "top_tangential_traction": 2e5,
     }
     assert "no friction" not in refusal(lambda: chosen("block", **pressed))
     assert run("block", **pressed, **GENERAL, cohesion=2.1e5).is_certified
@@ -112,7 +116,7 @@ def test_a_broken_wire_is_held_by_cohesion_too():
 
 @pytest.mark.parametrize("law", [{}, {"tangential_stiffness": 1e7}])
 def test_cohesion_and_cap_of_a_bar_are_a_bound_as_known_as_that_of_its_pressure(law):
-    given = {**GENERAL, **law, "peak": 600.0}
+    given = GENERAL | law | {"peak": 600.0}
     laws = {"friction": 0.2}, {"friction": 0.12, "cohesion": 500.0, "friction_cap": 1e3}
     one, other = (run("bar", **given, **values) for values in laws)
     forces = [result.iterate.friction_force for result in (one, other)]
@@ -154,7 +158,8 @@ def test_softening_on_a_spring_is_certified(scene, stiffness, cohesion):
 
 
 def test_a_bonded_bar_softens_as_in_closed_form():
-    """theory: a zone of length s softens, P = N_0 cos(beta s) + (tau / beta) sin(beta s).
+    """theory: a zone of length s softens, P = N_0 cos(beta s) + (tau / beta) sin(beta
+    s).
 
     The strength is a factor over the slider's slip; over the bond's, the spring adds
     its own.
@@ -176,7 +181,7 @@ def test_a_bonded_bar_softens_as_in_closed_form():
     moved = peak / stiffness + peak / falls * (1.0 - np.cos(beta * zone))
     moved += first * np.sin(beta * zone) / (axial * beta)
     given = {"elements": 400, "instants": 41, "load": "ramp", "peak": float(pull)}
-    result = run("bar", **{**GENERAL, **bond, **given})
+    result = run("bar", **(GENERAL | bond | given))
     assert result.is_certified
     assert result.iterate.displacement[-1, -1] == pytest.approx(moved, rel=5e-3)
 
@@ -296,13 +301,12 @@ def test_mu_by_place_is_certified_and_one_of_factors_1_changes_nothing(scene, pr
 
 def test_a_sliding_block_carries_mu_of_each_place():
     given = {
-        **{
-            "gap": "flat",
-            "poisson": 0.0,
-            "plane": "stress",
-            "friction_profile": "rising",
-        },
-        **{"top_normal_displacement": -4e-6, "top_tangential_displacement": 1e-4},
+        "gap": "flat",
+        "poisson": 0.0,
+        "plane": "stress",
+        "friction_profile": "rising",
+        "top_normal_displacement": -4e-6,
+        "top_tangential_displacement": 1e-4,
     }
     contact = run("block", **given, top_tangential_load="ramp").iterate.contact(
         "support"

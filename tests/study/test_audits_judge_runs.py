@@ -1,4 +1,6 @@
-"""The stability of extreme and random runs: how they are judged, and what is written."""
+"""The stability of extreme and random runs:
+how they are judged, and what is written.
+"""
 
 from __future__ import annotations
 

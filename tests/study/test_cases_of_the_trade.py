@@ -1,4 +1,6 @@
-"""Cases of the trade are runs whose known number comes out, and files that anybody may write."""
+"""Cases of the trade are runs whose known number comes out,
+and files that anybody may write.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,7 @@ USUAL = {
 
 def written(folder: Path, **changes: str) -> Path:
     path = folder / "mine.toml"
-    path.write_text(OWN.format(**{**USUAL, **changes}), encoding="utf-8")
+    path.write_text(OWN.format(**(USUAL | changes)), encoding="utf-8")
     return path
 
 

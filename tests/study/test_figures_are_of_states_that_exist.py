@@ -1,4 +1,6 @@
-"""What is read off a run is the largest of states that exist, under the catalogue's names."""
+"""What is read off a run is the largest of states that exist,
+under the catalogue's names.
+"""
 
 from __future__ import annotations
 
@@ -120,10 +122,10 @@ def test_of_friction_that_changes_with_slip_no_force_is_said_to_hold() -> None:
     assert math.isnan(reading("holding_friction")(run))
 
 
-def test_where_friction_goes_while_the_load_stands_the_displacement_is_that_of_the_end() -> (
-    None
-):
-    """F^2 / (2 E A q), with the last q, for the bar that slips no farther than it would at once."""
+def test_where_friction_goes_under_a_steady_load_the_displacement_is_the_last() -> None:
+    """F^2 / (2 E A q), with the last q,
+    for the bar that slips no farther than it would at once.
+    """
     run = ran("bar", **LOOSENED)
     displacement, force = figures_of(run)
     exact = 600.0**2 / (2.0 * STIFFNESS * 0.3 * 3750.0)

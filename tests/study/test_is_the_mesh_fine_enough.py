@@ -1,4 +1,6 @@
-"""Three meshes, or numbers of instants, tell how far a quantity is from what it tends to."""
+"""Three meshes, or numbers of instants,
+tell how far a quantity is from what it tends to.
+"""
 
 from __future__ import annotations
 

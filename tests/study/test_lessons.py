@@ -1,4 +1,6 @@
-"""Lesson files are read as they are meant, or refused in one line, and say what the engine does."""
+"""Lesson files are read as they are meant,
+or refused in one line, and say what the engine does.
+"""
 
 from __future__ import annotations
 
@@ -44,12 +46,12 @@ def written(parts: dict[str, str | None], claim: dict[str, str | None]) -> str:
     """Give a small lesson with some parts changed, or left out where they are None."""
     lines = [
         f"{key} = {value}"
-        for key, value in {**PARTS, **parts}.items()
+        for key, value in (PARTS | parts).items()
         if value is not None
     ]
     own = [
         f"{key} = {value}"
-        for key, value in {**CLAIM, **claim}.items()
+        for key, value in (CLAIM | claim).items()
         if value is not None
     ]
     return "\n".join([*lines, "[[checkpoints]]", *own, ""])

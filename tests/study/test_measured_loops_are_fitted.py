@@ -25,7 +25,7 @@ from solver.study.measured_loop import (
     loop_in,
 )
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.valley import Side
+from solver.study.valley import ProfileSide
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
 SPRUNG = {**BAR, "friction_law": "compliant"}
@@ -199,7 +199,7 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
     ],
 )
 def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> None:
-    settings = scene_settings("bar").checked({**law, **start})
+    settings = scene_settings("bar").checked(law | start)
     found = fit(settings, made(true, settings), list(true))
     assert found.nearest.values == pytest.approx(list(true.values()), rel=1e-6)
     assert found.settings.friction == found.nearest.values[0]
@@ -229,7 +229,9 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
 def test_what_is_known_as_a_product_alone_stays_near_its_start(
     name: str, value: float, noise: float
 ) -> None:
-    """Displacement under a given force knows mu p, and of E S mu p no more (theory of the bar)."""
+    """Displacement under a given force knows mu p,
+    and of E S mu p no more (theory of the bar).
+    """
     true = {"friction": 0.37, name: value}
     settings = scene_settings("bar").checked(
         {**BAR, "friction": 0.3, name: 0.8 * value}
@@ -263,7 +265,7 @@ def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
 def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
     law = {"friction_law": "general", "tangential_stiffness": 1e8, "cohesion": 600.0}
     settings = scene_settings("bar").checked(
-        {**BAR, **law, "elements": 6, "instants": 13, "substructures": 2}
+        BAR | law | {"elements": 6, "instants": 13, "substructures": 2}
     )
     found = fit(settings, made({"friction": 0.37}, settings), ["friction", "cohesion"])
     assert np.isinf(found.errors).all()
@@ -277,14 +279,18 @@ FLAT = {**BAR, "elements": 16, "instants": 21, "substructures": 4}
 
 
 def flat_valley() -> tuple[Settings, dict[str, float], MeasuredLoop]:
-    """A bar of which friction and Young's modulus are known together, and a loop with noise."""
+    """A bar of which friction and Young's modulus are known together,
+    and a loop with noise.
+    """
     true = {"friction": 0.54, "young": 5.95e10}
     start = scene_settings("bar").checked({**FLAT, "friction": 0.436, "young": 7.35e10})
     return start, true, made(true, start, 0.01, seed=3)
 
 
 def test_margins_in_a_flat_valley_are_those_of_the_valley() -> None:
-    """Of a bar that slips in part its ends know E S mu p, whatever a slope of the misfit says."""
+    """Of a bar that slips in part its ends know E S mu p,
+    whatever a slope of the misfit says.
+    """
     start, true, measured = flat_valley()
     found = fit(start, measured, list(true))
     values = np.array(list(true.values()))
@@ -309,9 +315,7 @@ def test_a_fit_leaves_a_valley_that_is_not_the_deepest() -> None:
     assert found.nearest.distance < 1.1 * from_truth
 
 
-def test_where_a_loop_is_straight_in_a_setting_its_profile_has_the_error_of_the_slope() -> (
-    None
-):
+def test_a_loop_straight_in_a_setting_has_a_profile_by_the_error_of_the_slope() -> None:
     settings = scene_settings("bar").checked({**FLAT, "friction_law": "compliant"})
     found = fit(settings, made({"friction": 0.37}, settings, 0.001), ["friction"])
     left = found.nearest.differences
@@ -333,10 +337,10 @@ def test_where_a_loop_is_straight_in_a_setting_its_profile_has_the_error_of_the_
 def test_a_side_ends_where_the_misfit_last_rises_above_a_level() -> None:
     distances = np.array([0.0, 1.0, 2.0, 3.0])
     rises = np.array([0.0, 9.0, 1.0, 9.0])
-    side = Side(distances, rises, distances[:, None], is_at_bound=False)
+    side = ProfileSide(distances, rises, distances[:, None], is_at_bound=False)
     assert side.end(4.0) == pytest.approx(2.5)
     assert side.end(10.0) == np.inf
-    at_bound = Side(distances, rises, distances[:, None], is_at_bound=True)
+    at_bound = ProfileSide(distances, rises, distances[:, None], is_at_bound=True)
     assert at_bound.end(10.0) == 3.0
 
 

@@ -1,4 +1,5 @@
-"""The paper's figures: `python -m solver figures` writes them, and they show what the paper says.
+"""The paper's figures: `python -m solver figures` writes them, and they show what the
+paper says.
 
 The paper prints curves without numbers. The gains of Figs. 3 and 4 are those of another
 code for the same equations, within 20 %; the limits of Figs. 5 to 8 are set around what
@@ -91,7 +92,7 @@ WITHIN = 0.2
 
 
 def options(**values):
-    return BarSettings.checked({"method": "paper", **BENCHMARK, **values})
+    return BarSettings.checked({"method": "paper"} | BENCHMARK | values)
 
 
 @pytest.fixture(scope="module")

@@ -95,7 +95,9 @@ def test_the_bar_slips_as_far_as_its_load_reaches() -> None:
 def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
     scene: str, changes: dict[str, Any], exact: float
 ) -> None:
-    """F / (p L) where the slip has not come to the clamp, and the tangent of a slope."""
+    """F / (p L) where the slip has not come to the clamp,
+    and the tangent of a slope.
+    """
     if scene == "bar":
         sizes = SMALL
     else:
@@ -126,7 +128,7 @@ def test_what_friction_could_hold_is_mu_times_all_that_presses(
 
 
 def test_what_holds_one_side_balances_the_other() -> None:
-    """Layers that are bent at one end and held at the other carry nothing else along y."""
+    """Layers bent at one end and held at the other carry nothing else along y."""
     run = ran("layers", elements=12, instants=11, substructures=2)
     assert taken("left_force", run) == pytest.approx(
         taken("right_force", run), rel=1e-6
@@ -189,7 +191,9 @@ def test_a_block_pressed_without_friction_has_one_pressure_stress_and_width() ->
 
 
 def test_the_largest_stress_below_a_contact_is_where_hertz_has_it() -> None:
-    """Johnson, Contact Mechanics, 4.2: below the middle, at 0.70 of the half-width for nu = 0.3."""
+    """Johnson, Contact Mechanics, 4.2: below the middle,
+    at 0.70 of the half-width for nu = 0.3.
+    """
     total = 2e7
     pressed = {
         "gap": "parabola",
@@ -235,7 +239,7 @@ def test_the_spring_carries_a_weight_that_nothing_else_holds() -> None:
 def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
     scene: str, changes: dict[str, Any]
 ) -> None:
-    run = ran(scene, errors=True, **{**SMALL, **changes})
+    run = ran(scene, errors=True, **(SMALL | changes))
     for name, quantity in QUANTITIES.items():
         needed = quantity.parameter is not None and quantity.parameter.needed
         value = taken(f"{name}@0.1" if needed else name, run)
@@ -292,7 +296,7 @@ def of(
         "before": np.ones(len(slips)),
         "is_repeated": True,
     }
-    return LoadCycles(**{**values, **more})
+    return LoadCycles(**(values | more))
 
 
 STEADY = [[2, 2, 2]]
@@ -366,7 +370,9 @@ def test_the_lesson_on_shakedown_shows_slip_that_dies_and_slip_that_does_not() -
 
 
 def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
-    """Below its friction at every instant, and yet farther in each cycle, at all points alike."""
+    """Below its friction at every instant,
+    and yet farther in each cycle, at all points alike.
+    """
     moved = []
     for shear in (2e6, -2e6):
         run = ran(

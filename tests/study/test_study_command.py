@@ -1,4 +1,6 @@
-"""`python -m solver study` measures what it says: errors against time, and who is first where."""
+"""`python -m solver study` measures what it says:
+errors against time, and who is first where.
+"""
 
 from __future__ import annotations
 
@@ -141,10 +143,13 @@ def test_a_page_without_who_draws_it_says_so(tmp_path, monkeypatch, capsys, meas
     assert names == {"curves.csv", "levels.csv", "map.csv", "study.html"}
 
 
-PROGRAM = "import solver.__main__, solver.study.sweep.executors as found; print(found.machine())"
+PROGRAM = (
+    "import solver.__main__, solver.study.sweep.executors as found; "
+    "print(found.machine())"
+)
 
 
-def test_the_report_states_the_threads_as_given_and_one_where_the_command_line_sets_them():
+def test_the_report_states_the_threads_as_given_and_one_set_by_the_command_line():
     surroundings = {
         name: value for name, value in os.environ.items() if name not in LIMITS
     }

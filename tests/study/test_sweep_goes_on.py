@@ -1,4 +1,6 @@
-"""Sweeps have a row for every point, whatever becomes of it, and what closed forms say of it."""
+"""Sweeps have a row for every point,
+whatever becomes of it, and what closed forms say of it.
+"""
 
 from __future__ import annotations
 

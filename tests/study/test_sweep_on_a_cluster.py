@@ -1,4 +1,6 @@
-"""On a Dask cluster a sweep is what it is here, whatever becomes of workers and clients."""
+"""On a Dask cluster a sweep is what it is here,
+whatever becomes of workers and clients.
+"""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from solver.discrete.elements import (
     elastic_matrix,
     side_basis,
 )
-from solver.discrete.inside import Part
+from solver.discrete.inside import RectangularSubstructure
 from solver.discrete.plane.bricks import Brick, Joint, joints_of
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
 
@@ -40,7 +40,7 @@ def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
     return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
 
 
-class _Piece(NamedTuple):
+class _RectangularPiece(NamedTuple):
     """A substructure: its rectangle, the number of its body, and its name in cuts."""
 
     rectangle: Brick
@@ -48,13 +48,15 @@ class _Piece(NamedTuple):
     name: str
 
 
-def _pieces(stack: Stack) -> Iterator[_Piece]:
+def _pieces(stack: Stack) -> Iterator[_RectangularPiece]:
     """All substructures, body by body and row by row."""
     for body, brick in enumerate(stack.rectangles):
         ends_across = _ends_across(stack, brick)
         sizes_up = substructure_sizes(brick.rows, stack.substructures[1])
         ends_up = np.cumsum([0, *sizes_up]).tolist()
-        of_body = f" of {body + 1}" if body else ""
+        of_body = ""
+        if body:
+            of_body = f" of {body + 1}"
         for row, (low, high) in enumerate(pairwise(ends_up), start=1):
             for column, (left, right) in enumerate(pairwise(ends_across), start=1):
                 rectangle = Brick(
@@ -63,7 +65,7 @@ def _pieces(stack: Stack) -> Iterator[_Piece]:
                     columns=right - left,
                     rows=high - low,
                 )
-                yield _Piece(rectangle, body, f"{column}.{row}{of_body}")
+                yield _RectangularPiece(rectangle, body, f"{column}.{row}{of_body}")
 
 
 def _ends_across(stack: Stack, brick: Brick) -> list[int]:
@@ -152,7 +154,7 @@ class CutStack:
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
         self._pieces = list(_pieces(stack))
         joints = self._joints()
-        self._touched = {side for joint in joints for side in joint.sides}
+        self._touched = set(chain.from_iterable(joint.sides for joint in joints))
         self.pairs = self._paired(joints)
         # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)
@@ -187,7 +189,7 @@ class CutStack:
         pairs = {joint: self._pairs_of(joint) for joint in joints}
         return {joint: found for joint, found in pairs.items() if len(found[0])}
 
-    def _parts(self, nodes: Sequence[Indices]) -> Iterator[Part]:
+    def _parts(self, nodes: Sequence[Indices]) -> Iterator[RectangularSubstructure]:
         """Substructures, by the numbers of each body's nodes, (n_rows, n_columns)."""
         n_rows = 0
         for number, traces in enumerate(self._traces()):
@@ -202,7 +204,7 @@ class CutStack:
             condensed, operator = self._operator(mesh, modulus, kinds, has_force)
             rows = _numbered(traces, mesh, n_rows)
             n_rows += sum(each.size for each in rows.values())
-            yield Part(
+            yield RectangularSubstructure(
                 rectangle=mesh,
                 condensed=condensed,
                 elasticity=operator,

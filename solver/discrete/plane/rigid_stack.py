@@ -113,7 +113,10 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
         tips = _tipping(stack, friction) > slack * stack.length
         losses.append((tips, "it tips over an end of its base"))
     if not any(side.x.prescribed for side in stack.sides.values()):
-        pushed = x if stack.spring is not None else np.abs(x)
+        if stack.spring is not None:
+            pushed = x
+        else:
+            pushed = np.abs(x)
         losses.append((pushed > friction + slack, "friction cannot hold it"))
     first = [
         (float(stack.instants[np.argmax(is_lost)]), reason)
@@ -149,7 +152,10 @@ def _without_slip(stack: Stack, pressing: Array) -> Array:
     assert stack.support is not None
     mu = float(np.max(stack.support.friction))
     # The pressing force may be infinite, and zero times that is no number.
-    rubbed = mu * pressing if mu else np.zeros_like(pressing)
+    if mu:
+        rubbed = mu * pressing
+    else:
+        rubbed = np.zeros_like(pressing)
     return stack.friction_law.without_slip(rubbed, stack.length)
 
 

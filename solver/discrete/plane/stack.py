@@ -339,7 +339,7 @@ class Stack:
         return np.asarray(self.body_force * area)
 
     @property
-    def reach(self) -> Array:
+    def relative_lengths(self) -> Array:
         """Length of every body over that of the longest, shape (bodies,)."""
         columns = np.array([brick.columns for brick in self.rectangles])
         return np.asarray(columns / columns.max())
@@ -347,7 +347,7 @@ class Stack:
     @property
     def longest(self) -> int:
         """Number of bodies that reach the right side."""
-        return int(np.count_nonzero(self.reach == 1.0))
+        return int(np.count_nonzero(self.relative_lengths == 1.0))
 
     @property
     def end_force(self) -> Array:
@@ -435,7 +435,7 @@ class Stack:
         force = np.broadcast_to(given.mean * whole, self.instants.shape)
         return constant(force).of
 
-    def described(self) -> Description:
+    def description(self) -> Description:
         """Description of the bodies for drawings."""
         length, height = self.size
         return Description(
@@ -483,7 +483,7 @@ class Stack:
         return Act(
             where=f"{side} {along}",
             symbol=symbol,
-            places=self._on_bodies(side, on_side(side, shares)),
+            points=self._on_bodies(side, on_side(side, shares)),
             towards=((1.0, 0.0), (0.0, 1.0))[component],
             values=values,
             unit=unit,

@@ -14,14 +14,14 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.inside import Inside, Part
+from solver.discrete.inside import Inside, RectangularSubstructure
 from solver.discrete.plane.bricks import Joint
 from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Substructure
 from solver.laws import (
-    Bodies,
+    BodyStiffness,
     Component,
     Contact,
     Dirichlet,
@@ -31,7 +31,7 @@ from solver.laws import (
     Perfect,
     Unilateral,
 )
-from solver.laws.friction import softness_of
+from solver.laws.friction import compliance_of
 
 if TYPE_CHECKING:
     from solver.discrete.plane.stack import Side, Spring, Stack, Support
@@ -59,7 +59,7 @@ def problem_of(stack: Stack) -> Problem:
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
         ),
         interfaces=dict(_interfaces(cut, contacts)),
-        positions=inside.places * scales.displacement,
+        positions=inside.positions * scales.displacement,
         instants=stack.instants,
         scales=scales,
         inside=inside,
@@ -69,7 +69,7 @@ def problem_of(stack: Stack) -> Problem:
     )
 
 
-def _substructure(part: Part, dofs: Indices) -> Substructure:
+def _substructure(part: RectangularSubstructure, dofs: Indices) -> Substructure:
     """Substructure of a rectangular part, with its degrees of freedom, (n_kept,)."""
     body_force = None
     if part.force is not None:
@@ -90,7 +90,7 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     rigid = rigid_rest(stack)
     if rigid is None:
         return None
-    x, y = inside.places.T
+    x, y = inside.positions.T
     components = inside.components
     modes = np.stack([components, np.where(components == 1, x, -y)], axis=1)
     rest = np.asarray(modes @ (rigid / np.array([[stack.length], [1.0]])))
@@ -229,7 +229,7 @@ def _contact(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> Contact:
         points=points,
         positions=_positions(stack, pairs)[first],
         weights=pairs.areas,
-        around=_around(stack, pairs),
+        stiffness_beside=_stiffness_beside(stack, pairs),
         macro=_macro_basis(cut, pairs),
         slip_ratio=2.0 if support is not None and support.is_image else 1.0,
         names=names,
@@ -264,8 +264,8 @@ def _normal_law(
     if component is None:
         return None
     scales = (stack.length, stack.young * stack.length)
-    softness = softness_of(stack.friction_law.normal_stiffness, pairs.areas, scales)
-    return Unilateral(component=component, gap=gap, softness=softness)
+    compliance = compliance_of(stack.friction_law.normal_stiffness, pairs.areas, scales)
+    return Unilateral(component=component, gap=gap, compliance=compliance)
 
 
 def _friction(
@@ -303,12 +303,12 @@ def _coefficients(stack: Stack, support: Support | None, pairs: _Pairs) -> Array
     return np.asarray(mu[rows, columns])
 
 
-def _around(stack: Stack, pairs: _Pairs) -> Bodies:
+def _stiffness_beside(stack: Stack, pairs: _Pairs) -> BodyStiffness:
     """Moduli and depth of the bodies at contacts, for their search direction."""
     moduli = np.array([stack.modulus(body) for body in range(len(stack.rectangles))])
     rows = np.array([rectangle.rows for rectangle in stack.rectangles])
     depths = stack.height * (rows / stack.elements[1])
-    return Bodies(
+    return BodyStiffness(
         above=moduli[pairs.bodies],
         below=np.where(pairs.others == NO_BODY, np.inf, moduli[pairs.others]),
         depth=depths[pairs.bodies],
@@ -366,13 +366,13 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
         normal=Unilateral(
             component=Component(rows[:, 0]),
             gap=np.array([spring.slack / stack.length]),
-            softness=np.array([stack.young / spring.stiffness]),
+            compliance=np.array([stack.young / spring.stiffness]),
         ),
         tangential=FrictionLaw().at(Component(rows[:, 1]), np.ones(1), (1.0, 1.0)),
         points=np.zeros(1, dtype=np.intp),
         positions=np.array([stack.length]),
         weights=stack.length * areas[:1],
-        around=Bodies(above=stack.modulus(0)),
+        stiffness_beside=BodyStiffness(above=stack.modulus(0)),
         is_spring=True,
     )
 
@@ -398,7 +398,11 @@ def _prescribed(
 
 
 def _move_corners(
-    cut: CutStack, part: Part, side: str, component: int, moved: Array
+    cut: CutStack,
+    part: RectangularSubstructure,
+    side: str,
+    component: int,
+    moved: Array,
 ) -> None:
     """Write the displacement of top and bottom into the corners of an upright side.
 

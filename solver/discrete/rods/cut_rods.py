@@ -18,7 +18,15 @@ from solver.discrete.substructure import (
     substructure_sizes,
     tributary,
 )
-from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod
+from solver.laws import (
+    Component,
+    Contact,
+    Dirichlet,
+    Interface,
+    Neumann,
+    Perfect,
+    RodStiffness,
+)
 
 if TYPE_CHECKING:
     from solver.discrete.rods.rods import End, Rods
@@ -75,12 +83,15 @@ class _Piece(NamedTuple):
     def springs(self, rods: Rods) -> dict[int, End]:
         """Ends of the rod that springs hold, by their node in this piece."""
         ends = {0: rods.left, rods.elements: rods.right}
-        last = self.first + self.size
         return {
             node - self.first: end
             for node, end in ends.items()
-            if end.is_on_spring and self.first <= node <= last
+            if self._is_held(node, end)
         }
+
+    def _is_held(self, node: int, end: End) -> bool:
+        """Check whether an end of the rod, at a node, is in the piece and on a spring."""
+        return end.is_on_spring and self.first <= node <= self.first + self.size
 
 
 class CutRods:
@@ -90,7 +101,7 @@ class CutRods:
     (MATHEMATICS.md, 1).
 
     Each rod rubs on a support of its own, or on the rods before and behind it; `names`
-    are the names of these interfaces, `places` the positions of the nodes of each rod,
+    are the names of these interfaces, `positions` those of the nodes of each rod,
     (n_nodes,), m, and `rub_at_ends` says whether the first and the last node rub.
 
     Degrees of freedom run along rod after rod; a broken rod has two at its break, and
@@ -109,12 +120,12 @@ class CutRods:
     def __init__(
         self,
         rods: Sequence[Rods],
-        places: Sequence[Array],
+        positions: Sequence[Array],
         names: Sequence[str],
         rub_at_ends: tuple[bool, bool],
     ) -> None:
         self._rods = rods
-        self._places = places
+        self._positions = positions
         self._names = names
         length = max(each.length for each in rods)
         stiffness = max(each.stiffness for each in rods)
@@ -157,8 +168,8 @@ class CutRods:
         if rods.settlement is not None:
             carried = rods.settlement / scales.displacement
         positions = [
-            np.repeat(places, dofs)
-            for places, dofs in zip(self._places, self._dofs_at, strict=True)
+            np.repeat(positions, dofs)
+            for positions, dofs in zip(self._positions, self._dofs_at, strict=True)
         ]
         # Pieces of equal operators share them, also those of different rods.
         shared: dict[tuple[object, ...], Elasticity] = {}
@@ -356,13 +367,13 @@ class CutRods:
         known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
         points = self._points(rod)
         positions = np.zeros(points[-1] + 1)
-        positions[points] = self._places[rod][nodes]
+        positions[points] = self._positions[rod][nodes]
         return Contact(
             tangential=rods.friction_law.at(component, weights, units, known=known),
             points=points,
             positions=positions,
             weights=weights,
-            around=Rod(self._stiffness_at_nodes(rods)[nodes]),
+            stiffness_beside=RodStiffness(self._stiffness_at_nodes(rods)[nodes]),
             macro=macro,
         )
 

@@ -43,7 +43,7 @@ SHOWN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 pressure where rods rub; over the length."""
 SEVERAL = 8
 """Largest number of wires of which each shows its load."""
-Side = Literal["left", "right"]
+EndName = Literal["left", "right"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +98,7 @@ class End:
 
 @dataclass(frozen=True, eq=False)
 class Rods:
-    """One rod on a rigid rough support, or equal parallel rods that rub on each other.
+    """A rod on a rigid rough support, or equal parallel rods that rub on each other.
 
     All have the same ends and friction law; absent parts are None.
 
@@ -229,7 +229,7 @@ class Rods:
         return self.bound[:, None]
 
     @property
-    def ends(self) -> dict[Side, End]:
+    def ends(self) -> dict[EndName, End]:
         """Both ends by their side, the right one first."""
         return {"right": self.right, "left": self.left}
 
@@ -312,7 +312,7 @@ class Rods:
             return Loop(*self.axes, constant(values), force)
         return Loop(*self.axes, moved, force)
 
-    def end_force(self, problem: Problem, side: Side) -> Probe | Reaction:
+    def end_force(self, problem: Problem, side: EndName) -> Probe | Reaction:
         """Mean axial force at the ends of a side, N, positive to the right."""
         end = self.ends[side]
         if end.displacement is None:
@@ -326,7 +326,7 @@ class Rods:
         spring = end.spring
         return replace(moved, constant=moved.constant + spring * end.displacement)
 
-    def _moved(self, problem: Problem, side: Side) -> Probe:
+    def _moved(self, problem: Problem, side: EndName) -> Probe:
         """Mean displacement of the ends of a side, not relative to the support, m."""
         rows = problem.interfaces[SIDES[side]].rows
         node = 0 if side == "left" else -1
@@ -338,7 +338,7 @@ class Rods:
         return Probe(problem.row_dofs[rows], weights, settled)
 
     @property
-    def driven_end(self) -> Side | None:
+    def driven_end(self) -> EndName | None:
         """Side of the end that is pulled or moved, the right one first, or None."""
         for side, end in self.ends.items():
             values = end.displacement
@@ -365,7 +365,7 @@ class Rods:
                 return title, unit, along[np.abs(along).max(axis=1).argmax()]
         return None
 
-    def described(self) -> Description:
+    def description(self) -> Description:
         """Description of the rods for drawings."""
         broken = None
         if self.broken is not None:

@@ -110,11 +110,11 @@ class CrossSection:
             radius = self.radii[layer]
             if needed > TIGHT * radius:
                 return (
-                    f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° do "
-                    "not fit beside each other on a circle of "
+                    f"row {layer + 2}: {count:g} wires of {diameter:g} m at {lay:g}° "
+                    "do not fit beside each other on a circle of "
                     f"{2.0 * np.pi * radius:.3g} m, they need "
-                    f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or more "
-                    "inside"
+                    f"{2.0 * np.pi * needed:.3g} m: take fewer or thinner ones, or "
+                    "more inside"
                 )
         return ""
 

@@ -62,7 +62,7 @@ class RopeWire:
     ----------
     layer, number
         Number of the layer, inside out, and of the wire around it, from 0.
-    made
+    layer_data
         The wire's layer: diameter, modulus and lay.
     radius, start, length
         Radius R of the helix of its centre line, m; polar angle theta at its beginning,
@@ -80,7 +80,7 @@ class RopeWire:
 
     layer: int
     number: int
-    made: WireLayer
+    layer_data: WireLayer
     radius: float
     start: float
     length: float
@@ -95,7 +95,7 @@ class RopeWire:
             self,
             layer=Count(0),
             number=Count(0),
-            made=Part(WireLayer),
+            layer_data=Part(WireLayer),
             radius=POSITIVE,
             start=ANY_NUMBER,
             length=POSITIVE,
@@ -118,12 +118,14 @@ class RopeWire:
     @property
     def along(self) -> Array:
         """Positions z of the nodes along the strand, shape (n_nodes,), m."""
-        return np.asarray(np.cos(self.made.lay) * self.arc)
+        return np.asarray(np.cos(self.layer_data.lay) * self.arc)
 
     @property
     def angle(self) -> Array:
         """Theta at the nodes, shape (n_nodes,), rad."""
-        return np.asarray(self.start + self.arc * np.sin(self.made.lay) / self.radius)
+        return np.asarray(
+            self.start + self.arc * np.sin(self.layer_data.lay) / self.radius
+        )
 
     def stuck_force(self, columns: slice | Indices = slice(None)) -> Array:
         """Change of force in the elements without slip, (n_elements, n_columns), N."""
@@ -132,7 +134,9 @@ class RopeWire:
 
     def _stuck_force(self, columns: slice | Indices) -> Array:
         """Change of force at the nodes without slip, (n_nodes, n_columns), N."""
-        stretch = self.made.stiffness * self.radius * np.cos(self.made.lay) ** 2
+        stretch = (
+            self.layer_data.stiffness * self.radius * np.cos(self.layer_data.lay) ** 2
+        )
         per_curvature = stretch * np.cos(self.angle)
         return np.asarray(per_curvature[:, None] * self.curvature[:, columns])
 
@@ -158,9 +162,11 @@ class RopeWire:
         is that of as many evenly laid wires together at every section.
         """
         arc = self.arc
-        arm = self.radius * np.cos(self.made.lay)
+        arm = self.radius * np.cos(self.layer_data.lay)
         if not at_beginning:
-            around = np.diff(np.sin(self.angle)) * self.radius / np.sin(self.made.lay)
+            around = (
+                np.diff(np.sin(self.angle)) * self.radius / np.sin(self.layer_data.lay)
+            )
             return np.asarray(arm * around / (arc[-1] - arc[0]))
         levers = np.zeros(len(arc) - 1)
         shares = np.array([1.5, -0.5])[: len(levers)]
@@ -263,7 +269,7 @@ class Rope:
         held = End(displacement=np.zeros(len(self.instants)))
         return Rods(
             length=wire.length,
-            stiffness=wire.made.stiffness,
+            stiffness=wire.layer_data.stiffness,
             elements=self.elements,
             substructures=self.substructures,
             bound=np.multiply.outer(np.ones(self.elements + 1), wire.bound),
@@ -285,7 +291,7 @@ class Rope:
         stuck = self.section.slipping_bending * self.curvature
         for wire in self.wires:
             levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
-            spring = wire.made.stiffness * levers / np.diff(wire.arc)
+            spring = wire.layer_data.stiffness * levers / np.diff(wire.arc)
             weights.append(-np.diff(spring, prepend=0.0, append=0.0))
             stuck = stuck + levers @ wire.stuck_force()
         together = np.concatenate(weights)
@@ -307,7 +313,7 @@ class Rope:
         moment = self.moment().of
         return Loop(*self.axes, across, moment)
 
-    def described(self) -> Description:
+    def description(self) -> Description:
         """Description of the strand for drawings."""
         end = on_side("right", [0.5])
         acts = (

@@ -33,7 +33,7 @@ class CutWires:
     side: Array
 
 
-def cut_at(rope: Rope, place: float) -> CutWires:
+def cut_at(rope: Rope, position: float) -> CutWires:
     """Cut all wires at a position along the strand, m.
 
     Under a uniform curvature the one wire of a layer passes half a turn, from the
@@ -42,9 +42,9 @@ def cut_at(rope: Rope, place: float) -> CutWires:
     """
     cuts = []
     for number, wire in enumerate(rope.wires):
-        lay = wire.made.lay
+        lay = wire.layer_data.lay
         starts = wire.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for
-        arc = place / np.cos(lay)
+        arc = position / np.cos(lay)
         if rope.is_clamped:
             arc = min(arc, wire.length)
         angles = starts + arc * np.sin(lay) / wire.radius
@@ -70,7 +70,7 @@ def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Ar
     slips = np.split(displacement[:, columns], len(rope.wires))
     forces = []
     for wire, slip in zip(rope.wires, slips, strict=True):
-        spring = wire.made.stiffness / np.diff(wire.arc)
+        spring = wire.layer_data.stiffness / np.diff(wire.arc)
         change = spring[:, None] * np.diff(slip, axis=0) + wire.stuck_force(columns)
         forces.append(wire.tension[columns] + change)
     return np.stack(forces)
@@ -78,7 +78,7 @@ def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Ar
 
 def wire_stresses(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
     """Mean stresses over the wires' sections, Pa, of the shape of `wire_forces`."""
-    areas = np.array([wire.made.area for wire in rope.wires])
+    areas = np.array([wire.layer_data.area for wire in rope.wires])
     return np.asarray(wire_forces(rope, displacement, columns) / areas[:, None, None])
 
 
@@ -106,7 +106,7 @@ def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
     axial = wire_stresses(rope, displacement, some)
     curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
     outer = np.array(
-        [0.5 * wire.made.young * wire.made.diameter for wire in rope.wires]
+        [0.5 * wire.layer_data.young * wire.layer_data.diameter for wire in rope.wires]
     )
     bent = outer[:, None, None] * 0.5 * (curvature[:, 1:] + curvature[:, :-1])
     swings = [np.ptp(axial + sign * bent, axis=2).max(axis=1) for sign in (-1.0, 1.0)]

@@ -11,7 +11,7 @@ from solver.arrays import Array, read_only
 from solver.checks import POSITIVE, check
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
-from solver.laws import Bodies, Contact
+from solver.laws import BodyStiffness, Contact
 
 LOOK = 3
 """Iteration that shows whether bodies slip on each other anywhere. In the second,
@@ -155,16 +155,16 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     laws = list(problem.rubbing.laws.values())
     if not laws:
         return problem.direction
-    around = laws[0].around
-    k = problem.direction * around.elsewhere
+    stiffness_beside = laws[0].stiffness_beside
+    k = problem.direction * stiffness_beside.elsewhere
     for first, second in problem.cuts:
-        k[first] *= around.on_cuts
-        k[second] *= around.on_cuts
+        k[first] *= stiffness_beside.on_cuts
+        k[second] *= stiffness_beside.on_cuts
     parts = _sliding_parts(problem)
     for law in laws:
-        law.around.choose(law, k, parts)
-        if sticks and isinstance(law.around, Bodies):
-            law.around.stick(law, k)
+        law.stiffness_beside.choose(law, k, parts)
+        if sticks and isinstance(law.stiffness_beside, BodyStiffness):
+            law.stiffness_beside.stick(law, k)
         _raise_above_slope(law, k)
         _soften_by_contact(law, k)
     return k
@@ -194,9 +194,9 @@ def _raise_above_slope(law: Contact, k: Array) -> None:
 
 def _soften_by_contact(law: Contact, k: Array) -> None:
     """Put k, (n_rows,), in place, in series with the spring of a contact, if any."""
-    if law.tangential.softness is None:
+    if law.tangential.compliance is None:
         return
-    compliance = law.in_parallel(law.tangential.softness)[law.points] / law.shares
+    compliance = law.in_parallel(law.tangential.compliance)[law.points] / law.shares
     for rows in law.tangent.sides:
         k[rows] /= 1.0 + compliance * k[rows]
 

@@ -11,7 +11,7 @@ from solver.arrays import Array, read_only
 from solver.checks import Part, check
 from solver.discrete.problem import Problem
 from solver.latin.direction.directions import Auto, SearchDirection, automatic
-from solver.latin.indicators import behaviour_of
+from solver.latin.indicators import violation_of
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
 
 SETTLED = 0.1
@@ -72,7 +72,7 @@ class FromStatus:
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
         """State of the k update after an iteration, with the k of the next."""
-        if progress.phase == "first":
+        if progress.state == "first":
             return self._until_settled(iterate, progress)
         return self._on_trial(iterate, progress)
 
@@ -89,7 +89,7 @@ class FromStatus:
             return replace(progress, status=status, count=count)
         fields = _fields(iterate)
         k = _profile(iterate.problem, status)
-        violation = behaviour_of(iterate.problem, *fields)
+        violation = violation_of(iterate.problem, *fields)
         return UpdateProgress("updated", k, fields=fields, violation=violation)
 
     def _on_trial(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
@@ -98,7 +98,7 @@ class FromStatus:
         if count < TRIAL:
             return replace(progress, status=None, count=count)
         fields = _fields(iterate)
-        violation = behaviour_of(iterate.problem, *fields)
+        violation = violation_of(iterate.problem, *fields)
         if violation < progress.violation:
             return UpdateProgress(
                 "updated", progress.k, fields=fields, violation=violation
@@ -122,7 +122,7 @@ def _crept(iterate: Iterate) -> NDArray[np.int8]:
     groups = iterate.problem.rubbing.groups
     moved = iterate.local_displacement
     force = None
-    if any(group.law.tangential.softness is not None for group in groups):
+    if any(group.law.tangential.compliance is not None for group in groups):
         # A point that gives way moves while it sticks: its force tells whether it
         # slips.
         force = iterate.boundary_local_force

@@ -274,7 +274,7 @@ class RunCost:
 
 
 def run_cost(
-    problem: Problem, latin: PricedMethod, most: int, *, with_reference: bool
+    problem: Problem, latin: PricedMethod, max_iterations: int, *, with_reference: bool
 ) -> RunCost:
     """Estimate the cost of a run from a problem to its end.
 
@@ -282,7 +282,7 @@ def run_cost(
     ----------
     problem, latin
         The problem, and the method.
-    most
+    max_iterations
         Largest number of iterations.
     with_reference
         Whether the incremental reference is solved before, if the problem has one.
@@ -292,7 +292,7 @@ def run_cost(
     iterations = _expected_iterations(problem)
     if not latin.acceleration:
         iterations *= PLAIN
-    iterations = min(iterations, most)
+    iterations = min(iterations, max_iterations)
     is_worth_it = latin.finish is not None and costs.afford(iterations, WAIT)
     # Bases need the proof of a status step whatever it costs.
     takes_step = has_solver and (isinstance(latin.linear, PGD) or is_worth_it)

@@ -81,7 +81,7 @@ def status_step(
     solver: Incremental,
     problem: Problem,
     states: States,
-    most: int,
+    max_systems: int,
     stop: Callable[[], bool] | None = None,
 ) -> tuple[Reference, Certificate | None]:
     """Correct the states of an iterate to a solution, and certify that if it is one.
@@ -94,7 +94,7 @@ def status_step(
         The problem to be solved.
     states
         States to begin with, as of `states_of`, shape (n_forces, n_instants).
-    most
+    max_systems
         Largest number of linear systems.
     stop
         Called before each system; returns True where the step is to be given up.
@@ -110,7 +110,7 @@ def status_step(
     NoReferenceError
         If the solver is not worth the size of the problem.
     """
-    solution = solver.march(guess=states, most=most, stop=stop)
+    solution = solver.march(guess=states, max_systems=max_systems, stop=stop)
     if not solution.converged.all():
         return solution, None
     distance = distance_to(solution, problem)

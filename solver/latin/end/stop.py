@@ -368,7 +368,7 @@ class StopState:
         if iterate.indicator > tolerance:
             return False
         enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)
-        if iterate.behaviour <= enough:
+        if iterate.violation <= enough:
             return True
         return self.estimate.is_proven_within(enough, iterate)
 

@@ -55,7 +55,7 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
 def _is_spring(law: Contact) -> bool:
     """Check whether a law is a spring: it presses, gives way, and does not rub."""
     rubs = law.tangential.friction.any() or law.tangential.bound.any()
-    return law.normal is not None and law.normal.softness is not None and not rubs
+    return law.normal is not None and law.normal.compliance is not None and not rubs
 
 
 def _motion_along(problem: Problem, along: Indices, across: Indices) -> Array | None:
@@ -108,7 +108,7 @@ class Slide:
         across = ground.normal
         along = ground.tangential
         assert across is not None
-        assert spring.softness is not None
+        assert spring.compliance is not None
         self._across = across.component.above
         self._along = along.component.above
         self._end = spring.component.above
@@ -116,10 +116,10 @@ class Slide:
         self._k = k[self._across, None]
         self._bound = along.bound
         self._friction = along.friction[:, None]
-        if along.softness is None:
+        if along.compliance is None:
             contact_compliance: Array | float = 0.0
         else:
-            contact_compliance = along.softness
+            contact_compliance = along.compliance
         compliance = 1.0 / k[self._along] + contact_compliance
         self._compliance = compliance[:, None]
         # A point that sticks pulls the body back with its stiffness.
@@ -128,7 +128,7 @@ class Slide:
             self._start = np.zeros(len(compliance))
         else:
             self._start = along.start
-        self._spring = float(1.0 / (1.0 / k[self._end] + spring.softness)[0])
+        self._spring = float(1.0 / (1.0 / k[self._end] + spring.compliance)[0])
         self._slack = float(spring.gap[0])
         self.motion: Array = motion[problem.row_dofs]
         self._load = _load_along(problem, motion)

@@ -51,7 +51,7 @@ def peak_displacement(run: FinishedRun) -> float:
     the image moves by as much the other way along the interface, and alike across it.
     """
     inside = run.problem.inside
-    absolute = run.problem.at_rest(run.iterate.displacement)
+    absolute = run.problem.absolute(run.iterate.displacement)
     if inside is None:
         return float(np.abs(absolute).max())
     vectors = inside.displacement(absolute, slice(None))

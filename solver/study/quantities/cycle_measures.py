@@ -44,7 +44,7 @@ def has_a_limit(settings: Settings) -> bool:
         return True
     if not settings.opens or settings.has("spring") or law != FrictionLaw():
         return False
-    holds = settings.structure().described().holds
+    holds = settings.structure().description().holds
     gaps = [hold.gap for hold in holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
@@ -223,15 +223,15 @@ def recovery_length(run: FinishedRun, instant: int) -> float:
     The distance is taken at the largest tension. NaN without a broken wire, or without
     tension; infinite if the wire regains its tension on neither side.
     """
-    described = run.settings.structure().described()
-    if described.broken is None or run.force[instant] <= 0.0:
+    description = run.settings.structure().description()
+    if description.broken is None or run.force[instant] <= 0.0:
         return math.nan
-    wire, position = described.broken
+    wire, position = description.broken
     axial = AxialForce(run.problem, slice(instant, instant + 1))
     forces = axial(run.iterate.displacement[:, instant : instant + 1])
     # The tension far from the break is that of the loop.
     share = forces[axial.wires == wire, 0] / run.force[instant]
-    size = described.length / len(share)
+    size = description.length / len(share)
     node = round(position / size)
     after = size * _elements_to(share[node:], REGAINED) / REGAINED
     before = size * _elements_to(share[:node][::-1], REGAINED) / REGAINED

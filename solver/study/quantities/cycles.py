@@ -198,10 +198,10 @@ def _paths(settings: Settings) -> Iterator[Array]:
 
     Of a load that varies along a side, the point counts at which it changes most.
     """
-    described = settings.structure().described()
-    if described.tilt is not None:
-        yield described.tilt
-    for act in described.acts:
+    description = settings.structure().description()
+    if description.tilt is not None:
+        yield description.tilt
+    for act in description.acts:
         values = np.atleast_2d(act.values)
         yield values[np.ptp(values, axis=1).argmax()]
 

@@ -56,7 +56,7 @@ def _friction_bounds(problem: Problem) -> Array:
 
 def _driving_load(settings: Settings, iterate: Iterate) -> Array:
     """Load at the loaded side, or else the sum of the friction, (n_instants,), N."""
-    for act in settings.structure().described().acts:
+    for act in settings.structure().description().acts:
         if act.where == LOADED:
             return act.values
     return np.asarray(iterate.friction_force.sum(axis=0))
