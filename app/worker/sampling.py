@@ -16,8 +16,8 @@ from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
 from app.worker.strand import DrawnRope
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import nothing_acts
-from solver.discrete.structure import LoopFields
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.end.status import CANCELLED
 from solver.laws import Contact

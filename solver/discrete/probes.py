@@ -9,17 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, without_residue
+from solver.discrete.contacts import ContactFields
 from solver.discrete.inside import Inside
 from solver.discrete.problem import Problem
-
-if TYPE_CHECKING:
-    from solver.discrete.structure import LoopFields
 
 AXES = {
     "left": 0,
@@ -28,6 +26,17 @@ AXES = {
     "top": 1,
 }
 """Axis normal to each side: 0 is x, 1 is y."""
+
+
+class LoopFields(Protocol):
+    """Fields of an iterate or a reference, SI, shape (n, n_instants)."""
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement of the problem's degrees of freedom, m."""
+
+    def contact(self, name: str) -> ContactFields:
+        """Fields of one interface with friction."""
 
 
 @dataclass(frozen=True, eq=False)

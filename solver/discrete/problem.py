@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,6 @@ from solver.arrays import Array, Indices, as_slice
 from solver.checks import (
     ALIKE,
     INSTANTS,
-    POSITIVE,
     Each,
     Named,
     Numbers,
@@ -34,29 +33,13 @@ from solver.checks import (
 from solver.discrete.contacts import Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive
+from solver.discrete.inside import Inside
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface, Strength
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 from solver.laws.play import PLAIN
 from solver.refusal import RefusedError, Words
-
-if TYPE_CHECKING:
-    from solver.discrete.inside import Inside
-
-
-@dataclass(frozen=True)
-class Scales:
-    """Units of scaled displacement, m, force, N, and time, s.
-
-    With them the results of a method do not depend on the units of the input.
-    """
-
-    displacement: float
-    force: float
-    time: float
-
-    def __post_init__(self) -> None:
-        check(self, displacement=POSITIVE, force=POSITIVE, time=POSITIVE)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import pairwise
 from types import NoneType
 from typing import Self
 
@@ -18,14 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, Flags, Indices
-from solver.checks import Numbers, Part, check, check_value
+from solver.arrays import Array, Indices
+from solver.checks import Numbers, Part, check
 from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
     Gaps,
     IncrementalForm,
-    Interface,
     MacroPart,
     Rule,
     beyond,
@@ -33,6 +31,7 @@ from solver.laws.interface import (
     restricted,
     squared,
 )
+from solver.laws.pairs import Pairs
 from solver.laws.play import Strength
 from solver.laws.stiffness import BodyStiffness, RodStiffness
 from solver.laws.unilateral import ContactRule, Unilateral
@@ -91,22 +90,13 @@ class Violation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact(Interface):
+class Contact(Pairs):
     """Pairs that stick and slip, and may open.
 
-    A pair is a point of the body above and what lies below it; the pairs of one point
-    (two, where a cut crosses the interface, or ends at it) share its force. One law may
-    hold on many interfaces, as in a wall: points and pairs of one then follow those of
-    the other.
+    The pairs of one point share its force.
 
     Attributes
     ----------
-    points
-        Point of the interface that each pair belongs to, shape (n_pairs,).
-    positions
-        Positions of the points along the interface, shape (n_points,), m.
-    weights
-        Tributary length or area of each pair, shape (n_pairs,), m or m^2.
     tangential
         Friction law along the interface.
     normal
@@ -124,46 +114,27 @@ class Contact(Interface):
         Number of interfaces for which this one stands in sums over the structure that
         is shown, as one wire of a layer stands for all: forces and energies of its
         points count as many times.
-    is_spring
-        Whether the contact is a spring at a point, and no surface.
-    names
-        Names of the interfaces, where there are several; one alone has the name that
-        `Problem.interfaces` gives to its law.
-    interfaces
-        Number in `names` of the interface of each point, ascending, shape (n_points,);
-        None where `names` is empty.
     """
 
-    points: Indices
-    positions: Array
-    weights: Array
     tangential: Friction
     normal: Unilateral | None = None
     stiffness_beside: RodStiffness | BodyStiffness = field(default_factory=RodStiffness)
     macro: sparse.csr_array | None = None
     slip_ratio: float = 1.0
     copies: float = 1.0
-    is_spring: bool = False
-    names: tuple[str, ...] = ()
-    interfaces: Indices | None = None
 
     remembers = True
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         check(
             self,
             tangential=Part(Friction),
             normal=Part(Unilateral),
             stiffness_beside=Part(RodStiffness, BodyStiffness),
-            positions=Numbers(((None,),)),
         )
         size = len(self.tangential.component.above)
-        last = len(self.positions) - 1
-        check(
-            self,
-            points=Numbers(((size,),), low=0, high=last, whole=True),
-            weights=Numbers(((size,),), low=0.0, above=True),
-        )
+        check(self, points=Numbers(((size,),), whole=True))
         if self.normal is None and self.tangential.friction.any():
             raise RefusedError(
                 "Contact.tangential.friction",
@@ -176,24 +147,6 @@ class Contact(Interface):
             shown = Words(f"of {len(self.normal.gap)} pairs")
             raise RefusedError(
                 "Contact.normal", shown, f"a law of {size} pairs", remedy
-            )
-        if self.names or self.interfaces is not None:
-            last = len(self.names) - 1
-            kind = Numbers(((len(self.positions),),), low=0, high=last, whole=True)
-            check_value("Contact.interfaces", self.interfaces, kind)
-            self._check_order(np.asarray(self.interfaces))
-
-    def _check_order(self, interfaces: Indices) -> None:
-        """Refuse interfaces without points, or whose points or pairs are mixed."""
-        steps_of_points = np.diff(interfaces)
-        steps_of_pairs = np.diff(interfaces[self.points])
-        is_sorted = np.all(steps_of_points >= 0) and np.all(steps_of_pairs >= 0)
-        if not is_sorted or not self.sizes.all():
-            raise RefusedError(
-                "Contact.interfaces",
-                Words("out of order"),
-                "points and pairs of one interface after those of the other",
-                "sort them by the numbers of their interfaces, each of which has some",
             )
 
     def incremental_form(self) -> IncrementalForm | None:
@@ -223,24 +176,6 @@ class Contact(Interface):
         if self.normal is None:
             return (along,)
         return (self.normal.component, along)
-
-    @property
-    def rows(self) -> Indices:  # type: ignore[override]  # others are given them
-        """Rows of all components, of both sides, (n_rows_of_interface,)."""
-        rows = list[Indices]()
-        for component in self.components:
-            rows.extend(component.sides)
-        return np.concatenate(rows)
-
-    @property
-    def tangent(self) -> Component:
-        """The component along the interface."""
-        return self.tangential.component
-
-    @property
-    def is_on_support(self) -> bool:
-        """Check whether a rigid support lies below."""
-        return self.tangent.below is None
 
     @property
     def opens(self) -> bool:
@@ -299,30 +234,6 @@ class Contact(Interface):
             interfaces=None,
         )
 
-    @cached_property
-    def sizes(self) -> Indices:
-        """Number of points of each interface, shape (n_interfaces,)."""
-        if self.interfaces is None:
-            return np.array([len(self.positions)])
-        return np.bincount(self.interfaces, minlength=len(self.names))
-
-    @cached_property
-    def interface_of_pairs(self) -> Indices:
-        """Number of the interface of each pair, ascending, shape (n_pairs,)."""
-        if self.interfaces is None:
-            return np.zeros(len(self.points), dtype=np.intp)
-        return self.interfaces[self.points]
-
-    @cached_property
-    def ranges(self) -> list[tuple[slice, slice]]:
-        """Range of the points, and of the pairs, of each interface."""
-        pairs = np.bincount(self.interface_of_pairs, minlength=len(self.sizes))
-        ends_of_points = np.cumsum([0, *self.sizes]).tolist()
-        ends_of_pairs = np.cumsum([0, *pairs]).tolist()
-        points = [slice(first, last) for first, last in pairwise(ends_of_points)]
-        pairs_of = [slice(first, last) for first, last in pairwise(ends_of_pairs)]
-        return list(zip(points, pairs_of, strict=True))
-
     def interface(self, number: int) -> Self:
         """The law of one of several interfaces."""
         if self.interfaces is None:
@@ -359,51 +270,9 @@ class Contact(Interface):
         owners[entries.coords[1]] = self.interface_of_pairs[entries.coords[0]]
         return owners
 
-    def holds_on(self, points: Flags) -> Flags:
-        """Mask of the points of interfaces of which any point counts, (n_points,) both."""
-        counts = [points[some].any() for some, _ in self.ranges]
-        return np.repeat(counts, self.sizes)
-
-    def sums(self, values: Array) -> Array:
-        """Sums over the pairs of each interface, to the bit those of it alone.
-
-        From values of pairs, (n_pairs, ...), to (n_interfaces, ...).
-        """
-        # Sums of unequal length in one pass would be added up in another order.
-        totals = [np.add.reduce(values[pairs]) for _, pairs in self.ranges]
-        return np.array(totals)
-
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Local stage for k of all rows, (n_rows,), scaled."""
         return ContactRule(self.normal, self.tangential, k, n_instants)
-
-    def by_point(self, values: Array) -> Array:
-        """Sum over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
-        return np.asarray(self._pairs_of_points @ values)
-
-    @cached_property
-    def _pairs_of_points(self) -> sparse.csr_array:
-        """Matrix with 1 where a pair belongs to a point, shape (n_points, n_pairs)."""
-        size = len(self.points)
-        places = self.points, np.arange(size)
-        return sparse.csr_array(
-            (np.ones(size), places), shape=(len(self.positions), size)
-        )
-
-    def mean_by_point(self, values: Array) -> Array:
-        """Mean over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
-        counts = np.bincount(self.points, minlength=len(self.positions))
-        trailing = [1] * (values.ndim - 1)
-        return np.asarray(self.by_point(values) / counts.reshape(-1, *trailing))
-
-    def in_parallel(self, compliance: Array | None) -> Array:
-        """Compliance of every point from that of its pairs in parallel, (n_points,).
-
-        Zero without compliances of the pairs, (n_pairs,).
-        """
-        if compliance is None:
-            return np.zeros(len(self.positions))
-        return np.asarray(1.0 / self.by_point(1.0 / compliance))
 
     @cached_property
     def shares(self) -> Array:

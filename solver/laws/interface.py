@@ -5,16 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, cast
+from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice, in_rows
 from solver.refusal import RefusedError
-
-if TYPE_CHECKING:
-    from solver.laws.contact import Contact
 
 
 class Component(NamedTuple):
@@ -146,7 +143,7 @@ class IncrementalForm:
     force: PrescribedRows | None = None
     displacement: PrescribedRows | None = None
     glued: Glued | None = None
-    contact: Contact | None = None
+    contact: Interface | None = None
 
 
 class Interface(ABC):

@@ -7,14 +7,12 @@ Small k converges fast globally and slowly locally, large k the reverse
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from solver.arrays import Array
-
-if TYPE_CHECKING:
-    from solver.laws.contact import Contact
+from solver.laws.pairs import Pairs
 
 FRICTION_FACTOR = 2.0
 """k of a friction point over the geometric mean of the two stiffnesses ES/s and ES/h.
@@ -72,7 +70,7 @@ class RodStiffness:
     """1 % of friction force takes 16 to 17 iterations, and 16 to 31 with 1
     (measured)."""
 
-    def choose(self, law: Contact, k: Array, parts: float) -> None:
+    def choose(self, law: Pairs, k: Array, parts: float) -> None:
         """Write the k of interfaces into that of all rows, (n_rows,), scaled.
 
         `parts` is the number of interfaces over the share of one that slides, `k` that
@@ -113,7 +111,7 @@ class BodyStiffness:
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
 
-    def choose(self, law: Contact, k: Array, parts: float) -> None:
+    def choose(self, law: Pairs, k: Array, parts: float) -> None:
         """Write the k of interfaces into that of all rows, as `RodStiffness.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its
@@ -142,7 +140,7 @@ class BodyStiffness:
             ):
                 k[rows] = modulus * stiffness * share
 
-    def stick(self, law: Contact, k: Array) -> None:
+    def stick(self, law: Pairs, k: Array) -> None:
         """Write the k of two bodies that nowhere slip on each other, as `choose`.
 
         They bend and stretch as one body, except for deformations as short as their
@@ -157,7 +155,7 @@ class BodyStiffness:
             for rows in component.sides:
                 k[rows] = np.maximum(k[rows], squeezed)
 
-    def _slender(self, law: Contact, length: Array) -> Array:
+    def _slender(self, law: Pairs, length: Array) -> Array:
         """Factor on k between two bodies that are thin beside their length.
 
         Layers slide like rods, of stiffness E d / l^2 per area as a whole, with the

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from app.browser import Browser
-from app.files.link import (
+from app.lessons.catalogue import CASES, settings_of
+from app.link import (
     LESSONS,
     LONGEST,
     Link,
@@ -19,7 +20,6 @@ from app.files.link import (
     read,
     show,
 )
-from app.lessons.catalogue import CASES, settings_of
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache

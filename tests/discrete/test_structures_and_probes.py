@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from solver import discrete
 from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.elements import von_mises
 from solver.discrete.plane.bricks import Brick
@@ -136,7 +137,9 @@ def test_a_side_that_is_not_named_is_free() -> None:
     named = replace(
         BODY, sides=dict.fromkeys(("left", "right", "bottom"), free) | BODY.sides
     )
-    assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
+    assert fingerprint(discrete.discretise(named)) == fingerprint(
+        discrete.discretise(BODY)
+    )
     assert {act.where for act in BODY.description().acts} == {"top x", "top y"}
     assert [hold.kind for hold in BODY.description().holds] == ["support"]
 
@@ -169,7 +172,7 @@ def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
     """Of an extreme s over three heights h each:
     3 s h^2 / 6, against the clock where s is up.
     """
-    problem = BEAMS.discretise()
+    problem = discrete.discretise(BEAMS)
     still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
     force = BEAMS.loop(problem).force(still)
     assert force == pytest.approx(-3.0 * 6e5 * T * 0.1**2 / 6.0)

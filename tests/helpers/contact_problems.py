@@ -4,7 +4,8 @@ import numpy as np
 
 from solver.discrete.plane.bricks import Brick
 from solver.discrete.plane.stack import Given, Side, Stack, Support
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.problem import Problem
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import (
     BodyStiffness,

@@ -13,6 +13,7 @@ from scipy.integrate import quad
 from scipy.linalg import solve_banded
 from scipy.special import erfc
 
+from solver import discrete
 from solver.arrays import Array
 from solver.discrete.plane.stack import Given, Side, Stack, Support
 from solver.discrete.problem import Problem
@@ -351,7 +352,7 @@ def loosened(substructures):
 
 @pytest.mark.parametrize("substructures", [(1, 1), (4, 2)])
 def test_a_known_bound_in_the_plane_is_obeyed_and_presses_nothing(substructures):
-    problem = loosened(substructures).discretise()
+    problem = discrete.discretise(loosened(substructures))
     reference = reference_of(problem)
     method = Latin(direction=Auto(), stop=Stop(accuracy=1e-4, iterations=300))
     solution = solve(problem, method)

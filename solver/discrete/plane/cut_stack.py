@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,10 +23,8 @@ from solver.discrete.elements import (
 )
 from solver.discrete.inside import RectangularSubstructure
 from solver.discrete.plane.bricks import Brick, Joint, joints_of
+from solver.discrete.plane.stack import Given, Stack
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
-
-if TYPE_CHECKING:
-    from solver.discrete.plane.stack import Given, Stack
 
 SIDES = "left", "right", "bottom", "top"
 

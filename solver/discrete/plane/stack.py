@@ -28,8 +28,13 @@ from solver.checks import (
     check_value,
 )
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.stack_problem import problem_of
-from solver.discrete.probes import constant, end_rotation, reaction, side_mean
+from solver.discrete.probes import (
+    LoopFields,
+    constant,
+    end_rotation,
+    reaction,
+    side_mean,
+)
 from solver.discrete.problem import Problem
 from solver.discrete.structure import (
     OUTWARD,
@@ -38,7 +43,6 @@ from solver.discrete.structure import (
     Description,
     Hold,
     Loop,
-    LoopFields,
     on_side,
 )
 from solver.laws import FrictionLaw
@@ -359,10 +363,6 @@ class Stack:
         if self.stiffness is None:
             return 1.0
         return float(self.stiffness[body])
-
-    def discretise(self) -> Problem:
-        """Make the discrete problem."""
-        return problem_of(self)
 
     @property
     def axes(self) -> Axes:

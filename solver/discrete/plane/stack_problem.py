@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -18,7 +18,9 @@ from solver.discrete.inside import Inside, RectangularSubstructure
 from solver.discrete.plane.bricks import Joint
 from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.plane.stack import Side, Spring, Stack, Support
+from solver.discrete.problem import Problem
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
 from solver.laws import (
     BodyStiffness,
@@ -32,10 +34,6 @@ from solver.laws import (
     Unilateral,
 )
 from solver.laws.friction import compliance_of
-
-if TYPE_CHECKING:
-    from solver.discrete.plane.stack import Side, Spring, Stack, Support
-
 
 NO_BODY = -1
 """In place of the number of a body: the support."""
