@@ -12,7 +12,8 @@ COPY pyproject.toml README.md ./
 COPY solver solver
 COPY app app
 COPY static static
-RUN pip install --no-cache-dir .
+# The page opens workbooks, too.
+RUN pip install --no-cache-dir ".[excel]"
 
 USER slipfront
 # Websockets are accepted from pages of localhost:5006 alone; BOKEH_ALLOW_WS_ORIGIN names others.

@@ -14,7 +14,7 @@ configure()
 
 
 def on_server_loaded(_server_context: Any) -> None:
-    """Import what pages need, and start the process from which workers are forked."""
+    """Import the modules of a worker, and start the process from which it is forked."""
     # The path is as it was before this file was run.
     sys.path.insert(0, ROOT)
     from app.worker.process import Worker

@@ -25,30 +25,40 @@ LOST = 5.0
 PAINTED = (
     "requestAnimationFrame(() => setTimeout(() => { pulse.painted = pulse.sent }))"
 )
-"""Says what is on the screen once it is: tasks follow what is painted in a frame of the
-browser."""
+"""Script that reports a picture once it is on the screen: a task set within an
+animation frame runs after that frame is painted."""
 SHORTEST = 0.02
-"""Seconds of a pause between pictures that is kept."""
+"""Shortest pause between pictures that is kept, s."""
 LASTS = 1.0
 """Seconds after which a value that was shown no longer comes back."""
 TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
-"""Elements that take keys for themselves."""
+"""Elements that take keys for themselves (a CSS selector)."""
 COPY = """
-if (browser.copied) {
-  navigator.clipboard?.writeText(browser.copied).catch(() => prompt("The link", browser.copied))
+const link = browser.copied
+if (link) {
+  navigator.clipboard?.writeText(link).catch(() => prompt("The link", link))
 }
 """
 LISTEN = """
-const measure = () => { browser.setv({height: innerHeight, is_narrow: innerWidth < 900}) }
+const measure = () => {
+  browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
+}
 measure()
 addEventListener("resize", measure)
-// One may come back to the same address again, and to that which says nothing.
-addEventListener("popstate", () => { browser.search = ""; browser.search = location.search || "?" })
+// A property that keeps its value tells nothing: the same address may come back twice,
+// and an address may be empty.
+addEventListener("popstate", () => {
+  browser.search = ""
+  browser.search = location.search || "?"
+})
 document.addEventListener("keydown", (event) => {
   const target = event.composedPath()[0]
-  const takes = target.closest?.(taken) || (event.key == " " && target.closest?.("button"))
-  const name = (event.shiftKey && event.key.startsWith("Arrow") ? "Shift+" : "") + event.key
-  if (takes || event.ctrlKey || event.metaKey || event.altKey || !names.includes(name)) { return }
+  const isPressing = event.key == " " && target.closest?.("button")
+  const isTaken = target.closest?.(taken) || isPressing
+  const isBrowsers = event.ctrlKey || event.metaKey || event.altKey
+  const isShifted = event.shiftKey && event.key.startsWith("Arrow")
+  const name = (isShifted ? "Shift+" : "") + event.key
+  if (isTaken || isBrowsers || !names.includes(name)) { return }
   event.preventDefault()
   browser.pressed = name
   browser.count += 1
@@ -64,10 +74,10 @@ class Pulse(DataModel):
 
 
 class Display:
-    """Paints the views in sight, each picture once the browser has painted the last.
+    """Display of the views in sight: a picture once the browser has painted the last.
 
-    `views` are those in sight; `also` is called with each picture, inside its hold: for
-    what is not a view, as the status line.
+    `views` are those in sight. `also` is called with each picture, inside its hold, for
+    parts that are not views, such as the status line.
     """
 
     def __init__(
@@ -78,7 +88,8 @@ class Display:
         self._also = also
         self.views: list[View] = []
         self._is_due = False
-        self._sent_at = self._took = 0.0
+        self._sent_at = 0.0
+        self._took = 0.0
         self.pulse = Pulse(name="pulse")
         self.pulse.js_on_change(
             "sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED)
@@ -92,7 +103,7 @@ class Display:
         """Set the views in sight."""
         if views != self.views:
             self.views = views
-            self._state.needs = frozenset(need for view in views for need in view.needs)
+            self._state.needs = frozenset().union(*[view.needs for view in views])
             self._update()
 
     def catch_up(self) -> None:
@@ -106,6 +117,7 @@ class Display:
                 self._count()
 
     def _is_waiting(self) -> bool:
+        """Check whether the browser still paints a picture, and it is not lost."""
         is_sent = self.pulse.painted < self.pulse.sent
         return is_sent and time.monotonic() < self._sent_at + LOST
 
@@ -116,6 +128,7 @@ class Display:
             self._paint()
 
     def _paint(self) -> None:
+        """Send the newest frame to all views in sight as one message."""
         state = self._state
         frame = self._state.frame
         self._is_due = False
@@ -138,14 +151,16 @@ class Display:
             state.send(Ready())
 
     def _count(self) -> None:
+        """Count a picture, last of all: once it is painted its number comes back."""
         self._sent_at = time.monotonic()
         self.pulse.sent += 1
 
     def _on_painted(self) -> None:
         """Go on after a pause in which other pages can paint.
 
-        All share the server's thread.
+        All pages share the server's thread.
         """
+        # Each of the other pages may take as long as this one took.
         pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
         if pause < SHORTEST:
             self._go_on()
@@ -162,8 +177,9 @@ class Display:
 class Browser(DataModel):
     """The window of the browser, and keys that are pressed in it.
 
-    The height in pixels, and whether it is narrow; the last key and a count of them;
-    the address that one has gone back, or on, to; and the link that is to be copied.
+    The window has a `height` in px and may be narrow. `pressed` is the last key, and
+    `count` grows with every key. `search` is the address to which the browser went back
+    or on, `copied` a link that it is to copy.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -176,9 +192,9 @@ class Browser(DataModel):
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
     ) -> None:
-        """Call actions of keys, by their names in the browser, unless a field takes them.
+        """Call actions of keys by their names in the browser; note the window's size.
 
-        The state has the size of the window.
+        Keys that an element takes for itself (`TAKEN`) call nothing.
         """
         for size in ("height", "is_narrow"):
             self.on_change(
@@ -194,8 +210,8 @@ class Browser(DataModel):
 class Echoes:
     """Values that the page gave a widget lately, to tell them from those of a person.
 
-    Panel's React wrapper sends a value back after it has shown it. Where the next one
-    came meanwhile, that looks like a choice of the last but one
+    Panel's React wrapper sends a value back after it has shown it. Where the page gave
+    the next value meanwhile, that looks as if a person had chosen the one before
     (panel/models/react_component.ts, `useState`).
     """
 
@@ -206,8 +222,10 @@ class Echoes:
         """Note a value and the one that it replaces; return the value."""
         now = time.monotonic()
         if value != before:
-            # What is empty was never shown.
-            self._given.extend((now, each) for each in (before, value) if each != "")
+            for each in (before, value):
+                # An empty value was never shown, and so does not come back.
+                if each != "":
+                    self._given.append((now, each))
         return value
 
     def has(self, value: Any) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from html import escape
 from typing import Any
 
 import holoviews as hv
@@ -18,6 +17,7 @@ from bokeh.resources import Resources
 
 from app.units import unit_for
 from app.views.colors import REFERENCE
+from app.widgets import html
 from solver.arrays import Array
 from solver.study.page import (
     HUES,
@@ -42,11 +42,6 @@ LABEL = 34
 """Characters of a line beside an axis."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
 HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
-STYLE = """<style>
-.panels { display: grid; gap: 0 1rem; grid-template-columns:
-  repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); }
-.key { margin-right: 1rem; white-space: nowrap; }
-</style>"""
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
@@ -66,40 +61,40 @@ def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
     first = 0
     for plot in plots:
         last = first + len(plot.charts)
-        sections.append(
-            f'<div role="figure" aria-label="{escape(plot.heading)}">{keys(plot.charts)}'
-            f'<div class="panels">{"".join(panels[first:last])}</div></div>'
+        section = html(
+            "charts.html",
+            heading=plot.heading,
+            keys=keys(plot.charts),
+            panels=panels[first:last],
         )
+        sections.append(section)
         first = last
-    return f"{STYLE}\n{library()}\n{script}", sections
+    head = html("charts_head.html", library=library(), script=script)
+    return head, sections
 
 
 def library(*more: str) -> str:
     """Scripts of Bokeh and further parts, for a page that loads nothing (HTML)."""
     # Not `Resources.render`: in it Panel has a page load scripts from the network.
     texts = Resources(mode="inline", components=["bokeh", *more]).js_raw
-    return "\n".join(f"<script>{text}</script>" for text in texts)
+    return html("library.html", scripts=texts)
 
 
 def keys(charts: Sequence[Chart]) -> str:
     """The legend that charts side by side share (HTML); "" without labels."""
-    curves: dict[str, PanelCurve] = {}
+    curves: dict[str, dict[str, str]] = {}
     for chart in charts:
         if isinstance(chart, Panel):
-            curves |= {curve.label: curve for curve in chart.curves if curve.label}
-    if not curves:
-        return ""
-    return "<div>" + " ".join([_key(curve) for curve in curves.values()]) + "</div>"
+            for curve in chart.curves:
+                if curve.label:
+                    curves[curve.label] = _key(curve)
+    return html("keys.html", curves=curves.values())
 
 
-def _key(curve: PanelCurve) -> str:
-    """Entry of a curve in the legend (HTML)."""
+def _key(curve: PanelCurve) -> dict[str, str]:
+    """Label of a curve in the legend, and dash and colour of its line."""
     dash = curve.line if curve.line in ("dashed", "dotted") else "solid"
-    mark = (
-        '<i style="display: inline-block; width: 1.2rem; vertical-align: middle; '
-        f'border-top: 3px {dash} {COLORS[curve.hue]}"></i>'
-    )
-    return f'<span class="key">{mark} {escape(curve.label)}</span>'
+    return {"label": curve.label, "dash": dash, "color": COLORS[curve.hue]}
 
 
 class LiveChart:
@@ -201,6 +196,7 @@ def overlay(chart: Chart) -> hv.Overlay:
         y_limits = edges(ys, chart.y)[[0, -1]]
     else:
         elements = _of_panel(chart)
+        # Without curves there is nothing else to join.
         xs = np.concatenate([[], *[curve.x for curve in chart.curves]])
         ys = np.concatenate([[], *[curve.y for curve in chart.curves]])
         x_limits = chart.x.limits or (None, None)
@@ -233,7 +229,7 @@ def overlay(chart: Chart) -> hv.Overlay:
 def edges(values: Array, axis: PanelAxis) -> Array:
     """Ends of cells about n ascending values, half way between them, shape (n + 1,).
 
-    On a logarithmic axis the ratios are halved in place of distances.
+    On a logarithmic axis a cell ends half way between logarithms.
     """
     at = values
     if axis.logarithmic:
@@ -368,10 +364,7 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
 
 
 def contours(chart: Map) -> list[dict[str, Any]]:
-    """Contour lines of a map at round values.
-
-    "x" and "y", (n,) each, and the value "z".
-    """
+    """Contour lines of a map at round values, each with "x" and "y", (n,), and "z"."""
     known = chart.z[np.isfinite(chart.z)]
     low = known.min(initial=np.inf)
     high = known.max(initial=-np.inf)

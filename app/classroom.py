@@ -1,4 +1,4 @@
-"""Classes: a page leads, and others show its frames, which are computed once.
+"""Classes: a page leads, and the others show its frames, which are computed once.
 
 Pages have no names, and nothing is left of a class that has ended. A class whose leader
 is gone waits some minutes: a page that is loaded again is gone for a moment.
@@ -10,7 +10,6 @@ import math
 import secrets
 import time
 from collections.abc import Mapping, Sequence
-from html import escape
 from typing import Any
 
 import panel as pn
@@ -21,10 +20,10 @@ from panel.io.state import set_curdoc
 
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
-from app.server import address_for_others, how_to_open
+from app.server import address_for_others, port
 from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
-from app.widgets import button, dialog
+from app.widgets import PlainText, button, dialog, html
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 """Letters of a code; none of them is taken for a digit."""
@@ -83,26 +82,25 @@ class Classroom:
 
     def end(self) -> None:
         """End the class; followers keep the last picture."""
+        # As if the leader had gone long ago: nobody waits.
         self._let_go(-math.inf)
         self.notify()
 
     def _let_go(self, now: float) -> None:
-        """Keep a copy of the parts that followers show.
+        """Keep a copy of the parts of the leader's state that followers show.
 
-        The state would keep the whole page.
+        The state itself would keep the whole page of the leader in memory.
         """
         self.leader = None
         self._gone_at = now
         last = self.state
         self.state = PageState(**_values(last, (*SHARED, "prediction")))
+        # These are no parameters, so the copy does not have them.
         self.state.history = last.history
         self.state.number = last.number
 
     def poll_for(self, member: ClassMember) -> Poll | None:
-        """Predictions of the class as one of its pages sees them.
-
-        None without a question.
-        """
+        """Predictions of the class as a page sees them; None without a question."""
         leader = self.state
         if leader.lesson not in LESSONS or self.is_over:
             return None
@@ -180,7 +178,7 @@ class ClassMember(param.Parameterized):
     `left` the code of the class that was followed last.
     """
 
-    message = param.String(doc="What is to be said of the class, in a sentence.")
+    message = param.String(doc="Sentence on the class.")
 
     def __init__(self, state: PageState, supervisor: Supervisor, document: Any) -> None:
         super().__init__()
@@ -219,6 +217,7 @@ class ClassMember(param.Parameterized):
                     f"There is no class {code[:20]}: ask for it; it may have ended."
                 )
             self.state.room = self._address()
+        # In constant time: a key is not found letter by letter.
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.state
             _update(self.state, _values(last, RESUMED))
@@ -235,6 +234,7 @@ class ClassMember(param.Parameterized):
             return
         forget()
         code = ""
+        # A code that is taken would be that of another class.
         while not code or code in CLASSROOMS:
             code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
         CLASSROOMS[code] = Classroom(code, self)
@@ -328,6 +328,7 @@ class ClassMember(param.Parameterized):
             values |= _values(leader, SHARED)
         _update(state, values)
         self.message = self._sentence(room)
+        # Nobody else tells a page that the class of an absent leader is over.
         if room.is_alone and not room.is_over:
             self._document.add_timeout_callback(self._take, int(1000 * KEPT) + 1000)
 
@@ -342,10 +343,7 @@ class ClassMember(param.Parameterized):
         return f"You follow class {room.code}. Change anything to go on by yourself."
 
     def _address(self) -> str:
-        """Part of the page's address.
-
-        The code of the class, and for its leader the key.
-        """
+        """Part of the address: the code of the class, and for its leader the key."""
         if self.room is None:
             return ""
         if self.leads:
@@ -371,7 +369,7 @@ class ClassDialog:
 
     def __init__(self, member: ClassMember) -> None:
         self._member = member
-        self._message = pn.pane.HTML(margin=(4, 8))
+        self._message = PlainText(margin=(4, 8))
         self._again = button(
             "Follow again", lambda: member.enter(member.left), variant="text"
         )
@@ -410,17 +408,18 @@ class ClassDialog:
 
     def _led(self) -> list[Any]:
         code = self._member.room.code
-        large = f'<div style="font-size: 64px; letter-spacing: 8px">{code}</div>'
         address = address_for_others()
+        link = ""
+        picture = ""
         if address:
             link = f"{address}?class={code}"
-            svg = segno.make(link, error="m").svg_inline(
+            picture = segno.make(link, error="m").svg_inline(
                 scale=6, light="#fff", omitsize=True
             )
-            below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
-        else:
-            below = how_to_open()
-        return [pn.pane.HTML(large + below), button("End the class", self._leave)]
+        text = html(
+            "classroom.html", code=code, link=link, picture=picture, port=port()
+        )
+        return [pn.pane.HTML(text), button("End the class", self._leave)]
 
     def _begin(self) -> None:
         self._member.begin()
@@ -442,6 +441,6 @@ class ClassDialog:
 
     def _show(self) -> None:
         member = self._member
-        self._message.object = escape(member.message)
+        self._message.object = member.message
         self._again.visible = member.room is None and bool(member.left)
         self.view.visible = bool(member.message)

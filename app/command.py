@@ -1,7 +1,4 @@
-"""The command `slipfront serve`.
-
-The page without a clone, as `panel serve app` has it with one.
-"""
+"""The command `slipfront serve`: serves the page without a clone of the repository."""
 
 from __future__ import annotations
 
@@ -14,10 +11,7 @@ APP = Path(__file__).resolve().parent
 
 
 def add_serve(commands: Any) -> None:
-    """Add the command.
-
-    The entry points of the distribution name this to the engine's.
-    """
+    """Add the command; the engine finds this function by an entry point."""
     serve = commands.add_parser(
         "serve",
         help="serve the page, at /app; options are those of `panel serve`",

@@ -1,7 +1,4 @@
-"""The controls at the side.
-
-A widget of Panel's for each setting, from its definition.
-"""
+"""The controls at the side: a Panel widget for each setting, by its definition."""
 
 from __future__ import annotations
 
@@ -51,7 +48,7 @@ GROUPS = (
 
 
 class SettingControl:
-    """The widget of one setting: it shows the value of the state and changes it.
+    """The widget of a setting, which shows the value in the state and changes it.
 
     `field` takes the value; for a number it is a text field with a `slider`. Both stand
     in `view`.
@@ -75,6 +72,7 @@ class SettingControl:
     def update(self) -> None:
         """Show the value of the setting, and whether it applies."""
         settings = self._state.settings
+        # Widgets report these changes, too, as if a person had made them.
         self._is_updating = True
         try:
             self.view.visible = settings.applies(self.name)
@@ -111,6 +109,7 @@ class SettingControl:
             options = list(definition.objects)
             field = pmui.Select(options=options, variant="standard", **more)
             return field, field
+        # All others are numbers: a field to type in, and below it a slider.
         more |= {"margin": 0, "variant": "standard", **looks("number")}
         default = self._written(definition.default)
         field = pmui.TextInput(placeholder=f"{default} by default", **more)
@@ -145,16 +144,13 @@ class SettingControl:
         return slider
 
     def _to_slider(self, value: float) -> float:
-        """Position of a value on the slider.
-
-        In the unit of the field, or its logarithm.
-        """
+        """Position of a value on the slider: in the field's unit, or its logarithm."""
         if self._is_logarithmic:
             return math.log10(max(value, 1e-300))
         return float(f"{value / self._unit.factor:.10g}")
 
     def _from_slider(self, position: float) -> float:
-        """Value of a position of the slider, rounded to what a hand can choose."""
+        """Value at a position of the slider, rounded to what a hand can choose."""
         if self._is_logarithmic:
             value = 10.0**position
             digits = 3
@@ -177,6 +173,8 @@ class SettingControl:
         elif self.slider is None:
             self.field.value = value
         else:
+            # The browser may send the text back after the next one has come: see
+            # `Echoes`.
             self.field.value = self._echoes.give(self._written(value), self.field.value)
             if not self._is_dragged:
                 self._show_on_slider(value)
@@ -274,6 +272,8 @@ class Controls:
     def __init__(self, state: PageState) -> None:
         self._state = state
         self._controls: list[SettingControl] = []
+        # Toggle buttons have no pictures of their own: rules of style give each of them
+        # one.
         pictures = {
             f"& .MuiToggleButton-root:nth-of-type({number})::before": mask_of(kind.icon)
             for number, kind in enumerate(CATALOGUE.values(), start=1)
@@ -324,6 +324,7 @@ class Controls:
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
+        # The numbers of open groups would mean groups of the scene before.
         self._groups.active = []
         # Each group is a spacer until it is opened: it costs a page less than a column.
         self._closed = dict(enumerate([*groups.items(), ("Files", [])]))

@@ -30,9 +30,9 @@ class FrictionInterface:
     """Data of an interface that all iterates share."""
 
     positions: Floats
-    """Of its points along the bodies, shape (n_points,), m."""
+    """Positions of its points along the bodies, shape (n_points,), m."""
     cuts: Floats
-    """Where substructures meet, m."""
+    """Positions at which substructures meet, shape (n_cuts,), m."""
     bound: Floats | None
     """Friction bound mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1)
     where it does not change; None where it depends on the pressure."""
@@ -52,9 +52,9 @@ class InterfaceFields:
     """Friction force on the body above, shape (n_points, n_instants), N/m along rods,
     Pa in the plane."""
     pressure: Floats | None
-    """Same shape, Pa; None where it is given."""
+    """Pressure, same shape, Pa; None where it is given."""
     status: Bytes
-    """-1, 0, +1 or `OPEN`, same shape."""
+    """Status of the points: -1, 0, +1 or `OPEN`, same shape."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ class Geometry:
     outlines: NDArray[np.intp]
     """Nodes of closed lines round substructures, -1 behind each line."""
     rims: NDArray[np.intp]
-    """Nodes of the sides of bodies that nothing touches, the same way."""
+    """Nodes of the sides of bodies that nothing touches, -1 behind each line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class DeformedGeometry:
     points: Floats
     """Displacement of the contact points, shape (n_points, 2, n_instants), m."""
     status: Bytes
-    """Of the contact points, shape (n_points, n_instants)."""
+    """Status of the contact points, shape (n_points, n_instants)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +97,12 @@ class Run:
     """Data that all frames of a run share."""
 
     number: int
-    """Counts the runs of a page, from 1."""
+    """Number of the run, from 1: no other run of the server has it."""
     settings: Settings
     sentence: str
-    """What the scene is and what acts on it."""
+    """Sentence on the scene and its loads."""
     instants: Floats
-    """Shape (n_instants,), s."""
+    """Instants that are shown, shape (n_instants,), s."""
     interfaces: Mapping[str, FrictionInterface]
     """All interfaces with friction, by name."""
     geometry: Geometry
@@ -112,25 +112,25 @@ class Run:
     exact: tuple[ExactCurve, ...] = ()
     """Closed forms of the scene, at the same instants."""
     reference: Mapping[str, InterfaceFields] = field(default_factory=dict)
-    """Contact of the incremental solver, by interface; empty while there is none."""
+    """Contact of the incremental solver, by interface; empty without a reference."""
     reference_loop: Floats | None = None
-    """Its displacement and force, shape (2, n_instants)."""
+    """Displacement and force of the reference's loop, shape (2, n_instants), SI."""
     reference_seconds: float = float("nan")
-    """Time that it took, s."""
+    """Run time of the incremental solver, s."""
     mechanism: Floats | None = None
     """Displacement of the nodes as the structure begins to collapse, (n_nodes, 2), m,
     the size of a body at most; None where it does not."""
     collapses_at: float = float("nan")
-    """When it does, s."""
+    """Instant of the collapse, s; NaN without one."""
     is_compared: bool = False
-    """Whether the reference and closed forms are there, as far as there are any."""
+    """Whether the search for a reference and closed forms is over."""
     is_idle: bool = False
     """Whether nothing acts, so that nothing moves."""
 
     def interface(self, name: str) -> str:
         """The interface of a name.
 
-        By default the first, of wires the last: it slips most.
+        The default is the first interface, and of wires the last, which slips most.
         """
         if name in self.interfaces:
             return name
@@ -152,47 +152,48 @@ class Frame:
 
     run: Run
     iteration: int
-    """Its number, from 1."""
+    """Number of the iterate, from 1."""
     is_answer: bool
     """Whether it is the certified solution, which is no iteration of the search."""
     contact: Mapping[str, InterfaceFields]
     """Contact fields by interface: the selected one, and all others where they are
     small."""
     deformed: DeformedGeometry
-    """How the bodies have moved."""
+    """Displacements of the drawn bodies."""
     loop: Floats
-    """Displacement and force of the loop, shape (2, n_instants)."""
+    """Displacement and force of the loop, shape (2, n_instants), SI."""
     history: Mapping[str, Floats]
     """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of
     shape (n_iterations,)."""
     status: Status | None = None
-    """How the run ends, once it does."""
+    """Status with which the run ended; None while it goes on."""
     energy: float = float("nan")
     """Energy lost in the whole interval, J."""
     residual: float | None = None
-    """KKT residual of a certified solution; None of all other iterates."""
+    """KKT residual of a certified solution; None for all other iterates."""
     remarks: tuple[str, ...] = ()
-    """What is to be said of the answer, in plain sentences."""
+    """Remarks on the answer, in plain sentences."""
     extras: Mapping[str, Any] = field(default_factory=dict)
-    """What only some views need, by name, as far as one of them was in sight."""
+    """Extras that views in sight need, by name."""
     readings: Mapping[str, float] = field(default_factory=dict)
     """Quantities of the run that a lesson or a case names, by name."""
 
     @cached_property
     def nbytes(self) -> int:
         """Memory of the arrays, bytes."""
-        fields = [
-            a for c in self.contact.values() for a in (c.friction, c.pressure, c.status)
-        ]
         moved = self.deformed
-        arrays = [*fields, moved.nodes, moved.points, moved.status, self.loop]
-        return sum(array.nbytes for array in arrays if array is not None)
+        arrays = [moved.nodes, moved.points, moved.status, self.loop]
+        for fields in self.contact.values():
+            arrays += [fields.friction, fields.status]
+            if fields.pressure is not None:
+                arrays.append(fields.pressure)
+        return sum(array.nbytes for array in arrays)
 
     @property
     def stage(self) -> tuple[int, bool, bool]:
         """Number of the run, and whether it is compared and over.
 
-        Axes change with it.
+        Axes are chosen anew when it changes.
         """
         return self.run.number, bool(self.run.reference), self.status is not None
 
@@ -205,10 +206,7 @@ class Frame:
 
     @property
     def error(self) -> float:
-        """Relative error of the contact force.
-
-        Estimated where there is no reference.
-        """
+        """Relative error of the contact force; without a reference it is estimated."""
         measured = self.last("error_force")
         if np.isfinite(measured):
             return measured
@@ -225,7 +223,7 @@ class Selection:
     """Name of the selected interface."""
     substructure: int | None = None
     """Number of the selected substructure, from 0; None is the last."""
-    place: float | None = None
+    position: float | None = None
     """Position along the bodies that is marked, m."""
 
     def interface_of(self, run: Run) -> str:

@@ -1,7 +1,4 @@
-"""The address of a page.
-
-Reads it to show a state, and writes the state that is shown.
-"""
+"""The address of a page: read to show a state, written of the state that is shown."""
 
 from __future__ import annotations
 
@@ -27,13 +24,13 @@ SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """Parts of a page's state in its address, beside settings."""
 DEFAULTS = {name: PageState.param[name].default for name in SHARED}
 LONGEST = 1500
-"""Characters of a value in an address; mail, chat and proxies cut what is much
-longer."""
+"""Largest number of characters of a value in an address: mail, chat and proxies cut
+much longer addresses."""
 
-Place = dict[str, Any]
-"""What an address says, by the names of `PageState`: `settings` in any case; the room
-is "class" in the address. Beside that the `instant` as a share of the interval, and the
-`iteration` at which the run waits."""
+Shown = dict[str, Any]
+"""The state that an address shows, by the names of `PageState`: always `settings`; the
+room is "class" in the address. It may also have the `instant` as a share of the
+interval, and the `iteration` at which the run waits."""
 _CHECKED: dict[str, Any] = {
     "instant": SettingGroup("").quantity(0.0, (0.0, 1.0), (0.0, 1.0), ""),
     "iteration": SettingGroup("").count(0, (0, 100_000), (0, 100_000), ""),
@@ -43,18 +40,18 @@ _CHECKED: dict[str, Any] = {
 
 
 class Link:
-    """Keeps the address of a page, and shows an address that the browser goes back to.
+    """The address of a page, kept up to date; an earlier one is shown again.
 
-    Each change is an entry of the browser's history, so that Back undoes it; but for
-    one that is dragged, and instants and iterations. `query` is the address from the
-    question mark on.
+    Each change is an entry of the browser's history, so that Back undoes it. Only moves
+    of a dragged slider, instants and iterations are no entries. `query` is the address
+    from the question mark on.
     """
 
     def __init__(self, state: PageState, browser: Browser) -> None:
         self._state = state
         self._browser = browser
         self._location = pn.state.location
-        self.query = query_of(place_of(state))
+        self.query = query_of(shown_by(state))
         browser.on_change("search", lambda name, old, new: new and self.go(new))
         state.param.watch(
             lambda *events: self._write(), ["settings", "is_dragged", *SHARED]
@@ -62,7 +59,7 @@ class Link:
 
     def _write(self) -> None:
         """Write the state that is shown into the address."""
-        query = query_of(place_of(self._state))
+        query = query_of(shown_by(self._state))
         if self._state.is_dragged or query == self.query:
             return
         self.query = query
@@ -82,27 +79,28 @@ class Link:
 
     def go(self, query: str) -> None:
         """Show the state of an address."""
-        place, refusal = read(query, self._state.settings)
-        self.query = query_of(place)
-        show(self._state, place)
+        shown, refusal = read(query, self._state.settings)
+        self.query = query_of(shown)
+        show(self._state, shown)
         self._state.refusal = refusal
 
 
-def show(state: PageState, place: Place) -> None:
+def show(state: PageState, shown: Shown) -> None:
     """Show the state that was read from an address."""
-    # At once: what is between two addresses has none.
+    values = {name: shown.get(name, DEFAULTS[name]) for name in SHARED}
+    # In one step: each change alone would write an address of its own.
     with param.parameterized.batch_call_watchers(state):
-        state.param.update(**{name: place.get(name, DEFAULTS[name]) for name in SHARED})
-        if "instant" in place:
-            state.select(phase=place["instant"])
-        if dump(place["settings"]) != dump(state.settings):
-            state.adopt(place["settings"])
-    if place.get("iteration"):
-        state.reset(place["iteration"])
+        state.param.update(**values)
+        if "instant" in shown:
+            state.select(phase=shown["instant"])
+        if dump(shown["settings"]) != dump(state.settings):
+            state.adopt(shown["settings"])
+    if shown.get("iteration"):
+        state.reset(shown["iteration"])
 
 
-def place_of(state: PageState) -> Place:
-    """The state that is shown, without the instant and the iteration."""
+def shown_by(state: PageState) -> Shown:
+    """The state that a page shows, without the instant and the iteration."""
     return {name: getattr(state, name) for name in ("settings", *SHARED)}
 
 
@@ -111,108 +109,141 @@ def link_of(state: PageState) -> tuple[str, str]:
     frame = state.frame
     is_held = not state.running or state.frame is not state.newest
     is_waiting = frame is not None and not frame.is_answer and is_held
-    place = place_of(state) | {
-        # Who leads a class has its key there, too.
-        "room": state.room.partition(".")[0],
-        "instant": round(state.selection.phase, 4),
-        "iteration": frame.iteration if is_waiting else 0,
-    }
+    shown = shown_by(state)
+    # The leader of a class has its key there, too, which is not handed on.
+    shown["room"] = state.room.partition(".")[0]
+    shown["instant"] = round(state.selection.phase, 4)
+    shown["iteration"] = frame.iteration if is_waiting else 0
+    root = ""
     if pn.state.location is not None:
         root = pn.state.location.href.partition("?")[0]
-    else:
-        root = ""
-    long = too_long(state.settings)
-    titles = ", ".join(title_of(state.settings.definitions()[name]) for name in long)
-    if long:
-        message = f"Too long for a link, so that a saved file has it alone: {titles}."
-    else:
-        message = ""
-    return root + query_of(place), message
+    definitions = state.settings.definitions()
+    titles = [title_of(definitions[name]) for name in too_long(state.settings)]
+    message = ""
+    if titles:
+        listed = ", ".join(titles)
+        message = f"Too long for a link, so that a saved file has it alone: {listed}."
+    return root + query_of(shown), message
 
 
-def query_of(place: Place) -> str:
+def query_of(shown: Shown) -> str:
     """The address: differences from the defaults, or from a lesson or a case."""
-    if place.get("room"):
-        return f"?class={quote(place['room'])}"
-    settings = place["settings"]
-    lesson = LESSONS.get(place.get("lesson", ""))
+    if shown.get("room"):
+        return f"?class={quote(shown['room'])}"
+    settings = shown["settings"]
     base = default_settings(settings.scene)
     pairs = {"scene": settings.scene}
     for kind, known in KNOWN.items():
-        if (name := place.get(kind)) in known:
+        if (name := shown.get(kind)) in known:
             base = settings_of(known[name])
             pairs = {kind: name}
     long = too_long(settings)
-    pairs |= {
-        name: json.dumps(value, separators=(",", ":"))
-        for name, value in settings.changed(base).items()
-        if name not in long
-    }
+    for name, value in settings.changed(base).items():
+        if name not in long:
+            pairs[name] = json.dumps(value, separators=(",", ":"))
     if long:
         pairs["file"] = ",".join(long)
-    first = DEFAULTS | {"plots": plots_of(place.get("case", "")), "iteration": 0}
+    pairs |= _beside_settings(shown)
+    # Brackets and commas stay, so that people can read paths.
+    texts = [f"{name}={quote(text, safe=',:[]')}" for name, text in pairs.items()]
+    return "?" + "&".join(texts)
+
+
+def _beside_settings(shown: Shown) -> dict[str, str]:
+    """Parts of an address beside settings, where they differ from a new page's."""
+    instant = Selection().phase
+    lesson = LESSONS.get(shown.get("lesson", ""))
     if lesson:
-        first["instant"] = lesson.instant
-    else:
-        first["instant"] = Selection().phase
+        instant = lesson.instant
+    first = DEFAULTS | {
+        "plots": plots_of(shown.get("case", "")),
+        "iteration": 0,
+        "instant": instant,
+    }
+    pairs = {}
     for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view"):
-        if place.get(name, first[name]) != first[name]:
-            if name == "plots":
-                pairs[name] = ",".join(place[name])
-            else:
-                pairs[name] = str(place[name])
-    return "?" + "&".join(
-        f"{name}={quote(text, safe=',:[]')}" for name, text in pairs.items()
-    )
+        value = shown.get(name, first[name])
+        if value == first[name]:
+            continue
+        if name == "plots":
+            pairs[name] = ",".join(value)
+        else:
+            pairs[name] = str(value)
+    return pairs
 
 
-def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
-    """State of an address from the question mark on, and refused parts with reasons, or "".
+def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
+    """State of an address from the question mark on, and a sentence on refused parts.
 
-    The settings that hold at present have what is too long for an address.
+    The page's `present` settings have the values that are too long for an address. The
+    sentence is "" where nothing is refused.
     """
     pairs = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
-    # Panel begins a page in the theme.
+    # Panel itself begins a page in the theme.
     pairs.pop("theme", "")
     refused: list[str] = []
-    place: Place = {
+    # Each step takes its own parts out of the pairs: the settings are what is left.
+    shown: Shown = {
         "room": pairs.pop("class", ""),
         "question": pairs.pop("question", ""),
     }
     base, opened = _base(pairs, refused)
-    place |= opened
+    shown |= opened
     if "lesson" in opened:
-        place["instant"] = LESSONS[opened["lesson"]].instant
-    plots = plots_of(opened.get("case", ""))
+        shown["instant"] = LESSONS[opened["lesson"]].instant
+    shown["plots"] = _plots(pairs, opened.get("case", ""), refused)
+    shown |= _checked(pairs, refused)
+    base = _with_file(base, pairs, present, refused)
+    values = {name: parse(text) for name, text in pairs.items()}
+    shown["settings"] = _together(base, values, refused)
+    if not refused:
+        return shown, ""
+    reasons = "; ".join(text.rstrip(".") for text in refused)
+    return shown, f"From the address: {reasons}."
+
+
+def _plots(pairs: dict[str, str], case: str, refused: list[str]) -> list[str]:
+    """Names of known plots in an address, else those of its case; refuse others."""
+    names = plots_of(case)
     if "plots" in pairs:
-        plots = list(filter(None, map(str.strip, pairs.pop("plots").split(","))))
-    place["plots"] = [name for name in plots if name in KINDS]
-    refused += [f"there is no plot {name[:40]}" for name in plots if name not in KINDS]
-    for name in [name for name in _CHECKED if name in pairs]:
-        text = pairs.pop(name)
-        definition = _CHECKED[name]
+        names = [name.strip() for name in pairs.pop("plots").split(",")]
+    known = []
+    for name in names:
+        if name in KINDS:
+            known.append(name)
+        elif name:
+            refused.append(f"there is no plot {name[:40]}")
+    return known
+
+
+def _checked(pairs: dict[str, str], refused: list[str]) -> Shown:
+    """Parts of an address beside settings that are allowed; refuse the others."""
+    allowed = {}
+    for name, definition in _CHECKED.items():
+        if name not in pairs:
+            continue
+        value: Any = pairs.pop(name)
         try:
-            if isinstance(definition, param.Selector):
-                value = text
-            else:
-                value = parse(text)
-            place[name] = checked_value(definition, name, value)
+            # The choices of a selector are texts, which may look like numbers.
+            if not isinstance(definition, param.Selector):
+                value = parse(value)
+            allowed[name] = checked_value(definition, name, value)
         except RefusedError as refusal:
             refused.append(str(refusal))
-    for name in filter(None, pairs.pop("file", "").split(",")):
-        if (
-            present is not None
-            and present.scene == base.scene
-            and name in base.definitions()
-        ):
+    return allowed
+
+
+def _with_file(
+    base: Settings, pairs: dict[str, str], present: Settings | None, refused: list[str]
+) -> Settings:
+    """Settings with the present values of those that are too long for an address."""
+    for name in pairs.pop("file", "").split(","):
+        is_there = present is not None and present.scene == base.scene
+        if is_there and name in base.definitions():
             base = base.replace(**{name: getattr(present, name)})
-        else:
+        elif name:
             refused.append(f"{name[:40]} is too long for it: open its file")
-    place["settings"] = _together(
-        base, {name: parse(text) for name, text in pairs.items()}, refused
-    )
-    message = "; ".join(text.rstrip(".") for text in refused)
-    return place, f"From the address: {message}." if refused else ""
+    return base
 
 
 def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str, str]]:
@@ -229,30 +260,35 @@ def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str
             return settings_of(found), {kind: name}
         if name:
             refused.append(f"there is no {kind} {name[:40]}")
-    if scene and scene not in CATALOGUE:
+    if scene in CATALOGUE:
+        return default_settings(scene), {}
+    if scene:
         refused.append(f"there is no scene {scene[:40]}: choose {', '.join(CATALOGUE)}")
-    return default_settings(scene if scene in CATALOGUE else next(iter(CATALOGUE))), {}
+    return default_settings(next(iter(CATALOGUE))), {}
 
 
 def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Settings:
     """Settings with the values that hold together; refuse the others one by one."""
+    # A refusal may be of a setting that the address does not name, and that does not go
+    # with one that it names: then its last value goes first.
     while True:
         try:
             return base.replace(**values)
         except RefusedError as refusal:
-            if refusal.name in values:
-                name = refusal.name
-            else:
+            name = refusal.name
+            if name not in values:
                 name = next(reversed(values))
             value = values.pop(name)
-            is_known = refusal.name in base.definitions()
-            message = message_of(refusal, base, name, value)
-            refused.append(message if is_known else f"{name[:40]}: {refusal.remedy}")
+            message = f"{name[:40]}: {refusal.remedy}"
+            if refusal.name in base.definitions():
+                message = message_of(refusal, base, name, value)
+            refused.append(message)
 
 
 def too_long(settings: Settings) -> list[str]:
     """Names of the settings whose values are too long for an address."""
-    tables = {
-        n: value for n, value in settings.values().items() if isinstance(value, tuple)
-    }
-    return [name for name, table in tables.items() if len(json.dumps(table)) > LONGEST]
+    long = []
+    for name, value in settings.values().items():
+        if isinstance(value, tuple) and len(json.dumps(value)) > LONGEST:
+            long.append(name)
+    return long

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,7 @@ from app.views.layout import is_high
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
-from app.widgets import looks, wrapped
+from app.widgets import PlainText, looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026
@@ -39,7 +38,9 @@ class Live:
         self.state = state
         self._document = document
         self._status = _words("status", margin=(4, 6), styles={"flex": "1 1 240px"})
-        self._sentence = _words("sentence")
+        self._sentence = PlainText(
+            css_classes=["sentence"], stylesheets=[STYLE], margin=(0, 8)
+        )
         self._figures = _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._all = self._cards = [Card(kinds, state) for kinds in CARDS]
@@ -80,7 +81,7 @@ class Live:
     def open(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the figures once the browser has all other widgets.
 
-        It would lay them out anew for each widget that follows.
+        It would lay the figures out anew for each widget that follows.
         """
         self._is_open = True
         self.arrange(kinds)
@@ -95,7 +96,7 @@ class Live:
     def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson.
 
-        Hide texts that give its answer away.
+        While its question is open, texts that give the answer away are hidden.
         """
         state = self.state
         self._cards = self._all
@@ -170,7 +171,7 @@ class Live:
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
-            self._sentence.object = escape(frame.run.sentence)
+            self._sentence.object = frame.run.sentence
             if self._shape != self.view.css_classes:
                 # In one step with new data the browser would paint the old ones in the
                 # new shape.

@@ -17,8 +17,9 @@ WHOLE = -1.0
 class Start:
     """Start a run at a pace, in iterations a second: 0 waits, infinity has no pause.
 
-    One that waits does some steps first, at least one. One that is dragged hurries to
-    its end before it is shown; one that is agreed to may take long or much memory.
+    A run that waits does its `steps` first, at least one. A run that follows a dragged
+    slider hurries to its end before it is shown; a run that is agreed to may take long
+    or much memory.
     """
 
     number: int
@@ -48,14 +49,14 @@ class Needs:
     extras: frozenset[str] = frozenset()
     interface: str = ""
     substructure: int | None = None
-    place: float | None = None
+    position: float | None = None
     readings: tuple[str, ...] = ()
     brought: OtherResults | MeasuredLoop | None = None
 
 
 @dataclass(frozen=True)
 class Ready:
-    """The last picture is on the screen: the newest frame may be sent."""
+    """Order to send the newest frame, as the last picture is on the screen."""
 
 
 Order = Start | Pace | Step | Needs | Ready
@@ -63,21 +64,21 @@ Order = Start | Pace | Step | Needs | Ready
 
 @dataclass(frozen=True)
 class Began:
-    """A run was taken up."""
+    """Report that a run was taken up."""
 
     number: int
 
 
 @dataclass(frozen=True)
 class NewFrame:
-    """The newest iterate of the run."""
+    """Report of the newest iterate of the run."""
 
     frame: Frame
 
 
 @dataclass(frozen=True)
 class Costly:
-    """A run was not begun, as it takes long or much memory."""
+    """Report that a run was not begun, as it takes long or much memory."""
 
     number: int
     text: str
@@ -85,7 +86,7 @@ class Costly:
 
 @dataclass(frozen=True)
 class Failed:
-    """A run broke."""
+    """Report that a run broke."""
 
     number: int
     text: str

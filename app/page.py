@@ -19,10 +19,10 @@ from app.files.export import LOOK, offers
 from app.lessons.guide import Guide
 from app.link import Link, read, show
 from app.live import STYLE, Live, column
-from app.server import FULL, PAGES
+from app.server import PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import PlainText, button, dialog, looks, wrapped
+from app.widgets import PlainText, button, dialog, html, looks, wrapped
 
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
@@ -100,10 +100,7 @@ class Page:
         self._guide.show()
 
     def loaded(self) -> None:
-        """Show the figures once a browser is there.
-
-        Go on with the run, or follow a class.
-        """
+        """Show the figures once a browser is there, and go on or follow a class."""
         self._supervisor.open()
         self._live.open(self._guide.kinds)
         if not self.state.room:
@@ -195,7 +192,7 @@ class Page:
     def _place(self) -> None:
         """Put visible parts alone on the page.
 
-        Beside hidden ones figures are not painted.
+        Beside hidden parts the browser does not paint figures.
         """
         # The text and the line of the class are appended, and put in front by the style
         # sheet: a column whose children change their order loses some of them.
@@ -246,9 +243,8 @@ def open_page() -> pmui.Page:
     # Without notifications: each page's would stay in Panel's table of views for good.
     pn.extension(reconnect=True, respect_explicit_sizing=True)
     if not PAGES.enter():
-        full = pmui.Page(
-            title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])]
-        )
+        words = pn.pane.HTML(html("full.html"), css_classes=["full"])
+        full = pmui.Page(title="Slipfront", main=[words])
         follow_itself(full)
         return full
     query = ""

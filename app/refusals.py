@@ -1,7 +1,4 @@
-"""Refusals in the words of the page.
-
-Titles in place of names, values in the units of fields.
-"""
+"""Refusals in the words of the page: titles for names, values in units of fields."""
 
 from __future__ import annotations
 
@@ -14,9 +11,9 @@ from solver.settings.definitions import CurveParameter, about, allowed, title_of
 from solver.settings.scene import Settings
 
 EXACT = 10
-"""Digits of what is refused: a value beside the end of a range is told from it."""
+"""Digits of a refused value: it differs from the end of a range even close to it."""
 LONGEST = 40
-"""Characters of a text that is refused."""
+"""Largest number of characters of a refused text that are shown."""
 NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 
 
@@ -25,19 +22,21 @@ def message_of(
 ) -> str:
     """A sentence on a refusal: the setting, the value, the reason, the allowed values.
 
-    Where the setting `name` was to change to `value`, another one may be refused.
+    Where the setting `name` was to change to `value`, the refusal may be of another
+    setting.
     """
     definitions = settings.definitions()
     remedy = _in_titles(settings, refusal.remedy)
     definition = definitions.get(refusal.name)
     if definition is None:
         limits = _in_titles(settings, refusal.allowed)
-        return f"{refusal.name} cannot be {_written(refusal.value)}: {remedy}. Allowed: {limits}."
+        refused = _written(refusal.value)
+        return f"{refusal.name} cannot be {refused}: {remedy}. Allowed: {limits}."
     title = title_of(definition)
-    (si, unit) = _units(settings, refusal.name)
+    si, unit = _units(settings, refusal.name)
     limits = refusal.allowed
     if isinstance(definition, CurveParameter) and limits == allowed(definition):
-        # As its widget offers it.
+        # As its widget offers them: presets, or a table.
         *others, last = definition.columns
         table = f"a table of {', '.join(others)} and {last}"
         limits = f"{', '.join(definition.presets)}, or {table}"
@@ -45,9 +44,10 @@ def message_of(
     refused = _written(refusal.value, unit)
     if name in ("", refusal.name):
         return f"{title} cannot be {refused}: {remedy}. Allowed: {limits}."
-    to = _written(value, _units(settings, name)[1])
+    changed = title_of(definitions[name])
+    wanted = _written(value, _units(settings, name)[1])
     return (
-        f"{title_of(definitions[name])} cannot be {to} while {title} is {refused}: {remedy}. "
+        f"{changed} cannot be {wanted} while {title} is {refused}: {remedy}. "
         f"Allowed for {title}: {limits}."
     )
 
@@ -73,15 +73,36 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
     """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields."""
     definitions = settings.definitions()
 
-    def said(match: re.Match[str]) -> str:
+    def in_title(match: re.Match[str]) -> str:
         name = match[1]
         si, unit = _units(settings, name)
+        # Another unit than that of the setting: the words mean something else.
         if si != (match[3] or ""):
             return match[0]
         return f"{title_of(definitions[name])} {unit(float(match[2]), EXACT)}"
 
     names = "|".join(definitions)
-    return re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", said, text)
+    return re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", in_title, text)
+
+
+def advice_in_titles(settings: Settings, text: str) -> str:
+    """Advice on a run, with titles in place of names of settings."""
+    definitions = settings.definitions()
+    text = amounts_in_titles(settings, text)
+
+    def titled(match: re.Match[str]) -> str:
+        words = f"{match[1]}{title_of(definitions[match[2]])}"
+        if match[3]:
+            words += f" or {title_of(definitions[match[3]])}"
+        return words
+
+    # Many names are common words: they mean the setting where it is to be changed.
+    names = "|".join(definitions)
+    text = re.sub(
+        rf"\b((?i:raise|lower) )({names})\b(?: or ({names})\b)?", titled, text
+    )
+    keys = "|".join(name for name in definitions if "_" in name)
+    return re.sub(rf"\b({keys})\b", lambda match: title_of(definitions[match[0]]), text)
 
 
 def _in_titles(settings: Settings, text: str) -> str:
@@ -97,8 +118,8 @@ def _in_titles(settings: Settings, text: str) -> str:
         return match[0]
 
     text = re.sub(NUMBER, lambda match: number(float(match[1]), EXACT), text)
-    # Many names are common words: these mean the setting where it is to be lowered or
-    # raised.
+    # Many names are common words, as friction: they mean the setting where it is to be
+    # lowered or raised.
     return re.sub(
         rf"\b(lower |raise |or |\d to )?({'|'.join(definitions)})\b", titled, text
     )
@@ -113,4 +134,6 @@ def _written(value: object, unit: Unit | None = None) -> str:
     if isinstance(value, int | float) and abs(value) < 1e300:
         return (unit or Unit(""))(value, EXACT)
     text = str(value)
-    return f"“{text if len(text) <= LONGEST else text[: LONGEST - 3] + '...'}”"
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST - 3]}..."
+    return f"“{text}”"

@@ -1,7 +1,4 @@
-"""The server that pages come from.
-
-Their number and address, compressed files, and the log.
-"""
+"""The server of pages: their number and address, compressed answers, and the log."""
 
 from __future__ import annotations
 
@@ -20,23 +17,20 @@ from tornado.web import Application, ErrorHandler, GZipContentEncoding, OutputTr
 from tornado.websocket import WebSocketClosedError
 
 OF_A_PAGE = 150_000_000
-"""Bytes that a page may need, most of them in its worker and its history."""
+"""Memory that a page may need, bytes, most of it in its worker and its history."""
 SHARE = 0.8
-"""Of the machine's memory, or the container's, that pages may take together."""
-FULL = (
-    "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
-    "This page tries again by itself.</p><meta http-equiv=refresh content=20>"
-)
+"""Share of the memory of the machine, or of its container, that all pages may take."""
 LONGEST = 16_000
-"""Characters of an address; what is longer is refused (414)."""
+"""Largest number of characters of an address; a longer one is refused (414)."""
 RECEIVED = 1 << 20
-"""Bytes of a request's head that are read at all."""
+"""Largest size of a request's head, bytes: a longer address than `LONGEST` is read, so
+that it is refused with its own status."""
 POLICY = "script-src-attr 'none'; object-src 'none'"
-"""No handler that stands in an element runs, should a text become one after all.
-Scripts that stand in the page are Bokeh's, which has no nonces for them: with
-`script-src 'self'` there is no page."""
+"""Policy on contents: handlers in elements do not run, should a text become markup
+after all. Scripts in the page stay allowed, as Bokeh has no nonces for its own: with
+`script-src 'self'` there would be no page."""
 QUIET = 60.0
-"""Seconds between two lines of the log that say the same kind of thing."""
+"""Least time between two errors of one log that are written, s."""
 
 
 class Pages:
@@ -64,6 +58,7 @@ def most_pages() -> int:
     if text := os.environ.get("SLIPFRONT_PAGES"):
         return max(int(text), 1)
     memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    # A container may have less memory than its machine.
     limit = Path("/sys/fs/cgroup/memory.max")
     if limit.exists() and (text := limit.read_text(encoding="ascii").strip()) != "max":
         memory = min(memory, float(text))
@@ -79,19 +74,17 @@ def address_for_others() -> str:
     return here.geturl()
 
 
-def how_to_open() -> str:
-    """Advice to a person who serves a page as localhost, for others to reach it (HTML)."""
-    name = f"NAME:{_address().port or 80}"
-    return (
-        "Others cannot open <b>localhost</b>, which is each machine's own name. For a class start "
-        f"the server with <code>BOKEH_ALLOW_WS_ORIGIN={name}</code>, and open "
-        f"<b>http://{name}/app</b>: NAME is what others call this machine."
-    )
+def port() -> int:
+    """Port of the server that this page comes from."""
+    return _address().port or 80
 
 
 def _address() -> SplitResult:
+    """Address of this page without its query; "" outside of a page."""
     location = pn.state.location
-    return urlsplit(location.href.partition("?")[0] if location is not None else "")
+    if location is None:
+        return urlsplit("")
+    return urlsplit(location.href.partition("?")[0])
 
 
 def configure() -> None:
@@ -107,13 +100,14 @@ def configure() -> None:
 
 
 class PageServer(HTTPServer):
-    """Compresses answers: 1.6 MB for a first visit instead of 4.7."""
+    """HTTP server that compresses answers: a first visit takes 1.6 MB, not 4.7."""
 
     def initialize(self, request_callback: Any, **options: Any) -> None:  # type: ignore[override]
         """Set the application up, as `HTTPServer.initialize` does."""
         if isinstance(request_callback, Application):
             request_callback.add_transform(Compressed)
             request_callback.add_transform(Guarded)
+            # As the first rule, it comes before all pages.
             request_callback.wildcard_router.rules.insert(
                 0, Rule(Refused(), ErrorHandler)
             )
@@ -127,7 +121,7 @@ class Compressed(GZipContentEncoding):
 
 
 class Guarded(OutputTransform):
-    """Sends browsers a policy on contents that no page of this server has."""
+    """Policy on contents in the head of every answer (`POLICY`)."""
 
     def transform_first_chunk(
         self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
@@ -138,7 +132,7 @@ class Guarded(OutputTransform):
 
 
 class Refused(Matcher):
-    """Addresses that are too long (414), and paths that no file can have (404)."""
+    """Rule for addresses that are too long (414), and paths that no file has (404)."""
 
     def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
         """Status with which an address is refused; None if it is not."""
@@ -150,14 +144,14 @@ class Refused(Matcher):
 
 
 def is_of_an_open_page(record: logging.LogRecord) -> bool:
-    """Check whether a record is of anything but a message to a closed page."""
+    """Check that a record of the log is not of a message to a closed page."""
     return not (
         record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError)
     )
 
 
 class OneLine(logging.Filter):
-    """Log messages that are not of Bokeh in one line, and seldom."""
+    """Filter of a log: errors in one line, without their traceback, and seldom."""
 
     _last = -QUIET
 
@@ -166,6 +160,7 @@ class OneLine(logging.Filter):
         if record.exc_info is None or record.levelno < logging.ERROR:
             return True
         record.exc_info = record.exc_text = None
+        # Whoever speaks another language at this port would fill the log.
         now = time.monotonic()
         is_due = now - self._last > QUIET
         self._last = max(self._last, now)

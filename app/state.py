@@ -1,7 +1,4 @@
-"""The state of a page.
-
-Its settings, frames and selection, and the orders to its worker.
-"""
+"""The state of a page: settings, frames, selection, and orders to its worker."""
 
 from __future__ import annotations
 
@@ -82,6 +79,8 @@ class History:
                 self._frames.pop()
         self._frames.append(frame)
         while len(self._frames) > 2 and self._nbytes() > LIMIT:
+            # Every other frame goes, but neither the first nor the last one, which is
+            # seen.
             self._frames = [*self._frames[:-1:2], self._frames[-1]]
 
     def at(self, iteration: int) -> Frame:
@@ -89,10 +88,7 @@ class History:
         return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
 
     def after(self, iteration: int) -> int:
-        """Number of the next kept iterate of the search.
-
-        After the last, of the answer.
-        """
+        """Number of the next kept iterate of the search, or of the answer."""
         numbers = self._search()
         index = bisect_right(numbers, iteration)
         if index < len(numbers):
@@ -119,10 +115,10 @@ class PageState(param.Parameterized):
     """
 
     settings = param.ClassSelector(
-        class_=Settings, allow_None=False, doc="Of the run, checked."
+        class_=Settings, allow_None=False, doc="Checked settings of the run."
     )
     selection = param.ClassSelector(
-        class_=Selection, default=Selection(), doc="What is seen."
+        class_=Selection, default=Selection(), doc="What views show."
     )
     frame = param.ClassSelector(
         class_=Frame, default=None, doc="The frame that is shown."
@@ -131,37 +127,37 @@ class PageState(param.Parameterized):
         class_=Frame, default=None, doc="The newest frame of the run."
     )
     ghost = param.ClassSelector(
-        class_=Frame, default=None, doc="Of the pinned or the last run."
+        class_=Frame, default=None, doc="Frame of the pinned or the last run."
     )
     pinned = param.ClassSelector(
         class_=History, default=None, doc="Frames of the pinned run."
     )
-    iteration = param.Integer(
-        default=None, doc="The one that is gone back to; None follows."
-    )
+    iteration = param.Integer(default=None, doc="Iteration shown; None: the newest.")
     running = param.Boolean(default=True, doc="Whether the run goes on by itself.")
     pace = param.Selector(
         default="whole in 3 s", objects=list(PACES), doc="Iterations a second."
     )
     needs = param.ClassSelector(
-        class_=frozenset, default=frozenset(), doc="Extras in sight."
+        class_=frozenset,
+        default=frozenset(),
+        doc="Names of the extras that views in sight need.",
     )
     readings = param.List(default=[], doc="Quantities that a lesson or a case names.")
     is_dragged = param.Boolean(doc="Whether a slider or an arrow is being dragged.")
     lesson = param.String(doc="Name of the lesson.")
     case = param.String(doc="Name of the case; in a lesson there is none.")
     prediction = param.Integer(
-        default=None, doc="The choice predicted; -1 did without."
+        default=None, doc="Number of the predicted choice; -1 if no choice was wanted."
     )
     poll = param.ClassSelector(
-        class_=Poll, default=None, doc="What the class predicts."
+        class_=Poll, default=None, doc="Predictions of the class."
     )
-    tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
-    question = param.String(doc="What the tab What if asks, as `Question` writes it.")
+    tab = param.Selector(default="Live", objects=TABS, doc="Title of the tab in sight.")
+    question = param.String(doc="Question of the tab What if, as `Question` writes it.")
     view = param.Selector(
-        default="page", objects=VIEWS, doc="How much stands around plots."
+        default="page", objects=VIEWS, doc="The page with controls, or for a projector."
     )
-    height = param.Integer(default=720, doc="Of the browser's window, pixels.")
+    height = param.Integer(default=720, doc="Height of the browser's window, px.")
     is_narrow = param.Boolean(
         doc="Whether the window has no room for controls beside the run."
     )
@@ -170,10 +166,12 @@ class PageState(param.Parameterized):
     brought = param.ClassSelector(
         class_=(OtherResults, MeasuredLoop),
         default=None,
-        doc="Results, or a measured loop.",
+        doc="Measured loop, or results of another program.",
     )
-    refusal = param.String(doc="What was refused and why.")
-    message = param.String(doc="What the page says of itself: a loss, a cost, a fault.")
+    refusal = param.String(doc="Sentence on a refused value.")
+    message = param.String(
+        doc="Sentence of the page on a loss, a cost, or a fault of its own."
+    )
     is_costly = param.Boolean(
         default=False, doc="Whether the run waits to be agreed to."
     )
@@ -223,14 +221,16 @@ class PageState(param.Parameterized):
     def release(self, name: str, value: float) -> None:
         """Run the value at which a slider is released.
 
-        If refused, the last allowed one.
+        If it is refused, the last allowed value is run.
         """
         self.change(**{name: value})
+        # The value was refused if the last run ordered is still that of a drag.
         if self.is_dragged:
             self.run()
 
     def adopt(self, settings: Settings) -> None:
         """Take settings over and run them."""
+        # They are found again when the scene is chosen again.
         self._left[self.settings.scene] = self.settings
         self.param.update(settings=settings, refusal="", running=True)
         self.run()
@@ -257,8 +257,8 @@ class PageState(param.Parameterized):
     def is_fleeting(self) -> bool:
         """Check whether the frame lacks a reference only until the next frame comes.
 
-        The last run of the scene had one; entries of legends that vanish and come back
-        at once would flicker.
+        The last run of the scene had a reference: entries of legends that vanish and
+        come back at once would flicker.
         """
         has_last = self.ghost is not None and self.iteration is None
         return has_last and not self.frame.run.is_compared
@@ -267,7 +267,7 @@ class PageState(param.Parameterized):
     def is_asked(self) -> bool:
         """Check whether a lesson's question is open.
 
-        In a class until its leader goes on.
+        In a class it is open until the leader goes on.
         """
         is_answered = self.prediction is not None
         if self.poll is not None:
@@ -363,17 +363,19 @@ class PageState(param.Parameterized):
             case messages.Costly(number, text) if number == self.number:
                 self.is_costly = True
                 self.message = (
-                    f"This run would take about {text}: press Run to run it anyway, or choose "
-                    "fewer elements, instants or bodies."
+                    f"This run would take about {text}: press Run to run it anyway, "
+                    "or choose fewer elements, instants or bodies."
                 )
             case messages.Failed(number, text) if number == self.number:
                 self.message = text
 
     def _show(self, frame: Frame) -> None:
+        # A frame of a run before: its worker waits for an answer all the same.
         if frame.run.number != self.number:
             self.send(Ready())
             return
         last = self.history.newest
+        # The first frame of a run: the run before becomes the one to compare with.
         if last is None or last.run.number != self.number:
             if self.pinned is not self.history:
                 self._last_run = last
@@ -397,7 +399,7 @@ class PageState(param.Parameterized):
             self.needs,
             selection.interface,
             selection.substructure,
-            selection.place,
+            selection.position,
             tuple(self.readings),
             self.brought,
         )

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 
 import numpy as np
 
 from app.frame import Frame, Selection
-from app.refusals import amounts_in_titles
+from app.refusals import advice_in_titles
 from app.state import PageState
 from app.units import number, percent, unit_for
+from app.widgets import html
 from solver.latin import Ending
 from solver.study.quantities.finished import KeyFigure, key_figures, slipping_shares
 
@@ -24,58 +24,60 @@ ENDINGS = {
 
 
 LOST = "no figures are told, as no solution is found at some instants"
-"""Hint over figures that are not told."""
+"""Hint over figures in place of which there is a dash."""
 
 
 def status_line(state: PageState) -> str:
     """Progress or end of the run, with the method's message behind *details* (HTML).
 
-    What the page says beside is one line, and whole in the details.
+    Messages of the page stand beside it in one line, and in full in the details.
     """
     frame = state.frame
     newest = state.newest
     said = _said(state)
-    if frame is None or newest is None:
-        progress = "<b>starting</b>"
-        details = ""
-    else:
-        progress = _progress(state, frame, newest)
-        details = _details(frame, said)
-    text = " ".join(said)
-    # Two lines, whatever they hold: figures below do not follow what becomes higher.
-    return (
-        f'<div class="progress">{progress}</div>'
-        f'<div class="said">{details}<b title="{text}">{text}</b></div>'
+    lead = "starting"
+    rest = ""
+    details = []
+    if frame is not None and newest is not None:
+        lead, rest = _progress(state, frame, newest)
+        details = [*_details(frame), *said]
+    return html(
+        "status.html", lead=lead, rest=rest, details=details, said=" ".join(said)
     )
 
 
-def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
+def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
+    """State of the run in bold, and its iterations and error."""
     wrong = percent(frame.error)
+    counted = f"iteration {frame.iteration}"
     if frame is not newest:
-        return (
-            f"<b>iteration {frame.iteration}</b> of {newest.iteration} · {wrong} wrong"
-        )
+        return counted, f" of {newest.iteration} · {wrong} wrong"
     if newest.status is None:
         paused = "" if state.running else " · paused"
-        return f"<b>iteration {newest.iteration}</b> · {wrong} wrong{paused}"
-    counted = f"{newest.iteration} iteration{'s' * (newest.iteration != 1)}"
+        return counted, f" · {wrong} wrong{paused}"
+    iterations = f"{newest.iteration} iteration{'s' * (newest.iteration != 1)}"
     if frame.run.is_idle:
-        return f"<b>at rest</b> · {counted}: nothing acts here; give a load, or move a side"
-    search = "search" if newest.residual is None or newest.is_answer else "answer"
-    if newest.residual is None:
-        end = f"{wrong} wrong"
-    else:
+        hint = "nothing acts here; give a load, or move a side"
+        return "at rest", f" · {iterations}: {hint}"
+    search = "search"
+    end = f"{wrong} wrong"
+    if newest.residual is not None:
         end = "certified"
-    return f"<b>{ENDINGS[newest.status.ending]}</b> · {search}: {counted} · {end}"
+        if not newest.is_answer:
+            search = "answer"
+    return ENDINGS[newest.status.ending], f" · {search}: {iterations} · {end}"
 
 
-def _details(frame: Frame, said: list[str]) -> str:
-    """Message of the method on its end."""
+def _details(frame: Frame) -> list[str]:
+    """Sentences on the method and its end, and the key figures over time."""
     settings = frame.run.settings
     parts = settings.n_substructures
-    kind = "multiscale" if settings.multiscale else "monoscale"
-    words = [
-        f"{parts} substructures, {kind}" if parts > 1 else "one substructure",
+    decomposition = "one substructure"
+    if parts > 1:
+        kind = "multiscale" if settings.multiscale else "monoscale"
+        decomposition = f"{parts} substructures, {kind}"
+    sentences = [
+        decomposition,
         f"indicator η {number(frame.last('indicator'))}",
         f"k-free indicator {number(frame.last('behaviour'))}",
         f"force error {percent(frame.last('error_force'))}",
@@ -84,32 +86,34 @@ def _details(frame: Frame, said: list[str]) -> str:
         f"{number(frame.last('seconds'))} s; incremental solver "
         f"{number(frame.run.reference_seconds)} s",
     ]
+    # Of a run that failed the advice stands on the page itself, beside the details.
     if frame.status is not None and frame.status.ending is Ending.CONVERGED:
-        words.append(escape(amounts_in_titles(settings, frame.status.advice)))
+        sentences.append(advice_in_titles(settings, frame.status.advice))
     if not _is_lost(frame):
-        figures = [f"{one.title}: {_over_time(frame, one)}" for one in _of_loop(frame)]
-        words.extend(map(escape, figures))
-    lines = "".join(f"<div>{word}</div>" for word in [*words, *said])
-    return f"<details><summary>details</summary><div>{lines}</div></details>"
+        for figure in _of_loop(frame):
+            sentences.append(f"{figure.title}: {_over_time(frame, figure)}")
+    return sentences
 
 
 def _said(state: PageState) -> list[str]:
-    words = [escape(text) for text in (state.message, state.refusal) if text]
+    """Messages of the page, then those on the run that is shown."""
+    messages = [text for text in (state.message, state.refusal) if text]
     frame = state.frame
     if frame is not None and frame.status is not None:
-        messages = list(frame.remarks)
+        remarks = list(frame.remarks)
         if frame.status.ending is not Ending.CONVERGED:
-            messages.insert(0, frame.status.advice)
+            remarks.insert(0, frame.status.advice)
         settings = frame.run.settings
-        words.extend(escape(amounts_in_titles(settings, text)) for text in messages)
-    return words
+        for remark in remarks:
+            messages.append(advice_in_titles(settings, remark))
+    return messages
 
 
 def figures_line(frame: Frame, selection: Selection) -> str:
     """Key figures of the structure at the selected instant, in a line (HTML).
 
-    Its largest and last values appear over each of them. Nothing is told of a run some
-    of whose instants are known to have no solution.
+    The largest and the last value appear over each of them. A run that is known to have
+    no solution at some instants has dashes in place of values.
     """
     run = frame.run
     column = run.column(selection.phase)
@@ -119,9 +123,10 @@ def figures_line(frame: Frame, selection: Selection) -> str:
         figures[figure.title] = _unit_of(figure)(figure.at(column))
         hints[figure.title] = _over_time(frame, figure)
     # Springs stand beside the surfaces, and neither stick nor slip.
-    springs = [
-        number for number, one in enumerate(run.interfaces.values()) if one.is_spring
-    ]
+    springs = []
+    for chain, interface in enumerate(run.interfaces.values()):
+        if interface.is_spring:
+            springs.append(chain)
     status = frame.deformed.status[~np.isin(run.geometry.chains, springs)]
     figures["Slips"] = percent(float(slipping_shares(status)[column]))
     figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
@@ -131,11 +136,7 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     if _is_lost(frame):
         figures = dict.fromkeys(figures, "–")
         hints = dict.fromkeys(figures, LOST)
-    spans = []
-    for name, value in figures.items():
-        hint = escape(hints.get(name, ""))
-        spans.append(f'<span title="{hint}">{escape(name)} <b>{value}</b></span>')
-    return "".join(spans)
+    return html("figures.html", figures=figures, hints=hints)
 
 
 def _is_lost(frame: Frame) -> bool:

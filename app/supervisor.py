@@ -1,7 +1,4 @@
-"""The supervisor of a page's worker.
-
-Starts it, and again when it ends, hangs or sticks.
-"""
+"""The supervisor of a page's worker, which is started anew if it ends or hangs."""
 
 from __future__ import annotations
 
@@ -15,26 +12,32 @@ from app.state import PageState
 from app.worker.process import Worker
 
 LOOK = 1000
-"""Milliseconds between two looks at the worker."""
+"""Time between two looks at the worker, ms."""
 STUCK = 3.0
-"""Seconds that a worker may take to begin another run."""
+"""Longest time that a worker may take to begin another run, s."""
 ENDED = "The solver's process ended; the run was started anew."
 HANGS = "The solver gave no sign of life for some seconds; the run was started anew."
 GIVEN_UP = (
-    "The solver's process ended twice in this run: change a setting, or choose fewer elements "
-    "and instants."
+    "The solver's process ended twice in this run: change a setting, or choose fewer "
+    "elements and instants."
 )
 
 
 class Supervisor:
-    """Passes orders to the worker of a page and its reports to the state."""
+    """Link between a page and its worker: orders to the one, reports to the other.
+
+    A worker that ends, hangs, or does not begin a run in time is replaced, and the run
+    begins anew; a run that has failed twice waits for another setting.
+    """
 
     def __init__(self, state: PageState, document: Any) -> None:
         self._state = state
         self._document = document
         self._worker: Worker | None = None
         self._asked = time.monotonic()
-        self._failed = self._failed_in = 0
+        # How often the run of this number has failed.
+        self._failed = 0
+        self._failed_in = 0
         self._reports: deque[tuple[Worker, Report | None]] = deque()
         self._is_open = False
         document.add_periodic_callback(self._look, LOOK)
@@ -62,6 +65,7 @@ class Supervisor:
         while self._reports:
             worker, report = self._reports.popleft()
             if worker is not self._worker:
+                # The last words of a worker that was replaced.
                 continue
             if report is None:
                 self._restart(ENDED)
@@ -69,6 +73,7 @@ class Supervisor:
                 self._state.take(report)
 
     def _send(self, order: Order) -> None:
+        """Send an order, and note when a run was ordered."""
         if isinstance(order, Start):
             self._asked = time.monotonic()
         if self._worker is not None:
@@ -96,8 +101,9 @@ class Supervisor:
         """Run the settings in a new process, unless that has failed twice."""
         state = self._state
         self.end()
+        # Without a message the worker was only slow: that is no failure of the run.
         if message and state.number == self._failed_in:
-            self._failed = self._failed + 1
+            self._failed += 1
         else:
             self._failed = 1
         self.begin()

@@ -1,7 +1,4 @@
-"""Buttons and sliders of a run: start, pause, step.
-
-Pace; iterate; play through time.
-"""
+"""Buttons and sliders of a run: start, pause, step, pace, iterate, time."""
 
 from __future__ import annotations
 
@@ -169,6 +166,7 @@ class Transport:
                 shown = (first + passed / PLAYED_IN) % until
                 self._state.select(phase=shown)
 
+        # Instants come from the clock, so that a busy page skips some.
         self._playing = self._document.add_periodic_callback(play_on, TICK)
         self.play_button.icon = "pause_circle"
 
@@ -199,8 +197,8 @@ class Transport:
     def _touch(self, *events: Any) -> None:
         """Stop a page that plays by itself; with another scene it may play again.
 
-        Changed settings are shown at the initial instant; an arrow that is dragged at
-        the instant where it was taken hold of.
+        Changed settings are then shown at the initial instant. A dragged arrow stays at
+        the instant at which it was taken hold of.
         """
         changed = {event.name: event for event in events}
         settings = changed.get("settings")
@@ -234,6 +232,7 @@ class Transport:
 
     def _seek(self, back: int) -> None:
         """Show the iterate to which a person moved the slider, from the newest back."""
+        # The browser sends back what the page had set: nobody moved the slider.
         if self._echoes.has(back):
             return
         self._moved_at = time.monotonic()
@@ -253,7 +252,7 @@ class Transport:
     def _show(self) -> None:
         """Show the state of the run, but not while a slider is dragged.
 
-        It changes at once.
+        Each move begins a run that ends at once: the buttons would flicker.
         """
         state = self._state
         if state.is_dragged:
@@ -271,7 +270,7 @@ class Transport:
             self._finish.value = state.settings.finish
 
     def _follow(self) -> None:
-        """Set the slider to the iterate that is shown, unless it was just moved by hand."""
+        """Set the slider to the shown iterate, unless it was just moved by hand."""
         frame = self._state.frame
         slider = self._iteration
         if self._state.is_over and not self._is_touched:

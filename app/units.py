@@ -1,7 +1,4 @@
-"""Units that values are read in.
-
-Each setting, axis and figure keeps one, chosen once.
-"""
+"""Units that values are read in: each setting, axis and figure keeps its unit."""
 
 from __future__ import annotations
 
@@ -21,14 +18,14 @@ PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad
 """Units that take a prefix."""
 TIMES = {"s": 1.0, "h": 3600.0, "d": 86400.0}
 LATER = {"GPa": 10.0, "GN/m²": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
-"""Where a unit begins that is not taken from 1 on: a stress of 3000 MPa is read as
-that."""
+"""Least value in a unit with which the unit is taken, where it is not 1: a stress of
+3000 MPa is not read in GPa."""
 TYPED = re.compile(
     r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?)\s*(.*)", re.IGNORECASE
 )
-"""A number as one types it, and what stands behind it."""
+"""Pattern of a typed number, and of the unit behind it."""
 OTHER_SIZES = {"Pa": 1e6, "m": 1e-3}
-"""Of the points of a path that are of another quantity by default, in SI."""
+"""Typical values, in SI, of a path whose default points are of another quantity."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -57,23 +54,24 @@ def sizes_of(unit: str) -> dict[str, float]:
     if unit == "s":
         return TIMES
     if unit in PREFIXED:
-        return {p + name: f for p, f in PREFIXES.items()}
+        return {prefix + name: size for prefix, size in PREFIXES.items()}
     return {name: 1.0}
 
 
 def unit_for(size: float, unit: str) -> Unit:
     """The unit in which values up to a size in SI are read."""
-    units = [Unit(name, factor) for name, factor in sizes_of(unit).items()]
     if math.isfinite(size) and size > 0.0:
+        # As it is read: 0.9999 is 1.
         size = float(f"{size:.3g}") * (1.0 + 1e-9)
     else:
         size = 1.0
-    fitting = [
-        unit for unit in units if unit.factor * LATER.get(unit.name, 1.0) <= size
-    ]
-    if fitting:
-        return fitting[-1]
-    return units[0]
+    units = sizes_of(unit).items()
+    chosen, factor = next(iter(units))
+    for name, unit_size in units:
+        if unit_size * LATER.get(name, 1.0) <= size:
+            chosen = name
+            factor = unit_size
+    return Unit(chosen, factor)
 
 
 def unit_of(definition: Parameter) -> Unit:
@@ -89,11 +87,13 @@ def unit_of(definition: Parameter) -> Unit:
 def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit, ...]:
     """The units in which the columns of a table are read, by the scene's defaults.
 
-    Those of SI are as the other settings have them (`Settings.curve_units`).
+    `units` are the SI units that the path has with the other settings
+    (`Settings.curve_units`).
     """
     default = CATALOGUE[scene].checked({})
     columns = zip(*default.points(name), strict=True)
     sizes = [max(map(abs, column)) for column in columns]
+    # A default load in m, say, tells nothing of a load in Pa.
     if default.curve_units(name) != units:
         sizes[1] = OTHER_SIZES.get(units[1], 1.0)
     return tuple(unit_for(size, unit) for size, unit in zip(sizes, units, strict=True))
@@ -102,7 +102,11 @@ def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit
 def typed(text: str, unit: Unit, si: str) -> float:
     """Value in SI of a typed number, in a unit or in the unit that is typed behind it.
 
-    A ValueError says what to write in place of what is no number, or in another unit.
+    Raises
+    ------
+    ValueError
+        If the text is no number, or its unit is of another quantity; it says what to
+        write instead.
     """
     match = TYPED.fullmatch(text.strip().replace("−", "-"))
     if match is None:

@@ -13,11 +13,20 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
+from solver.files.templates import templates_in
 from solver.settings.scene import Icon
 
+TEMPLATES = templates_in(Path(__file__).parent)
+"""Templates of HTML: each stands beside its module, and is named by its path from
+here."""
 SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(
     encoding="utf-8"
 )
+
+
+def html(template: str, **values: Any) -> str:
+    """HTML of a template, in which values are escaped."""
+    return TEMPLATES.get_template(template).render(values)
 
 
 def looks(role: str) -> dict[str, Any]:
@@ -29,18 +38,18 @@ def looks(role: str) -> dict[str, Any]:
 class PlainText(pn.viewable.Viewer):
     """Text that is shown literally: nothing in it is markup.
 
-    What comes from a file, an address or a class is shown by this: Markdown, HTML and
-    `Str` panes, and the `Alert`, `Typography` and `StaticText` of panel-material-ui
-    would run scripts in it. It may change as soon as it is in sight: a component of
-    panel-material-ui begins to listen once it is painted, and loses what changes
-    before.
+    All texts from a file, an address or a class are shown by this. Markdown, HTML and
+    `Str` panes, and the `Alert`, `Typography` and `StaticText` of panel-material-ui,
+    would run scripts in them. The text may change as soon as it is in sight, while a
+    component of panel-material-ui begins to listen once it is painted, and loses
+    changes before.
     """
 
     object = param.String(doc="The text.")
 
     def __init__(self, **look: Any) -> None:
         super().__init__()
-        self._pane = pn.pane.HTML("", **looks("line"), **look)
+        self._pane = pn.pane.HTML("", **{**looks("line"), **look})
 
     @param.depends("object", watch=True)
     def _show(self) -> None:
@@ -75,23 +84,17 @@ def download(
 
     def data() -> io.BytesIO:
         content = make()
-        return io.BytesIO(content if isinstance(content, bytes) else content.encode())
+        if isinstance(content, str):
+            content = content.encode()
+        return io.BytesIO(content)
 
-    made = pmui.FileDownload(label=label, filename=filename, callback=data, **look)
+    file = pmui.FileDownload(label=label, filename=filename, callback=data, **look)
     # Its constructor warns of a variant, whatever it is.
-    made.variant = "outlined"
-    return made
+    file.variant = "outlined"
+    return file
 
 
 def mask_of(emblem: Icon) -> dict[str, str]:
     """A small picture as a mask, which takes the colour of its text."""
-    line = 'fill="none" stroke="#000" stroke-width="1.4" stroke-linejoin="round"'
-    svg = (
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 48 32">'
-        f'<path d="{emblem.body}" fill-opacity=".25" stroke="#000" stroke-width="1"/>'
-        f'<path d="{emblem.ground}" {line} stroke-opacity=".7"/>'
-        f'<path d="{emblem.load}" {line}/></svg>'
-    )
-    return {
-        "mask": f'url("data:image/svg+xml,{quote(svg)}") center / contain no-repeat'
-    }
+    picture = quote(html("icon.svg", icon=emblem))
+    return {"mask": f'url("data:image/svg+xml,{picture}") center / contain no-repeat'}

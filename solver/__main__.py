@@ -14,10 +14,23 @@ _is_heard = signal.getsignal(signal.SIGINT) is signal.default_int_handler
 if _is_heard:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
-from solver.commands.cli import main  # noqa: E402
+from solver.commands import cli  # noqa: E402
+from solver.commands.console import INTERRUPTED  # noqa: E402
 
-if _is_heard:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+def main() -> int:
+    """Exit code of one command; Ctrl-C after its end ends the process at once."""
+    try:
+        if _is_heard:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+        return cli.main()
+    except KeyboardInterrupt:  # before or after all that `cli.main` guards
+        return INTERRUPTED
+    finally:
+        # Python would complain of an exit that is interrupted.
+        if _is_heard:
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -1,4 +1,4 @@
-"""What tests of several files hold: a served page and a browser."""
+"""Fixtures of tests in several files: a served page and a browser."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def proxy() -> Iterator[Proxy]:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[Server]:
-    """What serves the page."""
+    """Server of the page."""
     port = free_port()
     origins = [
         f"--allow-websocket-origin=localhost:{each}" for each in (port, proxy.port)

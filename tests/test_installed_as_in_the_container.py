@@ -13,6 +13,7 @@ import http.client
 import json
 import os
 import re
+import shlex
 import shutil
 import socket
 import subprocess
@@ -44,7 +45,20 @@ rods = Rods(
     instants=t,
     duration=1.0,
 )
-print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
+print(solve(discretise(rods), Latin()).status.ending, solver.__file__)
+"""
+
+
+WORKBOOK = """
+import openpyxl
+from pathlib import Path
+from solver.files.tables import read_table
+book = openpyxl.Workbook()
+for row in (["u [mm]", "F [N]"], [0, 0], [2.5, 40]):
+    book.active.append(row)
+book.save("rig.xlsx")
+table = read_table(Path("rig.xlsx").read_bytes(), "rig.xlsx", "--with", "a table")
+print(table.numbers.tolist())
 """
 
 
@@ -60,14 +74,21 @@ def instructions(name: str) -> list[str]:
     return [rest for word, rest in dockerfile() if word == name]
 
 
+def installation():
+    """Give the words of the command that installs the project."""
+    (install,) = [run for run in instructions("RUN") if run.startswith("pip install")]
+    return shlex.split(install)
+
+
 def declared():
-    """Give the distributions that the project needs,
-    directly or not, extras left out.
-    """
+    """Give the distributions that the installation needs, directly or not."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
         "project"
     ]
     lines = list(project["dependencies"])
+    # ".[NAME,...]" asks for extras; a name makes a requirement of it
+    for extra in Requirement(f"slipfront{installation()[-1].removeprefix('.')}").extras:
+        lines += project["optional-dependencies"][extra]
     found = {}
     for line in lines:
         needed = Requirement(line)
@@ -123,10 +144,9 @@ def image(tmp_path_factory):
     variables.pop("PYTHONPATH", None)
     for pair in re.findall(r"(\w+)=(\S+)", " ".join(instructions("ENV"))):
         variables[pair[0]] = pair[1]
-    (install,) = [run for run in instructions("RUN") if run.startswith("pip install")]
     # what builds it is lent too, and what is served for seconds need not be compiled
-    quick = install.replace("--no-cache-dir", "-q --no-build-isolation --no-compile")
-    subprocess.run(quick.split(), cwd=folder, env=variables, check=True)
+    quick = [*installation(), "-q", "--no-build-isolation", "--no-compile"]
+    subprocess.run(quick, cwd=folder, env=variables, check=True)
     return folder, variables
 
 
@@ -233,6 +253,12 @@ def test_a_program_outside_the_tree_solves_a_problem_of_its_own(image, tmp_path)
     ending, home = done.stdout.split()
     assert ending == "converged", done.stderr
     assert Path(home).is_relative_to(folder.parent / "environment")
+
+
+def test_a_workbook_is_read(image, tmp_path):
+    done = run(image, tmp_path, "python", "-c", WORKBOOK)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == [[0.0, 2.5], [0.0, 40.0]]
 
 
 def test_a_port_in_use_is_named_in_a_line() -> None:

@@ -95,10 +95,10 @@ def imports(module):
 def place(module, places):
     """Number of the place that a module has, or that above all."""
     part = module.split(".")[1]
-    found = (
-        number for number, parts in enumerate(places) if part == parts or part in parts
-    )
-    return next(found, len(places))
+    for number, parts in enumerate(places):
+        if part == parts or part in parts:
+            return number
+    return len(places)
 
 
 def floor(module):

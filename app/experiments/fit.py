@@ -22,8 +22,8 @@ from solver.study.page import Panel, PanelAxis, PanelCurve
 
 MEASURED = "measured.csv"
 NO_LOOP = (
-    "Open a table of displacement and force, with time if you have it. It is drawn here, and on "
-    "the loop of the tab Live beside the run."
+    "Open a measured loop: a table of displacement and force, with time if you have "
+    "it. It is drawn here, and on the plot Loop of the tab Live beside the run."
 )
 NO_SETTING = f"Tick up to {MOST} settings. They begin as they are set."
 
@@ -55,10 +55,7 @@ class FitTab(CommandTab):
 
     @property
     def command(self) -> Command | None:
-        """The fit of the ticked settings to the loop.
-
-        None without settings or a loop.
-        """
+        """The fit of the ticked settings to the loop; None without either."""
         names = ",".join(self.chosen.value)
         loop = self.measured
         if loop is None or not names:
@@ -84,6 +81,7 @@ class FitTab(CommandTab):
         settings = self.state.settings
         definitions = settings.definitions()
         titles = {title_of(definitions[name]): name for name in fittable(settings)}
+        # Settings that do nothing any more are no longer ticked.
         kept = [name for name in self.chosen.value if name in titles.values()]
         if self.chosen.options != titles or self.chosen.value != kept:
             self.chosen.param.update(options=titles, value=kept)
@@ -108,10 +106,7 @@ class FitTab(CommandTab):
             self._chart.show(chart)
 
     def _panel(self) -> Panel | None:
-        """The measured loop, and the nearest run so far.
-
-        None without a measured loop.
-        """
+        """Panel of the measured loop and the nearest run so far, if there is a loop."""
         measured = self.measured
         if measured is None:
             return None
@@ -119,6 +114,7 @@ class FitTab(CommandTab):
             PanelCurve("measured", measured.displacement, measured.force, 5, "points")
         ]
         if self.job is not None:
+            # The command writes it anew whenever it has come nearer.
             file = self.job.folder / OUT / LOOP
             if file.exists():
                 _, across, up = pd.read_csv(file).to_numpy().T
@@ -131,6 +127,7 @@ class FitTab(CommandTab):
     def use(self) -> None:
         """Run the fitted settings on the live tab, rounded to six digits."""
         found = settings_from_toml(self.written[SETTINGS].decode())
+        # More digits would only fill fields and addresses.
         rounded = {
             name: float(f"{getattr(found, name):.6g}") for name in fittable(found)
         }

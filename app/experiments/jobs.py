@@ -1,7 +1,4 @@
-"""Long work of pages.
-
-Commands, one at a time for all pages, and sweeps, side by side.
-"""
+"""Long work of pages: commands, one at a time for all, and sweeps side by side."""
 
 from __future__ import annotations
 
@@ -52,7 +49,8 @@ def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
 def executor() -> Executor:
     """The executor of the commands of all pages: one process at a time on this machine.
 
-    Two at a time would spoil each other's measurements, and thirty the server.
+    Two commands at a time would spoil each other's measurements of time, and thirty
+    would leave the server no processor.
     """
     stack = ExitStack()
     atexit.register(stack.close)
@@ -119,6 +117,7 @@ class Job:
         if self._future.exception() is not None:
             return "Its process stopped unexpectedly; start it again."
         has_output = bool(self.files or self.lines)
+        # 0 and 1 are results: a report of runs some of which fail ends with 1.
         if self._future.result() not in (0, 1) or not has_output:
             return "\n".join(self.lines[-3:])
         return ""
@@ -180,6 +179,7 @@ class Sweep:
     def _go(self) -> None:
         self._under_way.add(self)
         named = os.environ.get(VARIABLE) or PROCESSES
+        # Sweeps that are under way share the processors from here on.
         share = share_of(named, len(self._under_way))
         try:
             with opened(share, patience(LIMIT)) as where:

@@ -1,7 +1,4 @@
-"""Questions of the tab What if.
-
-A quantity over one or two settings, and their fields.
-"""
+"""Questions of the tab What if: a quantity over one or two settings."""
 
 from __future__ import annotations
 
@@ -36,8 +33,8 @@ from solver.study.sweep.plan import Plan, plan_of
 FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
 LOG = ":log"
 GRAMMAR = (
-    "FROM:TO:NUMBER are so many values in even steps, FROM:TO:NUMBER:log in even ratios; "
-    "others stand between commas."
+    "FROM:TO:NUMBER are so many values in even steps, FROM:TO:NUMBER:log in even "
+    "ratios; others stand between commas."
 )
 VALUES = 13
 COARSE = 10
@@ -84,6 +81,7 @@ class Question:
             return settings
         if not self.of.startswith("iterations"):
             return answer(settings)
+        # A quantity that does not exist is refused by `plan`.
         with contextlib.suppress(RefusedError):
             accuracy = settings.accuracy
             threshold = reading(self.of).at
@@ -105,6 +103,7 @@ def question_of(text: str, settings: Settings) -> Question:
     """The question of a text; where settings do not have it, the first ready one."""
     *vary, of = text.split() or [""]
     question = Question(tuple(vary), of)
+    # The text may come from an address, or from a scene that has other settings.
     names = {setting.partition("=")[0] for setting in vary}
     quantity = of.partition("@")[0]
     if names <= variable(settings).keys() and quantity in quantities(settings):
@@ -115,7 +114,7 @@ def question_of(text: str, settings: Settings) -> Question:
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
-    """Settings that may vary: they do something here and have several values."""
+    """Settings that may vary, as they do something here and have several values."""
     known = {}
     for name, definition in settings.definitions().items():
         is_number = isinstance(definition, param.Number)
@@ -183,7 +182,7 @@ def _iterations(settings: Settings, accuracy: float, *vary: str) -> Question:
 def _bricks(settings: Settings) -> Question | None:
     """Iterations over the number of courses, with and without the macro problem.
 
-    The load passes from course to course; None without courses.
+    The load passes from course to course. Without courses there is no question (None).
     """
     if "courses" not in variable(settings):
         return None
@@ -196,8 +195,8 @@ def _bricks(settings: Settings) -> Question | None:
 def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     """Energy over the load and other settings, from a tenth of their sliders' ends.
 
-    None where no number sets the size of the load, or another setting does nothing.
-    The values of a load alone that is positive have even ratios.
+    There is no question (None) where no number sets the size of the load, or another
+    setting does nothing. A positive load that varies alone has values of even ratios.
     """
     known = variable(settings)
     numbers = [name for name in known if isinstance(known[name], param.Number)]
@@ -207,6 +206,7 @@ def _energy(settings: Settings, count: int, *others: str) -> Question | None:
     vary = []
     for name in (*others, load):
         low, high = known[name].softbounds
+        # Towards the end of the slider that has the sign of the present value.
         if getattr(settings, name) >= 0.0:
             end = high
         else:
@@ -229,7 +229,7 @@ def _load_of(settings: Settings, numbers: list[str]) -> str | None:
 TEXTS = tomllib.loads(
     (Path(__file__).parent / "texts.toml").read_text(encoding="utf-8")
 )
-"""A word on each question and report, by the label of its button."""
+"""Sentences on each question and report, by the label of its button."""
 READY: dict[str, Callable[[Settings], Question | None]] = {
     # For small amplitudes the energy in rods grows with their third power (Masing).
     "Energy over amplitude": lambda given: _energy(given, VALUES),
@@ -268,6 +268,7 @@ class Span:
     def show(self, settings: Settings, text: str) -> None:
         """Show a setting and its values in the unit of its control; "" shows none."""
         self._settings = settings
+        # Fields report these changes, too, as if a person had made them.
         self._is_updating = True
         name, _, values = text.partition("=")
         options = dict(self._nothing)
@@ -288,7 +289,7 @@ class Span:
         self._is_updating = False
 
     def text(self) -> str:
-        """The setting and its values in SI, as in `Question.vary`; "" without a setting.
+        """Setting and values in SI, as in `Question.vary`; "" without a setting.
 
         Raises
         ------
@@ -303,11 +304,18 @@ class Span:
         if isinstance(definition, param.Number):
             unit = unit_of(definition)
             si = about(definition).unit
-            values = _converted(values, lambda text: f"{typed(text, unit, si):.12g}")
+            try:
+                values = _converted(
+                    values, lambda text: f"{typed(text, unit, si):.12g}"
+                )
+            except ValueError as problem:
+                label = self.values.label
+                text = f"{label} cannot be “{values[:40]}”: {problem}"
+                raise ValueError(text) from None
         return f"{name}={values.replace(' ', '')}"
 
     def _on_field(self, event: param.parameterized.Event) -> None:
-        """Tell that the question has changed; another setting brings its own values."""
+        """Report that a field has changed; another setting brings its own values."""
         if self._is_updating:
             return
         if event.obj is self.name:

@@ -12,7 +12,7 @@ import panel_material_ui as pmui
 from app.experiments.jobs import OUT, SETTINGS, Job, follow
 from app.experiments.questions import TEXTS
 from app.state import PageState
-from app.widgets import PlainText, button, download, looks, wrapped
+from app.widgets import PlainText, button, download, html, looks, wrapped
 from solver.files.saved import dump
 from solver.study.proof import PAGE
 
@@ -25,12 +25,8 @@ COMMANDS = {
 }
 """Arguments of the commands, by the titles that `WORDS` has of them."""
 LOOKS: dict[str, Any] = {"size": "small", "margin": (10, 6)}
-FRAME = (
-    '<iframe title="{title}" srcdoc="{page}" '
-    'style="width: 100%; height: calc(100vh - 240px); min-height: 300px; border: 0"></iframe>'
-)
 Command = tuple[tuple[str, ...], dict[str, str]]
-"""Arguments, and the texts of files that these name."""
+"""Arguments of a command, and contents of the files that they name."""
 Files = dict[str, bytes]
 """Contents of files by their names."""
 
@@ -120,6 +116,7 @@ class CommandTab(ABC):
         self.progress.object = progress
         if not job.is_over:
             return
+        # A report that failed leaves the one before in its place.
         if not job.failure:
             self._done[self._started] = job.files
         self.end()
@@ -127,6 +124,7 @@ class CommandTab(ABC):
 
     def show(self) -> None:
         """Show the chosen command, and its report if there is one."""
+        # What is hidden is shown when it is opened.
         if self.state.tab != self._tab:
             return
         is_busy = self.job is not None
@@ -187,6 +185,6 @@ def shown(files: Files) -> str:
     path = "app"
     if pn.state.location is not None and pn.state.location.pathname:
         path = pn.state.location.pathname
-    text = files[name].decode().replace(PAGE, path)
-    text = text.replace("<style>", '<base target="_parent"><style>', 1)
-    return FRAME.format(title=escape(name), page=escape(text))
+    # The path is the browser's word.
+    page = files[name].decode().replace(PAGE, escape(path))
+    return html("experiments/reports.html", title=name, page=page)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import panel as pn
@@ -19,6 +20,7 @@ from app.experiments.questions import (
     quantities,
     question_of,
 )
+from app.refusals import advice_in_titles
 from app.state import PageState, answer
 from app.units import unit_for
 from app.widgets import PlainText, button, download
@@ -117,6 +119,7 @@ class WhatIf:
         """Show new runs of the sweep, and the progress of the study of meshes."""
         sweep = self.sweep
         job = self._job
+        # A chart is drawn anew only for rows that it does not show yet.
         if sweep is not None and self._seen != (len(sweep.rows), sweep.is_over):
             self._draw()
         if job is not None:
@@ -136,9 +139,15 @@ class WhatIf:
     def chart(self) -> Chart:
         """The chart of the runs so far."""
         plan = self.sweep.plan
+        # Its thread goes on to append to them.
         rows = list(self.sweep.rows)
         is_log = SCALES[self._scale.value]
-        return chart_of(plan, rows, 0, _amount, logarithmic=is_log)
+        chart = chart_of(plan, rows, 0, _amount, logarithmic=is_log)
+        if chart.runs is None:
+            return chart
+        # Advice on runs that failed names settings as scripts do.
+        said = [advice_in_titles(plan.settings, text) for text in chart.runs.said]
+        return replace(chart, runs=replace(chart.runs, said=said))
 
     def _show(self) -> None:
         """Show and run the question, or a ready one where the scene lacks it.
@@ -150,6 +159,7 @@ class WhatIf:
         settings = self.state.settings
         before = self.question
         self.question = question_of(self.state.question, settings)
+        # Fields report these changes, too, as if a person had made them.
         self._is_updating = True
         for span, text in zip(self.spans, (*self.question.vary, ""), strict=False):
             span.show(settings, text)
@@ -159,6 +169,7 @@ class WhatIf:
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = False
         self._is_updating = False
+        # Other settings alone wait for the button: their runs may take long.
         if self.sweep is None or self.question != before:
             self.start()
         else:
@@ -201,6 +212,7 @@ class WhatIf:
             refusal = question.refusal(settings)
         except ValueError as problem:
             refusal = f"{problem}."
+        # The state, and so the address, has only questions that can be run.
         self._start.disabled = bool(refusal)
         self.message.object = refusal
         if not refusal:

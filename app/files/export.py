@@ -6,7 +6,6 @@ import pickle
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from html import escape
 from pprint import pformat
 from textwrap import indent
 from typing import Any
@@ -20,14 +19,13 @@ from bokeh.layouts import column, grid
 from bokeh.model import Model
 from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider
 from bokeh.resources import INLINE
-from jinja2 import Template
 
 from app.charts import library
 from app.frame import Frame, Selection
 from app.state import PageState
 from app.units import unit_for
 from app.views.view import View
-from app.widgets import download
+from app.widgets import TEMPLATES, download, html
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
 from solver.files.saved import dump
@@ -50,18 +48,7 @@ MOST_INSTANTS = 60
 """Largest number of instants on the page that is saved."""
 HEIGHTS = {"Scene": 260, "Load path": 70}
 HEIGHT = 300
-"""Heights of figures, by the name of the view, and of all others, px."""
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{{ title }}</title>
-{{ library }}
-<body>{% from macros import embed %}{{ embed(docs[0].roots[0]) }}{{ plot_script }}</body>
-</html>
-"""
-"""Template of `file_html`: in its own, Panel has a page load scripts from the
-network."""
+"""Heights of figures by the name of their view, and of all other figures, px."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -92,10 +79,10 @@ def plot_table(view: View, frame: Frame) -> str:
     names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
     tables = []
     for key, source in view.sources.items():
-        table = pd.DataFrame(
-            {name: list(column) for name, column in source.data.items()}
-        )
-        paths = [name for name in table if any(np.ndim(cell) for cell in table[name])]
+        columns = {name: list(column) for name, column in source.data.items()}
+        table = pd.DataFrame(columns)
+        paths = [name for name, cells in columns.items() if any(map(np.ndim, cells))]
+        # A cell of a path has all its points: they become rows.
         if paths:
             table[paths] = table[paths].map(np.ravel)
             table = table.explode(paths).rename_axis("path").reset_index()
@@ -139,13 +126,13 @@ def offline_page(
         title="Instant",
         sizing_mode="stretch_width",
     )
-    caption = Div(text="", sizing_mode="stretch_width")
+    caption = Div(text="", render_as_text=True, sizing_mode="stretch_width")
     page = _document(slider, caption, copies, frame.run.settings)
 
     def show(number: int) -> None:
         time = float(instants[columns[number]])
         unit = unit_for(end, "s")
-        caption.text = f"{escape(frame.run.sentence)} At {unit(time)} of {unit(end)}."
+        caption.text = f"{frame.run.sentence} At {unit(time)} of {unit(end)}."
         phase = 0.0
         if end:
             phase = time / end
@@ -159,7 +146,7 @@ def offline_page(
         page,
         INLINE,
         f"Slipfront: {frame.run.settings.scene}",
-        template=Template(PAGE),
+        template=TEMPLATES.get_template("files/export.html"),
         template_variables={"library": library("bokeh-widgets")},
         # Handlers of drags and taps do nothing there.
         suppress_callback_warning=True,
@@ -169,13 +156,9 @@ def offline_page(
 def _document(
     slider: Slider, caption: Div, views: Sequence[View], settings: Settings
 ) -> Document:
-    """The parts of the page one below the other.
-
-    Wide figures, a grid of plots, settings.
-    """
+    """The page: wide figures, a grid of plots, and settings, one below the other."""
     wide = [view.figure for view in views if view.name in HEIGHTS]
     plots = [view.figure for view in views if view.name not in HEIGHTS]
-    text = escape(dump(settings))
     page = Document()
     page.add_root(
         column(
@@ -183,10 +166,7 @@ def _document(
             caption,
             *wide,
             grid(plots, ncols=2, sizing_mode="stretch_width"),
-            Div(
-                text="<details><summary>All settings</summary>"
-                f"<pre>{text}</pre></details>"
-            ),
+            Div(text=html("files/settings.html", settings=dump(settings))),
             sizing_mode="stretch_width",
         )
     )
@@ -195,6 +175,7 @@ def _document(
 
 def _copies(views: Sequence[View]) -> list[View]:
     """Views of the same kinds with new figures, in which nothing is dragged."""
+    # Models of a figure cannot stand in two documents.
     copies = [type(view)(view.state) for view in views]
     for view in copies:
         plot = view.figure

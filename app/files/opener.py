@@ -32,16 +32,18 @@ from solver.study.measured_loop import MeasuredLoop
 from solver.study.table_use import Use
 
 HELP = (
-    "Settings (.toml) that were saved here; or a table (.csv, .xlsx, ...): of time and load; of "
-    "displacement and force, a measured loop, which is drawn beside the run; or of x, t and "
-    "friction force or displacement, as another program found them, which are drawn beside it, too."
+    "Settings (.toml) that were saved here; or a table (.csv, .xlsx, ...): of time and "
+    "load; of displacement and force, a measured loop, which is drawn beside the run; "
+    "or of x, t and friction force or displacement, as another program found them, "
+    "which are drawn beside it, too."
 )
 HEADS = (
-    "A name for each column, with its unit in brackets, as in `time [s], displacement [mm], "
-    "force [kN]`. Others are passed over; one name more is that of the row's number."
+    "A name for each column, with its unit in brackets, as in `time [s], displacement "
+    "[mm], force [kN]`. Others are passed over; one name more is that of the row's "
+    "number."
 )
 SHOWN = 5
-"""Lines of a table that are shown."""
+"""Number of rows of a table that are shown."""
 
 
 def files_panel(state: PageState, width: int) -> pn.Column:
@@ -74,42 +76,16 @@ def files_panel(state: PageState, width: int) -> pn.Column:
 class TableOpener:
     """A button that opens a file, a message on it, and a dialog of its columns.
 
-    In the dialog `use` is what the table is used as, and `heads` are the names and
-    units of its columns. What is chosen holds at once.
+    The dialog has fields for the `use` of the table, and for the names and units of its
+    columns (`heads`). Each choice holds at once.
     """
 
     def __init__(self, state: PageState, label: str, accept: str, width: int) -> None:
         self._state = state
         self._is_updating = False
         self._table: Table | None = None
-        look: dict[str, Any] = {"margin": (4, 0), "size": "small", "width": width}
-        outlined = {**look, "variant": "outlined"}
-        self.file = pmui.FileInput(
-            label=label, accept=accept, description=HELP, **outlined
-        )
-        self.message = PlainText(margin=0)
-        self.columns_button = button(
-            "Columns and units",
-            self.show,
-            icon="view_column",
-            visible=False,
-            **outlined,
-        )
-        self.remove_button = button("", self._forget, icon="close", **outlined)
-        wide: dict[str, Any] = {
-            "size": "small",
-            "margin": (6, 6),
-            "sizing_mode": "stretch_width",
-        }
-        self.use = pmui.Select(label="Use it as", **wide)
-        self.heads = pmui.TextInput(label="Columns", **wide)
-        self._rows = pn.pane.DataFrame(None, index=False, margin=(0, 6), max_height=190)
-        self._understood = PlainText(margin=(6, 6))
-        self.dialog = dialog(
-            "Columns and units",
-            *(self.use, self.heads, HEADS, self._rows, self._understood),
-            width_option="sm",
-        )
+        self._make_buttons(label, accept, width)
+        self._make_dialog()
         buttons = self.file, self.columns_button, self.remove_button
         self.view = pn.Column(
             pn.FlexBox(*buttons, margin=0, gap="0 8px"),
@@ -122,6 +98,46 @@ class TableOpener:
             field.param.watch(lambda event: self._reread(), "value")
         state.param.watch(lambda event: self._on_brought(), "brought")
         self._on_brought()
+
+    def _make_buttons(self, label: str, accept: str, width: int) -> None:
+        outlined: dict[str, Any] = {
+            "margin": (4, 0),
+            "size": "small",
+            "width": width,
+            "variant": "outlined",
+        }
+        self.file = pmui.FileInput(
+            label=label, accept=accept, description=HELP, **outlined
+        )
+        self.message = PlainText(margin=0)
+        self.columns_button = button(
+            "Columns and units",
+            self.show,
+            icon="view_column",
+            visible=False,
+            **outlined,
+        )
+        self.remove_button = button("", self._forget, icon="close", **outlined)
+
+    def _make_dialog(self) -> None:
+        wide: dict[str, Any] = {
+            "size": "small",
+            "margin": (6, 6),
+            "sizing_mode": "stretch_width",
+        }
+        self.use = pmui.Select(label="Use it as", **wide)
+        self.heads = pmui.TextInput(label="Columns", **wide)
+        self._rows = pn.pane.DataFrame(None, index=False, margin=(0, 6), max_height=190)
+        self._understood = PlainText(margin=(6, 6))
+        self.dialog = dialog(
+            "Columns and units",
+            self.use,
+            self.heads,
+            HEADS,
+            self._rows,
+            self._understood,
+            width_option="sm",
+        )
 
     def show(self) -> None:
         """Open the dialog for the present scene."""
@@ -139,36 +155,33 @@ class TableOpener:
             self.show()
 
     def _read(self, source: str, data: bytes) -> tuple[Content, str]:
-        state = self._state
+        """Content of a file, and a message on it."""
         if source.lower().endswith(".toml"):
-            settings, changed = read_settings(
-                data.decode("utf-8-sig", "replace"), source
-            )
-            definitions = settings.definitions()
-            messages = [
-                f"{title_of(definitions[name])}: {text}."
-                for name, text in changed.items()
-            ]
-            message = f"{source}: settings of the scene {settings.scene}."
-            return settings, " ".join([message, *messages])
-        self._table = table = table_of(data, source)
+            return settings_in(data.decode("utf-8-sig", "replace"), source)
+        table = table_of(data, source)
+        self._table = table
+        # In the field commas stand between the names.
         names = [name.replace(",", " ") for name in names_of(table)]
         self._rows.object = pd.DataFrame(table.cells[:SHOWN], columns=names)
         self._is_updating = True
         self.heads.value = ", ".join(names)
         self._is_updating = False
+        # First the use that each scene has: to find the other one may be refused, and
+        # the dialog then mends the table.
         self._offer(Use.LOOP)
-        use = use_on(state, table)
+        use = use_on(self._state, table)
         self._offer(use)
-        return read_as(use, table, state)
+        return read_as(use, table, self._state)
 
     def _offer(self, use: str) -> None:
-        """Offer the uses of a table in this scene."""
-        paths = paths_of(self._state.settings).items()
-        kinds = USES | {title_of(path): name for name, path in paths}
+        """Offer the uses of a table in this scene, and choose one if it is there."""
+        options = dict(USES)
+        for name, path in paths_of(self._state.settings).items():
+            options[title_of(path)] = name
+        if use not in options.values():
+            use = Use.LOOP
         self._is_updating = True
-        known = use if use in kinds.values() else Use.LOOP
-        self.use.param.update(options=kinds, value=str(known))
+        self.use.param.update(options=options, value=str(use))
         self._is_updating = False
 
     def _reread(self) -> None:
@@ -177,15 +190,11 @@ class TableOpener:
             self._take(self._read_as)
 
     def _read_as(self) -> tuple[Content, str]:
-        return read_as(
-            self.use.value, renamed(self._table, self.heads.value), self._state
-        )
+        table = renamed(self._table, self.heads.value)
+        return read_as(self.use.value, table, self._state)
 
     def _take(self, read: Callable[[], tuple[Content, str]]) -> Content | None:
-        """Show or run the content of a file.
-
-        None, and a message, where it is refused.
-        """
+        """Show or run the content of a file; a refusal is a message, and gives None."""
         content = None
         try:
             content, message = read()
@@ -211,11 +220,22 @@ class TableOpener:
             self.remove_button.label = "Remove"
 
 
+def settings_in(text: str, source: str) -> tuple[Settings, str]:
+    """Settings in a file, and a message on them and on what was changed in them."""
+    settings, changed = read_settings(text, source)
+    sentences = [f"{source}: settings of the scene {settings.scene}."]
+    definitions = settings.definitions()
+    for name, reason in changed.items():
+        sentences.append(f"{title_of(definitions[name])}: {reason}.")
+    return settings, " ".join(sentences)
+
+
 def names_of(table: Table) -> list[str]:
     """Names and units of the columns of a table; numbers for columns without a name."""
-    return [
-        f"{column.name or place} [{column.unit}]"
-        if column.unit
-        else column.name or str(place)
-        for place, column in enumerate(table.columns, start=1)
-    ]
+    names = []
+    for number, column in enumerate(table.columns, start=1):
+        name = column.name or str(number)
+        if column.unit:
+            name += f" [{column.unit}]"
+        names.append(name)
+    return names

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import panel as pn
 import panel_material_ui as pmui
-from bokeh.models import ColumnDataSource, PointDrawTool
+from bokeh.models import ColumnDataSource, PointDrawTool, Range1d
 from bokeh.plotting import figure
 
 from app.files.tables import TABLES, table_of, with_path
@@ -17,18 +17,23 @@ from app.state import PageState
 from app.units import units_of_points
 from app.views.colors import LATIN
 from app.widgets import PlainText, dialog
+from solver.arrays import Array
 from solver.refusal import RefusedError
 from solver.settings.definitions import title_of
 
 MOST_DRAGGED = 200
-"""Points up to which they are dragged and typed; longer tables come from files."""
+"""Largest number of points that are dragged and typed; longer tables are of files."""
+LOOK: dict[str, Any] = {"sizing_mode": "stretch_width", "height": 220, "margin": 5}
+HINT = "Drag a point; tap to add one, tap it and press Backspace to take it away."
+MARGINS = {"x": 0.05, "y": 0.2}
+"""Room on either side of the points, over their range along each axis."""
 
 
 class CurveDialog:
     """A dialog of the points of a path; each change runs at once.
 
-    They are in their units in `source`, where they are dragged, and as a table in
-    `text`.
+    The points are in the units of their columns: in `source`, where they are dragged,
+    and as a table in `text`.
     """
 
     def __init__(self, name: str, state: PageState) -> None:
@@ -36,12 +41,19 @@ class CurveDialog:
         self._state = state
         definition = state.settings.definitions()[name]
         self._columns = definition.columns
-        is_path = definition.is_path
         self._is_updating = False
         self.source = ColumnDataSource({"x": [], "y": []})
         self.source.on_change("data", lambda attribute, old, new: self._on_drag())
+        # A path is also drawn. The rows of other tables are only typed.
+        self._figure: figure | None = None
+        plot: list[Any] = []
+        rows = "Rows"
+        if definition.is_path:
+            rows = "Points"
+            self._figure = self._plot()
+            plot = [pn.pane.Bokeh(self._figure, **LOOK), HINT]
         self.text = pmui.TextAreaInput(
-            label=f"{'Points' if is_path else 'Rows'}, or a table pasted here",
+            label=f"{rows}, or a table pasted here",
             rows=8,
             max_length=1_000_000,
             sizing_mode="stretch_width",
@@ -53,19 +65,9 @@ class CurveDialog:
             lambda event: self._take(event.new, self._file.filename), "value"
         )
         self._message = PlainText(margin=(0, 5))
-        if is_path:
-            self._figure = self._plot()
-        else:
-            self._figure = None
-        plot = (
-            pn.pane.Bokeh(
-                self._figure, sizing_mode="stretch_width", height=220, margin=5
-            ),
-            "Drag a point; tap to add one, tap it and press Backspace to take it away.",
-        )
         self.view = dialog(
-            f"{title_of(definition)}: {'points' if is_path else 'rows'}",
-            *(plot if is_path else ()),
+            f"{title_of(definition)}: {rows.lower()}",
+            *plot,
             self.text,
             self._file,
             self._message,
@@ -75,11 +77,9 @@ class CurveDialog:
     def update(self) -> None:
         """Show the points of the path, or those of its preset."""
         settings = self._state.settings
-        value = getattr(settings, self._name)
-        if isinstance(value, str):
+        points = getattr(settings, self._name)
+        if isinstance(points, str):
             points = settings.points(self._name)
-        else:
-            points = value
         units = settings.curve_units(self._name)
         self._units = units_of_points(settings.scene, self._name, units)
         table = pd.DataFrame(np.array(points) / [unit.factor for unit in self._units])
@@ -89,44 +89,48 @@ class CurveDialog:
             x, y = table.to_numpy().T
             self.source.data = {"x": x, "y": y}
             self._points.visible = is_short
+            # A tool that is not active leaves the points where they are.
             self._figure.toolbar.active_tap = self._tool if is_short else None
             self._fit(x, y)
+        text = ""
+        hint = f"{len(table)} points, of a file"
+        if is_short:
+            text = self._table(table)
+            hint = ""
         self.text.param.update(
-            value=self._table(table) if is_short else "",
-            placeholder="" if is_short else f"{len(table)} points, of a file",
-            error_state=False,
-            helper_text="",
+            value=text, placeholder=hint, error_state=False, helper_text=""
         )
         self._is_updating = False
 
     def _plot(self) -> figure:
-        made = figure(
+        """The figure in which the points are dragged."""
+        plot = figure(
             height=220, tools="", toolbar_location=None, x_range=(0, 1), y_range=(0, 1)
         )
-        made.line("x", "y", source=self.source, color=LATIN, width=2)
-        self._points = made.scatter("x", "y", source=self.source, color=LATIN, size=11)
+        plot.line("x", "y", source=self.source, color=LATIN, width=2)
+        self._points = plot.scatter("x", "y", source=self.source, color=LATIN, size=11)
         self._tool = PointDrawTool(renderers=[self._points])
-        made.add_tools(self._tool)
-        return made
+        plot.add_tools(self._tool)
+        return plot
 
-    def _fit(self, x: Any, y: Any) -> None:
-        """Leave room around the points, and title the axes."""
-        titles = [u.titled(c) for c, u in zip(self._columns, self._units, strict=True)]
-        self._figure.xaxis.axis_label, self._figure.yaxis.axis_label = titles
-        for axis, values in (
-            (self._figure.x_range, x),
-            (self._figure.y_range, [0.0, *y]),
-        ):
-            low = float(np.min(values))
-            high = float(np.max(values))
-            room = (high - low or 1.0) * (0.05 if axis is self._figure.x_range else 0.2)
-            axis.update(start=low - room, end=high + room)
+    def _fit(self, x: Array, y: Array) -> None:
+        """Leave room around points, (n,) each, in their units, and title the axes."""
+        plot = self._figure
+        titles = []
+        for column, unit in zip(self._columns, self._units, strict=True):
+            titles.append(unit.titled(column))
+        plot.xaxis.axis_label, plot.yaxis.axis_label = titles
+        _widen(plot.x_range, x, MARGINS["x"])
+        # A load is read from zero.
+        _widen(plot.y_range, np.append(y, 0.0), MARGINS["y"])
 
     def _table(self, points: pd.DataFrame) -> str:
-        columns = zip(self._columns, self._units, strict=True)
-        heads = [
-            f"{title} [{unit.name}]" if unit.name else title for title, unit in columns
-        ]
+        """Points as CSV, whose head has the units."""
+        heads = []
+        for title, unit in zip(self._columns, self._units, strict=True):
+            if unit.name:
+                title += f" [{unit.name}]"
+            heads.append(title)
         return points.to_csv(header=heads, index=False, float_format="%.6g")
 
     def _on_drag(self) -> None:
@@ -150,3 +154,11 @@ class CurveDialog:
         self._state.adopt(changed)
         self._message.object = message
         self.update()
+
+
+def _widen(axis: Range1d, values: Array, margin: float) -> None:
+    """Set the ends of an axis about values, (n,), with a margin over their range."""
+    low = float(np.min(values))
+    high = float(np.max(values))
+    room = (high - low or 1.0) * margin
+    axis.update(start=low - room, end=high + room)

@@ -16,7 +16,7 @@ from solver.study.table_use import Use, use_of
 
 TABLES = ".csv,.txt,.dat,.tsv,.xlsx"
 USES = {"Measured loop": str(Use.LOOP), "Results of another program": str(Use.RESULTS)}
-"""What a table is used as beside the name of a path, by its title."""
+"""Uses of a table by their titles; a further use is the name of a path."""
 Content = Settings | OtherResults | MeasuredLoop
 
 
@@ -43,6 +43,7 @@ def read_as(use: str, table: Table, state: PageState) -> tuple[Content, str]:
 def _doubts(loop: MeasuredLoop, state: PageState) -> list[str]:
     """Warnings where a loop is some thousand times off the run that is shown."""
     frame = state.frame
+    # Without a run of the same quantities there is nothing to compare with.
     if frame is None or (frame.run.across[1], frame.run.up[1]) != loop.units:
         return []
     return [f"{doubt}." for doubt in loop.unit_doubts(*frame.loop)]
@@ -56,18 +57,16 @@ def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, st
     definition = settings.definitions()[name]
     points, message = curve_of(table, definition, name, settings.curve_units(name))
     changed = settings.replace(**{name: points})
-    message = f"{title_of(definition)}: {message}."
-    message += "".join(
-        f" {doubt}." for doubt in path_doubts(table, settings, name, points)
-    )
+    sentences = [f"{title_of(definition)}: {message}."]
+    for doubt in path_doubts(table, settings, name, points):
+        sentences.append(f"{doubt}.")
+    # A table of time sets the length of the run; other curves, as over slip, do not.
     if definition.abscissa == "time":
-        ends = max(ends_of_tables(changed).values(), default=0.0)
-        if ends > 0.0:
-            changed = changed.replace(duration=ends)
-        else:
-            changed = changed
-        message += f" The run lasts {changed.duration:g} s."
-    return changed, message
+        end = max(ends_of_tables(changed).values(), default=0.0)
+        if end > 0.0:
+            changed = changed.replace(duration=end)
+        sentences.append(f"The run lasts {changed.duration:g} s.")
+    return changed, " ".join(sentences)
 
 
 def table_of(data: bytes | str, source: str) -> Table:
@@ -78,11 +77,11 @@ def table_of(data: bytes | str, source: str) -> Table:
 def renamed(table: Table, heads: str) -> Table:
     """A table with other names and units of its columns, between commas.
 
-    One name more is that of a last column, the number of each row from 0.
+    A further name adds a last column, the number of each row from 0.
     """
-    columns = [
-        column_of(place, 1, head.strip()) for place, head in enumerate(heads.split(","))
-    ]
+    columns = []
+    for number, head in enumerate(heads.split(",")):
+        columns.append(column_of(number, 1, head.strip()))
     width = len(table.columns)
     if len(columns) not in (width, width + 1):
         raise table.refuse(f"it has {width} columns: write as many names, or one more")
@@ -98,11 +97,11 @@ def paths_of(settings: Settings) -> dict[str, CurveParameter]:
 def path_of(table: Table, settings: Settings) -> str:
     """Name of the path in the head of a table, else the only one, or the load's."""
     paths = paths_of(settings)
-    named = paths.keys() & {column.key for column in table.columns}
-    loads = [
-        name for name, definition in paths.items() if about(definition).group == "Load"
-    ]
-    chosen = list(named or (paths if len(paths) == 1 else loads))
+    chosen = list(paths.keys() & {column.key for column in table.columns})
+    if not chosen:
+        chosen = list(paths)
+        if len(paths) > 1:
+            chosen = _loads(paths)
     if len(chosen) == 1:
         return chosen[0]
     if not paths:
@@ -113,6 +112,15 @@ def path_of(table: Table, settings: Settings) -> str:
     raise table.refuse(
         f"name one of {', '.join(paths)} in its first line, as in time,{first}"
     )
+
+
+def _loads(paths: dict[str, CurveParameter]) -> list[str]:
+    """Names of the paths that are loads."""
+    loads = []
+    for name, definition in paths.items():
+        if about(definition).group == "Load":
+            loads.append(name)
+    return loads
 
 
 def axes_on(state: PageState) -> Axes:

@@ -76,6 +76,7 @@ def _known_beside_found(case: Case, state: PageState) -> str:
 def _is_known(case: Case, settings: Settings) -> bool:
     """Check whether settings differ from those of a case only in mesh and method."""
     definitions = settings.definitions()
+    # They change what is found, and not what is known.
     mesh = {*settings.MESH, "instants"}
     return all(
         name in mesh or about(definitions[name]).group in ANSWERS_STAY

@@ -1,13 +1,11 @@
-"""All lessons and cases.
-
-Their settings, plots, and texts with quantities of a frame.
-"""
+"""All lessons and cases: settings, plots, and texts with quantities of a frame."""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Mapping
+from itertools import chain
 from pathlib import Path
 
 from app.frame import Frame
@@ -20,31 +18,29 @@ from solver.study.lessons import SUBJECTS, Lesson, lesson_from_file
 from solver.study.quantities import reading
 from solver.study.trade_case import Case, all_cases
 
-_READ = map(lesson_from_file, Path(__file__).parent.glob("*.toml"))
-LESSONS = {
-    lesson.name: lesson
-    for lesson in sorted(
-        _READ, key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order)
-    )
-}
-"""By name, in order, those of one subject together."""
+_IN_ORDER = sorted(
+    map(lesson_from_file, Path(__file__).parent.glob("*.toml")),
+    key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order),
+)
+LESSONS = {lesson.name: lesson for lesson in _IN_ORDER}
+"""Lessons by name, in order, those of a subject together."""
 CASES = {case.name: case for case in all_cases()}
-"""By name, in order."""
+"""Cases by name, in order."""
 KNOWN: dict[str, Mapping[str, Lesson | Case]] = {"lesson": LESSONS, "case": CASES}
-"""Both, as addresses and states call them."""
+"""Lessons and cases, by their kind as addresses and states call it."""
 VALUE = re.compile(r"\{value:(.*?)\}")
-"""A quantity in what a lesson says."""
+"""Pattern of a quantity in the text of a lesson."""
 PENDING = "…"
-"""What only the rest of the run will tell."""
-KINDS = {kind.name: kind for card in CARDS for kind in card}
-"""The plots, by name."""
+"""Text in place of a quantity that only the rest of the run will tell."""
+KINDS = {kind.name: kind for kind in chain.from_iterable(CARDS)}
+"""Classes of the plots, by name."""
 
 
 def settings_of(lesson: Lesson | Case) -> Settings:
     """Settings with which a page begins a lesson or a case.
 
-    One sees the search, unless its file has another: lessons with the paper's method
-    show every iterate as it is.
+    The search is watched in place of an answer at once. Other ways to finish stay:
+    lessons with the paper's method show every iterate as it is.
     """
     settings = lesson.settings
     if settings.finish == "at-once":
@@ -53,27 +49,23 @@ def settings_of(lesson: Lesson | Case) -> Settings:
 
 
 def plots_of(case: str) -> list[str]:
-    """Names of the plots that come to the front with a case; empty without a case."""
+    """Names of the plots on top of their cards in a case; empty without a case."""
     if case in CASES:
         return list(CASES[case].views)
     return []
 
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
-    """The plots beside a lesson.
-
-    Before the choice only those that do not show the answer.
-    """
-    return tuple(
-        KINDS[name] for name in (lesson.views if is_answered else lesson.beside)
-    )
+    """The plots beside a lesson: before the choice those without the answer."""
+    names = lesson.views if is_answered else lesson.beside
+    return tuple(KINDS[name] for name in names)
 
 
 def readings_of(lesson: Lesson) -> list[str]:
     """Names of the quantities in the texts of a lesson."""
-    return list(
-        dict.fromkeys(VALUE.findall(" ".join((*lesson.text, *lesson.explanation))))
-    )
+    names = VALUE.findall(" ".join((*lesson.text, *lesson.explanation)))
+    # Each once, in their order.
+    return list(dict.fromkeys(names))
 
 
 def parts_of(paragraph: str) -> list[str]:

@@ -22,42 +22,52 @@ class DrawnCurve:
 
     def __init__(self, lesson: Lesson) -> None:
         self.lesson = lesson
-        places, values = zip(*lesson.curve, strict=True)
+        positions, values = zip(*lesson.curve, strict=True)
         finite = filter(math.isfinite, values)
         self._top = 10.0 ** math.ceil(math.log10(max(finite)))
-        made = figure(
+        plot = figure(
             x_axis_type="log",
             y_axis_type="log",
             x_axis_label=title_of(lesson.settings.definitions()[lesson.draw]),
             y_axis_label=lesson.checkpoints[0].quantity.title.split(" to ")[0],
-            x_range=(places[0] / 2.0, places[-1] * 2.0),
+            x_range=(positions[0] / 2.0, positions[-1] * 2.0),
             y_range=(1.0, self._top),
             height=200,
             sizing_mode="stretch_width",
             toolbar_location=None,
             tools="",
         )
-        made.xaxis.ticker = list(places)
-        made.xaxis.major_label_overrides = {place: f"{place:g}" for place in places}
-        made.min_border = 4
+        plot.xaxis.ticker = list(positions)
+        plot.xaxis.major_label_overrides = {x: f"{x:g}" for x in positions}
+        plot.min_border = 4
         self.drawn = ColumnDataSource({"xs": [], "ys": []})
         self.measured = ColumnDataSource({"x": [], "y": [], "text": []})
-        line = made.multi_line("xs", "ys", source=self.drawn, color=FORCE, width=3)
-        points = made.scatter("x", "y", source=self.measured, color=LATIN, size=11)
-        made.text("x", "y", "text", source=self.measured, y_offset=20, text_font_size="12px",
-                  text_align="center", text_color=LATIN)  # fmt: skip
-        legend(made, [("drawn by hand", [line]), ("measured", [points])])
+        line = plot.multi_line("xs", "ys", source=self.drawn, color=FORCE, width=3)
+        points = plot.scatter("x", "y", source=self.measured, color=LATIN, size=11)
+        plot.text(
+            "x",
+            "y",
+            "text",
+            source=self.measured,
+            y_offset=20,
+            text_font_size="12px",
+            text_align="center",
+            text_color=LATIN,
+        )
+        legend(plot, [("drawn by hand", [line]), ("measured", [points])])
         tool = FreehandDrawTool(renderers=[line], num_objects=1)
-        made.add_tools(tool)
-        made.toolbar.active_drag = tool
-        self.figure = made
+        plot.add_tools(tool)
+        plot.toolbar.active_drag = tool
+        self.figure = plot
 
     def reveal(self) -> None:
         """Show the measured curve, and end the drawing."""
         self.figure.toolbar.active_drag = None
-        places, values = zip(*self.lesson.curve, strict=True)
-        self.measured.data = {
-            "x": places,
-            "y": [min(value, 0.85 * self._top) for value in values],
-            "text": ["" if math.isfinite(value) else "never" for value in values],
-        }
+        # A value that is never reached stands near the top, with a word beside it.
+        heights = []
+        words = []
+        for _, value in self.lesson.curve:
+            heights.append(min(value, 0.85 * self._top))
+            words.append("" if math.isfinite(value) else "never")
+        positions = [position for position, _ in self.lesson.curve]
+        self.measured.data = {"x": positions, "y": heights, "text": words}

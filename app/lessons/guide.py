@@ -35,7 +35,7 @@ from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
 
 WITHOUT = -1
-"""The prediction of a person who wants to see the answer without predicting."""
+"""Prediction that stands for a wish to see the answer without predicting."""
 text_button = partial(button, margin=(3, 8, 3, 0))
 
 
@@ -80,6 +80,7 @@ class Guide:
         self.dialogs[kind].open = False
         opened = {"lesson": "", "case": "", kind: name}
         plots = plots_of(opened["case"])
+        # In one step: else the text would be built once with the scene before.
         with param.parameterized.batch_call_watchers(self._state):
             self._state.param.update(**opened, prediction=None, plots=plots)
             self._state.adopt(settings_of(KNOWN[kind][name]))
@@ -88,8 +89,10 @@ class Guide:
         """Show the list of all lessons, or of all cases."""
         listed = self.dialogs[kind]
         begin = partial(self.open, kind)
+        # Filled when it is first opened: a page begins without all these buttons.
         if not listed.objects:
-            listed[:] = [gallery(begin) if kind == "case" else _titles(begin)]
+            offered = gallery if kind == "case" else _titles
+            listed[:] = [offered(begin)]
         listed.open = True
 
     def update(self) -> None:
@@ -149,11 +152,12 @@ class Guide:
         state.readings = readings
         self.view.param.update(objects=parts, visible=bool(parts))
         self._changed()
+        # At last, as it plays what the plots beside show.
         if lesson is not None:
             self._look(lesson)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
-        """Make a figure to draw on for the question; in the answer add the measured curve."""
+        """Make a figure to draw on for a question; in its answer reveal the curve."""
         is_asked = self._state.is_asked
         if is_asked or self._curve is None or self._curve.lesson is not lesson:
             self._curve = None
@@ -286,10 +290,7 @@ class Guide:
         ]
 
     def _choice(self, number: int, label: str, lesson: Lesson) -> pmui.Button:
-        """The button of a choice.
-
-        Filled where it was predicted, green where it is right.
-        """
+        """The button of a choice: filled if it was predicted, green if it is right."""
         is_asked = self._state.is_asked
         variant = "outlined"
         if number == self._state.prediction:
@@ -307,10 +308,7 @@ class Guide:
         )
 
     def _of_class(self, poll: Poll | None) -> list[Any]:
-        """Parts below the choices.
-
-        The number of predictions, and buttons to the answer.
-        """
+        """Parts below the choices: number of predictions, and buttons to the answer."""
         is_asked = self._state.is_asked
         answer = partial(self.predict, WITHOUT)
         if poll is None:

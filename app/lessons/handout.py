@@ -1,18 +1,13 @@
-"""A lesson on paper.
-
-A question with room to write, and overleaf its answer with plots.
-"""
+"""A lesson on paper: a question with room to write; overleaf its answer with plots."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from bokeh.embed import file_html
 from bokeh.resources import INLINE
-from jinja2 import Template
 from markdown_it import MarkdownIt
 
 from app.charts import library
@@ -22,20 +17,22 @@ from app.server import address_for_others
 from app.state import PageState
 from app.views.scene import Scene
 from app.views.view import View
+from app.widgets import TEMPLATES
 from solver.study.lessons import Lesson
 
 WIDTH = 660
 HEIGHT = 230
-"""Pixels of the picture; two plots stand side by side in its width."""
-PAGE = Path(__file__).with_suffix(".html").read_text(encoding="utf-8")
+"""Size of the picture, px; two plots stand side by side in its width."""
 
 
 def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
     """A page to print (HTML), of the frame that is shown; it needs no network.
 
-    The curve is the one drawn by hand, of a lesson that asks for one.
+    `curve` was drawn by hand, in a lesson that asks for a curve.
     """
     address = address_for_others()
+    if address:
+        address += f"?lesson={lesson.name}"
     picture = _drawn(Scene(state), state, lesson, WIDTH, HEIGHT)
     kinds = [
         kind
@@ -53,13 +50,14 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
         measured.reveal()
         figures |= {"blank": blank.figure, "curve": measured.figure}
         plots.insert(0, "curve")
+    # The template finds figures by these names, which become parts of its HTML.
     for name, figure in figures.items():
         figure.name = re.sub(r"\W", "-", name)
     return file_html(
         list(figures.values()),
         INLINE,
         title=lesson.title,
-        template=Template(PAGE, autoescape=True),
+        template=TEMPLATES.get_template("lessons/handout.html"),
         template_variables={
             "library": library(),
             "text": _html(lesson.text, state),
@@ -72,7 +70,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> str:
             ),
             "plots": [figures[name].name for name in plots],
             "has_curve": curve is not None,
-            "address": f"{address}?lesson={lesson.name}" if address else "",
+            "address": address,
         },
         suppress_callback_warning=True,
     )

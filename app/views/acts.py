@@ -13,9 +13,8 @@ from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, on_side
 
-LEAST = 0.02
-"""Value over the largest one below which an arrow is not drawn and cannot be
-dragged."""
+SHORTEST = 0.02
+"""Value over the largest one below which an arrow is not drawn, nor dragged."""
 LONGEST = 1.6
 """Largest length over that of the largest value when arrows were scaled."""
 WORD = 12
@@ -40,7 +39,7 @@ class Arrows:
     """Arrows of a load at an instant, px from the middle of the bodies' foot.
 
     There are n of them: none where the value is nearly zero; an arrow of the `peak` has
-    full length. `lines` go from tails to heads, (n, k, 2), at moved `places`, (m, 2).
+    full length. `lines` go from tails to heads, (n, k, 2), at moved `points`, (m, 2).
     The longest is dragged by one of its ends, which sets the `setting` of the load:
     `base`, (n, 2), is this end at the value 0, `handles`, (n, 2), at the present one.
     """
@@ -49,26 +48,26 @@ class Arrows:
         self,
         act: Act,
         setting: str | None,
-        places: Array,
+        points: Array,
         layout: Layout,
         peak: float,
         column: int,
     ) -> None:
         self.act = act
         self.setting = setting
-        self.places = places
+        self.points = points
         towards = np.asarray(act.towards)
         if towards.ndim > 1:
             towards = towards[:, column]
         away = np.array(act.away)
         side = act.where.partition(" ")[0]
-        now = np.broadcast_to(act.values.T[column], len(places))
+        now = np.broadcast_to(act.values.T[column], len(points))
         share = np.clip(now / peak, -LONGEST, LONGEST)
-        is_shown = np.abs(share) >= LEAST
+        is_shown = np.abs(share) >= SHORTEST
         distance = 0.0
         if is_aside(act):
             distance = beside(layout.description, side)
-        base = places[is_shown] + distance * away
+        base = points[is_shown] + distance * away
         span = layout.arrow * share[is_shown, None] * towards
         # An arrow that pushes on a side ends there; all others begin at the body.
         can_push = not is_aside(act) and side != "body"
@@ -167,19 +166,19 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         shift = [22.0 * away, 15.0]
     else:
         shift = [9.0 * away, 15.0]
-    return arrows.places[-1] + shift, "left" if side == "right" else "right"
+    return arrows.points[-1] + shift, "left" if side == "right" else "right"
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
-    """As `anchor_of`, for a load on the top or bottom.
+    """Anchor, (2,), px, and side, as in `anchor_of`, of a load on the top or bottom.
 
-    Beside its arrows, or over them.
+    The words stand beside its arrows where there is room, else over them.
     """
     act = arrows.act
     up = act.away[1]
     is_left = float(np.mean(act.points[:, 0])) < 0.45
-    place = arrows.places[0 if is_left else -1]
-    ends = np.append(arrows.lines[:, :, 0], place[0])
+    nearest = arrows.points[0 if is_left else -1]
+    ends = np.append(arrows.lines[:, :, 0], nearest[0])
     if is_aside(act):
         above = beside(layout.description, side)
     else:
@@ -187,9 +186,9 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     if not _has_room(act, layout, is_left):
         middle = 0.5 * (ends.min() + ends.max())
         heights = up * arrows.lines[:, :, 1].ravel()
-        top = up * max(heights, default=up * place[1] + above)
+        top = up * max(heights, default=up * nearest[1] + above)
         return np.array([middle, top + up * (6.0 + layout.letter)]), "center"
-    y = place[1] + above * up
+    y = nearest[1] + above * up
     if is_left:
         return np.array([ends.min() - 10.0, y]), "right"
     return np.array([ends.max() + 10.0, y]), "left"
@@ -214,10 +213,7 @@ def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
 
 
 def text_of(act: Act, column: int) -> str:
-    """A symbol and its value at an instant.
-
-    Both end values where it varies on a side.
-    """
+    """Symbol and value of a load at an instant, or its values at both ends."""
     unit = unit_of(act)
     now = np.atleast_1d(act.values.T[column])
     peak = float(np.abs(act.values).max())
@@ -278,9 +274,9 @@ def hatched(edge: Array, away: Array) -> Array:
 
 
 def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> Array:
-    """Line of a support below an edge, (2, 2), px, with its gap, (n_gaps,), m.
+    """Line, (n, 2), px, of a support below an edge, (2, 2), px.
 
-    (n, 2).
+    A support with a gap, (n_gaps,), m, stands away from the edge.
     """
     if layout.description.height is None:
         below = (PITCH - THICKNESS) * layout.description.length * layout.scale[1]
@@ -294,10 +290,7 @@ def _support(layout: Layout, factor: float, edge: Array, gap: Array | None) -> A
 
 
 def _rollers(edge: Array, away: Array) -> Array:
-    """Rollers at an edge, (2, 2), and a line behind them, px.
-
-    NaN behind each, (n, 2).
-    """
+    """Rollers at an edge, (2, 2), and a line behind them, px; NaN between, (n, 2)."""
     count = max(int(np.hypot(*(edge[1] - edge[0])) / 30.0), 2)
     shares = (np.arange(count) + 0.5) / count
     centres = edge[0] + shares[:, None] * (edge[1] - edge[0]) + RADIUS * away

@@ -58,8 +58,8 @@ class Axis:
         """Widen the limits to curves in SI; keep values that an equal key had shown.
 
         With another key, as of another run, the axis chooses its unit anew. The margin
-        is a share of the distance, and is left free on either side; a logarithmic axis
-        shows whole decades.
+        is a share of the distance between the limits, and is left free on either side;
+        a logarithmic axis shows whole decades.
         """
         low, high = extent(curves)
         if key == self._key:
@@ -77,6 +77,7 @@ class Axis:
             self.span(10.0**first, 10.0**last)
             return
         factor = self._unit.factor
+        # A single value has one unit of room on either side.
         free = factor
         if high > low:
             free = margin * (high - low)
@@ -111,10 +112,7 @@ def edges(middles: Floats) -> Floats:
 
 
 def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
-    """Smallest and largest value of curves that are finite throughout.
-
-    Zeros without any.
-    """
+    """Smallest and largest value of curves that are finite throughout, else zeros."""
     lows = []
     highs = []
     for curve in curves:

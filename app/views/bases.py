@@ -16,21 +16,23 @@ from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
 from app.worker.geometry import thinned
 from solver.study.quantities.reduction_measures import can_be_clipped
 
-LEAST = 1e-4
+SMALLEST = 1e-4
 FEWEST = 8
-"""Of singular values, the least size and the fewest that the axes show."""
+"""Size over the largest one down to which singular values are shown, and the number of
+them for which the axis has room in any case."""
 MODES = [str(number) for number in range(MOST_MODES)]
 LARGEST = 1_000_000
-"""Values of a field up to which all curves take no longer than a second, in which the
-worker obeys no order (measured: 0.9 s for 1001 x 999)."""
+"""Number of values of a field up to which its clips are found: the worker takes no
+order meanwhile (measured: 0.9 s for 1001 x 999)."""
 FLOOR = 1e-6
 EXACT = 1e-9
-"""Smallest error that is shown, and error up to which clips are exact but for
-rounding."""
+"""Smallest error that is shown, and error up to which clips differ by rounding."""
+STORED = {"SVD": LATIN, "PGD": DISPLACEMENT, "clips": ERROR}
+"""Colours of the curves of `ClipErrors`, by the form of storage."""
 
 
 class Spectra(ExtraView):
-    """Singular values, a curve a substructure: a fast fall means few modes."""
+    """Singular values, a curve for each substructure; a fast fall means few modes."""
 
     name = "Singular values"
     needs = frozenset({"spectra"})
@@ -39,29 +41,31 @@ class Spectra(ExtraView):
 
     def make(self) -> None:
         """Draw the axes, the curves of all substructures and their colour bar."""
-        made = self.begin(
-            ("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0)
+        plot = self.begin(
+            ("mode",), ("size / largest",), y_axis_type="log", y_range=(SMALLEST, 2.0)
         )
-        whole(made.xaxis[0])
+        whole(plot.xaxis[0])
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
         color = {"field": "part", "transform": self._colors}
         lines = self.add(
             "values", "MultiLine", "xs ys", also="part", color=color, width=1.8
         )
-        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
+        hover(plot, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
-        self._bar = color_bar(made, self._colors, ticker=ticker)
+        self._bar = color_bar(plot, self._colors, ticker=ticker)
 
     def _show(self, spectra: Any, frame: Frame, selection: Selection) -> None:
         count = frame.run.settings.n_substructures
-        ys = [values[values > 0.1 * LEAST] for values in spectra]
+        ys = [values[values > 0.1 * SMALLEST] for values in spectra]
         modes = np.arange(1.0, MOST_VALUES + 1.0, dtype=np.float32)
-        xs = [modes[: len(values)] for values in ys]
+        lengths = [len(values) for values in ys]
+        xs = [modes[:length] for length in lengths]
         self.fill("values", xs=xs, ys=ys, part=thinned(count, MOST_SPECTRA) + 1.0)
-        self.x.rename(
-            "mode; the colour is the substructure" if count > 1 else "mode", ""
-        )
-        self.x.hold(frame.run.number, [1, max([FEWEST, *map(len, ys)])])
+        title = "mode"
+        if count > 1:
+            title = "mode; the colour is the substructure"
+        self.x.rename(title, "")
+        self.x.hold(frame.run.number, [1, max([FEWEST, *lengths])])
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)
 
@@ -75,7 +79,9 @@ class ModePlot(ExtraView):
         """Draw a curve for each mode, and the selected instant."""
         self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
         self.add("now", "VSpan", "x", color=ERROR, line_width=2)
-        for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
+        # The largest mode is added last, and so lies on top.
+        ranked = list(zip(MODES, RANKS, strict=False))
+        for mode, color in reversed(ranked):
             self.add(mode, color=color, width=2)
         self.legend(*MODES)
 
@@ -85,7 +91,7 @@ class SpaceModes(ModePlot):
 
     name = "Space modes"
 
-    # Those of plane bodies are no curves.
+    # Modes of plane bodies have no curve along x.
     applies = staticmethod(
         lambda given: given.applies("pgd_modes") and given.kind != "plane"
     )
@@ -93,12 +99,13 @@ class SpaceModes(ModePlot):
     def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         self.x.rename(f"x ({modes['text']})", "m")
         self.x.hold((frame.run.number, modes["substructure"]), modes["x"])
-        titles = ["mode 1", *(str(n + 1) for n in range(1, len(modes["space"])))]
+        titles = [str(rank) for rank in range(1, len(modes["space"]) + 1)]
+        titles[:1] = ["mode 1"]
         self.draw_each(MODES, modes["x"], modes["space"], titles)
 
 
 class TimeFunctions(ModePlot):
-    """Time functions of the modes over their largest values, which the legend has."""
+    """Time functions of the modes over their largest values, which the legend shows."""
 
     name = "Time functions"
 
@@ -113,7 +120,9 @@ class TimeFunctions(ModePlot):
         self.fill("now", x=self.x(run.instants[[run.column(selection.phase)]]))
         sizes = np.abs(modes["time"]).max(axis=1, initial=0.0)
         values = modes["time"] / np.where(sizes > 0.0, sizes, 1.0)[:, None]
-        titles = [unit_for(float(size), "m")(float(size), 2) for size in sizes]
+        titles = []
+        for size in sizes.tolist():
+            titles.append(unit_for(size, "m")(size, 2))
         self.draw_each(MODES, run.instants, values, titles)
 
 
@@ -131,48 +140,50 @@ class ClipErrors(ExtraView):
 
     def make(self) -> None:
         """Draw a curve for each form of storage, and the size of the table."""
-        made = self.begin(
+        plot = self.begin(
             ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),
         )  # fmt: skip
-        colors = {"SVD": LATIN, "PGD": DISPLACEMENT, "clips": ERROR}
-        lines = [
-            self.add(name, color=color, width=2.5) for name, color in colors.items()
-        ]
+        lines = []
+        for name, color in STORED.items():
+            lines.append(self.add(name, color=color, width=2.5))
+        # The clips alone, without singular vectors of the rest.
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         lines.append(self.add("alone", "Scatter", size=11, **ring))
+        # By this name the entry of the clips in the legend hides the ring, too.
         lines[-1].name = "clips"
         self.add(
             "table", "VSpan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5
         )
         self.legend("SVD", "PGD", "clips", table="whole table")
-        hover(made, lines, {"numbers": "@x", "error": "@y"})
+        hover(plot, lines, {"numbers": "@x", "error": "@y"})
 
     def _show(self, clips: Any, frame: Frame, selection: Selection) -> None:
         table = float(clips["table"])
-        kept = {n: clips[n] for n in ("SVD", "PGD", "clips") if clips[n] is not None}
-        numbers = np.concatenate([way[0] for way in kept.values()])
-        self.x.hold(frame.run.number, np.clip(numbers[numbers > 0], 1.0, 10.0 * table))
-        size, missed = (float(part) for part in clips["clips"][:, 0])
-        if missed <= EXACT:
+        size, error = clips["clips"][:, 0].tolist()
+        exactness = percent(error)
+        if error <= EXACT:
             exactness = "exact"
-        else:
-            exactness = percent(missed)
         titles = {"clips": f"clips, {clips['branches']} × 2 vectors: {exactness}"}
-        for name in ("SVD", "PGD", "clips"):
-            if name in kept:
-                curve = _shown(kept[name])
-            else:
-                curve = np.zeros((2, 0))
+        counts = []
+        for name in STORED:
+            curve = np.zeros((2, 0))
+            if clips[name] is not None:
+                counts.append(clips[name][0])
+                curve = _shown(clips[name])
             self.draw(name, *curve, titles.get(name, ""))
+        numbers = np.concatenate(counts)
+        self.x.hold(frame.run.number, np.clip(numbers[numbers > 0], 1.0, 10.0 * table))
+        # Clips that are exact have no curve, but the ring.
         self.show("clips", True)
-        self.draw("alone", [max(size, 1.0)], [max(missed, 1.6 * FLOOR)])
+        self.draw("alone", [max(size, 1.0)], [max(error, 1.6 * FLOOR)])
         self.fill("table", x=[table])
 
 
-def _shown(way: Floats) -> Floats:
+def _shown(sizes: Floats) -> Floats:
     """Counts and errors, (2, n), from a count of 1 to the first negligible error."""
-    some = way[:, way[0] > 0]
-    below = np.flatnonzero(some[1] <= FLOOR)
-    some = some[:, : int(below[0]) + 1 if len(below) else None]
-    return np.maximum(some, np.array([[0.0], [FLOOR]], dtype=np.float32))
+    stored = sizes[:, sizes[0] > 0]
+    negligible = np.flatnonzero(stored[1] <= FLOOR)
+    if len(negligible):
+        stored = stored[:, : int(negligible[0]) + 1]
+    return np.maximum(stored, np.array([[0.0], [FLOOR]], dtype=np.float32))

@@ -28,8 +28,9 @@ from solver.reference.closed_forms import ExactCurve
 from solver.study.comparison import FRICTION, OtherResults
 
 ROOM = 1.15
-MOST = 2.0
-"""Limits of the axis over the bound or the reference: at least, and at most."""
+FARTHEST = 2.0
+"""Limits of the axis over the largest known force, and largest force of an iterate that
+is in sight over it."""
 
 
 class ContactForce(View):
@@ -44,8 +45,9 @@ class ContactForce(View):
     def make(self) -> None:
         """Draw curves of LATIN, the reference, the bound and other results."""
         plot = self.begin(("x", "m"), ("force", "N/m"))
+        # From the bottom to the top: LATIN's curves lie on all others.
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
-        self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
+        self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         area = {"y1": "reference", "y2": "latin", "color": ERROR, "alpha": 0.35}
         for name in ("friction", "pressure"):
@@ -78,6 +80,7 @@ class ContactForce(View):
         run = frame.run
         name = selection.interface_of(run)
         fields = frame.contact.get(name)
+        # Where fields are large a frame has the interface that was selected then.
         if fields is None:
             return
         interface = run.interfaces[name]
@@ -92,9 +95,9 @@ class ContactForce(View):
         self._show_bound(interface, fields, column)
         self.fill("cuts", x=self.x(interface.cuts))
         selected = []
-        if selection.place is not None:
-            selected = [selection.place]
-        self.fill("place", x=self.x(selected))
+        if selection.position is not None:
+            selected = [selection.position]
+        self.fill("position", x=self.x(selected))
         curves = [(curve.across, curve.up[:, column]) for curve in exact]
         self.draw("exact", *joined(curves))
         self._show_ghost(ghost, selection)
@@ -134,6 +137,7 @@ class ContactForce(View):
         bound = interface.bound
         if bound is None:
             bound = interface.coefficient * np.maximum(fields.pressure, 0.0)
+        # A bound that does not change has a single column.
         bound = bound[:, min(column, bound.shape[1] - 1)]
         positions = interface.positions
         self.draw("bound", *joined([(positions, bound), (positions, -bound)]))
@@ -163,7 +167,8 @@ class ContactForce(View):
         elif known is None:
             known = fields
         low, high = extent([*_given(known), *exact, *bounds])
-        largest = MOST * max(abs(low), abs(high))
+        # An iterate may be far off: it must not press all others flat.
+        largest = FARTHEST * max(abs(low), abs(high))
         iterate = np.clip(extent(_given(fields)), -largest, largest)
         self.x.hold(key, run.interfaces[name].positions)
         self.y.hold(key, [ROOM * low, ROOM * high], iterate)

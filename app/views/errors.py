@@ -1,4 +1,4 @@
-"""Errors of a search: over its iterations beside indicators, and over run time."""
+"""Errors of a search: over iterations, beside indicators, and over run time."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFER
 from app.views.view import View, hover
 from app.worker.references import has_reference
 
-LEAST = 1e-4
-MOST = 10.0
-"""What is seen at least, which indicators do not widen."""
-LEAST_IN_TIME = 1e-2
-MOST_IN_TIME = 2.0
-"""What is seen at least over run time."""
+SEEN = (1e-4, 10.0)
+"""Errors that are in sight in any case. Indicators do not widen the axis: they are
+numbers of other sizes."""
+SEEN_IN_TIME = (1e-2, 2.0)
+"""Errors over run time that are in sight in any case."""
 SHORTEST = 20
+"""Least number of iterations for which the axis has room."""
 CURVES = {
     "error_force": ("force", ERROR, 3.5, "solid"),
     "error_displacement": ("displ.", DISPLACEMENT, 2.0, "solid"),
@@ -27,16 +27,18 @@ CURVES = {
     "behaviour": ("k-free", PRESSURE, 1.2, "solid"),
     "indicator": ("η", REFERENCE, 1.2, "solid"),
 }
-"""Title, colour, width and dash of each scalar of the history; the first is drawn on
-top."""
+"""Title, colour, width and dash of the scalars of a history; the first lies on top."""
 
 
 class ErrorPlot(View):
     """A plot of the run so far, also while an earlier iterate is shown."""
 
     def _newest(self, frame: Frame) -> Frame:
-        newest: Frame = self.state.newest or frame
-        return newest if newest.run.number == frame.run.number else frame
+        """The newest frame of the run of a frame."""
+        newest = self.state.newest
+        if newest is None or newest.run.number != frame.run.number:
+            return frame
+        return newest
 
     def _plot(
         self,
@@ -47,7 +49,10 @@ class ErrorPlot(View):
         title: str = "",
     ) -> None:
         """Draw a column of a history over another where it is positive and finite."""
-        x, y = (history.get(column, np.zeros(0)) for column in (across, up))
+        nothing = np.zeros(0)
+        x = history.get(across, nothing)
+        y = history.get(up, nothing)
+        # A logarithmic axis has no room for other values.
         shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
         self.draw(name, x[shown], y[shown], title)
 
@@ -59,58 +64,59 @@ class Convergence(ErrorPlot):
 
     def make(self) -> None:
         """Draw a curve for each error and indicator of the history."""
-        made = self.begin(
-            ("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST)
-        )
-        whole(made.xaxis[0])
+        plot = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=SEEN)
+        whole(plot.xaxis[0])
         self.add("shown", "VSpan", "x", color=REFERENCE, line_width=1.5)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
-        lines = [
-            self.add(column, color=color, width=width, dash=dash)
-            for column, (_, color, width, dash) in reversed(CURVES.items())
-        ]
+        lines = []
+        titles = {}
+        for column, (title, color, width, dash) in reversed(CURVES.items()):
+            lines.append(self.add(column, color=color, width=width, dash=dash))
+            titles[column] = title
         self.add("newest", "Scatter", color=ERROR, size=8)
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         self.add("answer", "Scatter", size=11, **ring)
-        titles = {column: title for column, (title, *_) in CURVES.items()}
+        # Curves were added from below; the legend has the uppermost first.
+        titles = dict(reversed(titles.items()))
         self.legend(**titles, answer="answer", ghost="ghost")
-        hover(made, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
+        hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
         newest = self._newest(frame)
-        run = newest.run
         history = _searched(newest)
         for column in CURVES:
             self._plot(column, history, "iteration", column)
-        error = self.sources["error_force"].data
-        self.draw("newest", error["x"][-1:], error["y"][-1:])
-        if ghost is None:
-            past = {}
-        else:
-            past = _searched(ghost)
-        if len(error["x"]):
-            column = "error_force"
-        else:
-            column = "estimated_error"
-        self._plot("ghost", past, "iteration", column, self.ghost_name)
+        errors = self.sources["error_force"].data
+        self.draw("newest", errors["x"][-1:], errors["y"][-1:])
+        self._show_ghost(ghost, has_errors=len(errors["x"]) > 0)
         ghosts = self.sources["ghost"].data
-        self.y.hold(run.number, [LEAST, MOST], error["y"])
-        end = max(float(newest.iteration), *map(float, ghosts["x"][-1:]), SHORTEST)
-        self.x.hold(run.number, [0.0, rounded_up(end)])
+        self.y.hold(newest.run.number, SEEN, errors["y"])
+        ends = [float(newest.iteration), *map(float, ghosts["x"][-1:])]
+        self.x.hold(newest.run.number, [0.0, rounded_up(max(*ends, SHORTEST))])
         is_back = frame is not newest and not frame.is_answer
         self.fill("shown", x=[frame.iteration] if is_back else [])
-        foot = self.figure.y_range.reset_start
-        if newest.is_answer:
-            answer = [newest.iteration]
-        else:
-            answer = []
-        self.draw("answer", answer, [1.6 * foot for _ in answer])
+        # The ring of the answer, whose error is nearly zero, stands at the foot.
+        answers = [newest.iteration] if newest.is_answer else []
+        foot = 1.6 * self.figure.y_range.reset_start
+        self.draw("answer", answers, [foot] * len(answers))
+
+    def _show_ghost(self, ghost: Frame | None, *, has_errors: bool) -> None:
+        """Show the errors of another run; its estimates if this run has no errors."""
+        past = {}
+        if ghost is not None:
+            past = _searched(ghost)
+        column = "estimated_error"
+        if has_errors:
+            column = "error_force"
+        self._plot("ghost", past, "iteration", column, self.ghost_name)
 
 
 def _searched(frame: Frame) -> dict[str, Floats]:
     """The history without the answer, shape (n_iterations,) each."""
-    count = len(frame.history["iteration"]) - (1 if frame.is_answer else 0)
+    count = len(frame.history["iteration"])
+    if frame.is_answer:
+        count -= 1
     return {name: values[:count] for name, values in frame.history.items()}
 
 
@@ -123,14 +129,14 @@ class ErrorTime(ErrorPlot):
 
     def make(self) -> None:
         """Draw curves of this run and of the ghost, and the reference's run time."""
-        made = self.begin(
+        plot = self.begin(
             ("run time, s",), ("force error",), x_axis_type="log", y_axis_type="log",
-            x_range=(1e-3, 1.0), y_range=(LEAST_IN_TIME, MOST_IN_TIME),
+            x_range=(1e-3, 1.0), y_range=SEEN_IN_TIME,
         )  # fmt: skip
         # Few decades have room for 1, 2, 5, 10, ...
-        ticks = [f * 10.0**e for e in range(-4, 6) for f in (1, 2, 5)]
-        made.xaxis.ticker = FixedTicker(ticks=ticks)
-        made.xaxis.formatter = PrintfTickFormatter(format="%g")
+        ticks = np.outer(10.0 ** np.arange(-4, 6), (1.0, 2.0, 5.0))
+        plot.xaxis.ticker = FixedTicker(ticks=ticks.ravel().tolist())
+        plot.xaxis.formatter = PrintfTickFormatter(format="%g")
         self.add(
             "reference", "VSpan", "x", color=REFERENCE, line_width=2, line_dash="dashed"
         )
@@ -138,28 +144,25 @@ class ErrorTime(ErrorPlot):
         now = self.add("now", color=ERROR, width=3)
         self.add("newest", "Scatter", color=ERROR, size=8)
         self.legend(now="this run", ghost="ghost", reference="incremental")
-        hover(made, [now, ghost], {"s": "@x{0.000}", "error": "@y{0.00e+0}"})
+        hover(plot, [now, ghost], {"s": "@x{0.000}", "error": "@y{0.00e+0}"})
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the errors of the search so far."""
         newest = self._newest(frame)
         run = newest.run
+        past: Mapping[str, Floats] = {}
         if ghost is not None:
             past = ghost.history
-        else:
-            past = {}
         self._plot("now", newest.history, "seconds", "error_force")
         self._plot("ghost", past, "seconds", "error_force", self.ghost_name)
         now = self.sources["now"].data
         ghosts = self.sources["ghost"].data
         self.draw("newest", now["x"][-1:], now["y"][-1:])
+        seconds = []
         if np.isfinite(run.reference_seconds):
             seconds = [run.reference_seconds]
-        else:
-            seconds = []
         self.fill("reference", x=seconds)
+        # Without an error the axes keep the limits with which the figure was made.
         if len(now["x"]) or len(ghosts["x"]):
             self.x.hold(newest.stage, now["x"], ghosts["x"], seconds)
-            self.y.hold(
-                run.number, now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME]
-            )
+            self.y.hold(run.number, now["y"], ghosts["y"], SEEN_IN_TIME)

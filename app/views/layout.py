@@ -1,7 +1,4 @@
-"""Layout of the scene.
-
-Position and scale of the bodies, magnification of displacements.
-"""
+"""Layout of the scene: position and scale of bodies, size of displacements."""
 
 from __future__ import annotations
 
@@ -85,6 +82,7 @@ class Layout:
         free = [self.width - left - right, self.height - below - above]
         room = np.maximum(free, 24.0)
         low, high = _extent(description.length, top, description.tilt)
+        # Displacements get their room first: of long bodies more across, as they bend.
         share = 0.06
         if description.length > LONG * top:
             share = 0.12
@@ -93,18 +91,21 @@ class Layout:
             motion[1] = 0.0
         scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
         if description.height is None:
+            # Rods have no height: they are drawn as thick as there is room, up to a
+            # limit.
             scale[1] = min(scale[1], THICK * description.bodies / top)
         else:
             scale[:] = scale.min()
+        # Half of what the bodies leave is on either side of them.
         rest = room - (high - low) * scale
         motion[0] = min(motion[0], 0.12 * description.length * scale[0])
         self.scale = scale
         self.origin = np.array([left, below]) + 0.5 * rest - low * scale
         self.motion = motion
 
-    def local(self, places: Array) -> Array:
-        """Places in px from the middle of the foot, of places in m, (..., 2) each."""
-        return np.asarray((places - self.size * [0.5, 0.0]) * self.scale)
+    def local(self, positions: Array) -> Array:
+        """Positions, px, from the middle of the foot, for positions, m, (..., 2)."""
+        return np.asarray((positions - self.size * [0.5, 0.0]) * self.scale)
 
     def fitting(self, largest: Array, factor: float | None) -> float:
         """Factor on displacements: the present one while motion is seen and has room.
@@ -115,6 +116,7 @@ class Layout:
         share = float((largest * self.scale / room).max())
         if share <= 0.0:
             return factor or 1.0
+        # A factor that followed each frame would hide that displacements change.
         if factor is not None and 0.2 <= factor * share <= 1.8:
             return factor
         return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
@@ -150,10 +152,7 @@ def is_opposite(act: Act, other: Act) -> bool:
 def layout_of(
     geometry: Geometry, is_bare: bool, type_size: float, width: float, height: float
 ) -> Layout:
-    """The larger of two layouts in a figure in px.
-
-    Keys below the bodies, or at their left.
-    """
+    """The layout with larger bodies in a figure in px: keys below, or at the left."""
     rows = 1
     if width < NARROW:
         rows = 2
@@ -192,6 +191,7 @@ def _margins(
     for hold in description.holds:
         size = supports.get(hold.kind, 18.0)
         if hold.gap is not None and np.any(hold.gap > 0.0):
+            # An open gap is drawn, too.
             size += deepest
         room[hold.side] = max(room[hold.side], size)
     for act in description.acts:

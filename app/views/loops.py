@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.frame import Floats, Frame, Selection
+from app.frame import Floats, Frame, Run, Selection
 from app.views.acts import gapped
 from app.views.axis import whole
 from app.views.colors import (
@@ -31,10 +31,12 @@ from solver.study import comparison
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.quantities.cycles import cycles_in
 
+NOTHING = np.zeros((2, 0), dtype=np.float32)
+"""A curve without points."""
 MOST_LOOPS = 12
-"""Loops that are drawn at most; more cannot be told apart."""
+"""Largest number of loops that are drawn: more cannot be told apart."""
 FAR = 10.0
-"""Times the plot of two slips by which a line goes beyond it."""
+"""Half the length of a line in the plot of two slips, over the largest slip in it."""
 
 
 class HysteresisLoop(View):
@@ -47,7 +49,7 @@ class HysteresisLoop(View):
 
     def make(self) -> None:
         """Draw a curve for each loop, and the selected instant."""
-        made = self.begin()
+        plot = self.begin()
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         self.add("reference", color=REFERENCE, width=1.5)
@@ -55,42 +57,49 @@ class HysteresisLoop(View):
         latin = self.add("LATIN", color=LATIN, width=2.5)
         self.add("now", "Scatter", color=ERROR, size=10)
         self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
-        hover(made, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
+        hover(plot, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the loop of the iterate, and the instant on it."""
         run = frame.run
-        nothing = np.zeros((2, 0))
         self.x.rename(*run.across)
         self.y.rename(*run.up)
-        exact = next(((curve.across, curve.up) for curve in run.known("loop")), nothing)
-        if run.reference_loop is None:
-            reference = nothing
-        else:
+        reference = NOTHING
+        if run.reference_loop is not None:
             reference = run.reference_loop
+        exact = NOTHING
+        for curve in run.known("loop")[:1]:
+            exact = np.stack([curve.across, curve.up])
         brought = (frame.extras.get("beside") or {}).get("brought")
+        source = brought.source if brought else ""
         beside = _beside(brought, frame)
-        for axis, row in ((self.x, 0), (self.y, 1)):
-            curves = frame.loop[row], exact[row], reference[row], beside[row]
-            axis.hold(frame.stage, *curves, [0.0], margin=0.08)
-        is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (
-            run.across,
-            run.up,
-        )
+        curves = [frame.loop, exact, reference, beside]
+        # The ghost may go beyond the limits: they are those of this run.
+        self.x.hold(frame.stage, *[x for x, _ in curves], [0.0], margin=0.08)
+        self.y.hold(frame.stage, *[y for _, y in curves], [0.0], margin=0.08)
         self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)
         self.draw("exact", *exact)
-        self.draw(
-            "ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name
-        )
-        self.draw("beside", *beside, brought.source if brought else "")
+        self.draw("ghost", *_ghost_of(run, ghost), self.ghost_name)
+        self.draw("beside", *beside, source)
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
+
+
+def _ghost_of(run: Run, ghost: Frame | None) -> Floats:
+    """Loop of another run, (2, n), if it has the quantities of a run, else nothing."""
+    if ghost is None or (ghost.run.across, ghost.run.up) != (run.across, run.up):
+        return NOTHING
+    return ghost.loop
 
 
 def _beside(
     brought: comparison.OtherResults | MeasuredLoop | None, frame: Frame
 ) -> tuple[Array, Array]:
-    """A measured loop, or another program's under the run's load, (n,) each, SI."""
+    """A measured loop, or that of other results under the run's load, (n,) each, SI.
+
+    Results of another program have displacements alone: those of the far end are drawn
+    over the force of this run at the same instants.
+    """
     if isinstance(brought, MeasuredLoop):
         return brought.displacement, brought.force
     if brought is None or brought.quantity != comparison.DISPLACEMENT:
@@ -114,7 +123,7 @@ class CyclePlot(ExtraView):
     )
 
     def _add_legend(self) -> None:
-        """Add a legend of the first and the last cycle, and of how slip goes on."""
+        """Add a legend: first cycle, last cycle, and a text on how slip goes on."""
         self.mark({"first": SCALE[0], "last": SCALE[-1], "text": UNSEEN})
         self.legend(first="cycle 1", last="last", text="text")
 
@@ -141,18 +150,21 @@ class Cycles(CyclePlot):
         loop = frame.loop
         self.x.rename(*run.across)
         self.y.rename(*run.up)
-        for axis, values in ((self.x, loop[0]), (self.y, loop[1])):
-            axis.hold(frame.stage, values, margin=0.08)
+        self.x.hold(frame.stage, loop[0], margin=0.08)
+        self.y.hold(frame.stage, loop[1], margin=0.08)
         x = self.x(loop[0])
         y = self.y(loop[1])
-        count = len(cycles["energy"])
         columns = cycles["columns"]
-        shown = thinned(count, MOST_LOOPS)
-        parts = [slice(columns[n], columns[n + 1] + 1) for n in shown]
-        colors = np.array(scaled(count))[shown].tolist()
-        self.fill(
-            "loops", xs=[x[p] for p in parts], ys=[y[p] for p in parts], color=colors
-        )
+        count = len(cycles["energy"])
+        colors = scaled(count)
+        loops: dict[str, list[Any]] = {"xs": [], "ys": [], "color": []}
+        for number in thinned(count, MOST_LOOPS):
+            # A cycle ends at the instant at which the next one begins.
+            cycle = slice(columns[number], columns[number + 1] + 1)
+            loops["xs"].append(x[cycle])
+            loops["ys"].append(y[cycle])
+            loops["color"].append(colors[number])
+        self.fill("loops", **loops)
         self.draw("now", *loop[:, [run.column(selection.phase)]])
 
 
@@ -163,11 +175,11 @@ class CycleEnergy(CyclePlot):
 
     def make(self) -> None:
         """Draw a bar for each cycle."""
-        made = self.begin(("cycle",), ("energy", "J"))
-        whole(made.xaxis[0])
+        plot = self.begin(("cycle",), ("energy", "J"))
+        whole(plot.xaxis[0])
         bars = self.add("bars", "VBar", "x top color", width=0.7)
         self._add_legend()
-        hover(made, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
+        hover(plot, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
         super()._show(cycles, frame, selection)
@@ -186,7 +198,8 @@ class SlipPlane(View):
     name = "Slip plane"
     needs = frozenset({"slips"})
 
-    # Two points rub, whose friction follows from what presses them.
+    # It is for a body on two points, whose friction follows from their pressure: their
+    # slips and pressures are the four components of jumps.
     applies = staticmethod(
         lambda settings: (
             settings.opens and settings.jumps == 4 and settings.law == FrictionLaw()
@@ -203,14 +216,19 @@ class SlipPlane(View):
         self.add("now", "Scatter", color=ERROR, size=10)
         self.mark({"held": UNSEEN})
         self.legend(
-            left="left slips", right="right slips", path="so far", room="free in the last cycle",
+            left="left slips",
+            right="right slips",
+            path="so far",
+            room="free in the last cycle",
             held="contact alone holds the block",
-        )  # fmt: skip
+        )
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the slips of both points so far, and the present limits of slip."""
         slips = frame.extras.get("slips", {})
         column = frame.run.column(selection.phase)
+        # None means that slip says nothing of pressure; {} that the worker has sent
+        # nothing yet.
         self.show("held", slips is None)
         if not slips:
             for name in self.sources:
@@ -219,21 +237,25 @@ class SlipPlane(View):
         slip = slips["slip"]
         corners = slips["room"].T
         both = np.concatenate([slip, corners], axis=1)
-        for axis, values in zip((self.x, self.y), both, strict=True):
-            axis.hold(frame.run.number, values, margin=0.1)
+        self.x.hold(frame.run.number, both[0], margin=0.1)
+        self.y.hold(frame.run.number, both[1], margin=0.1)
         self.draw("room", *corners)
         self.draw("path", *slip[:, : column + 1])
         self.draw("now", *slip[:, [column]])
         far = FAR * np.ptp(both, axis=1).max()
         for number, name in enumerate(("left", "right")):
+            # Lines of the left and of the right point alternate.
             rows = slice(number, None, 2)
-            self.draw(
-                name, *_lines(slips["matrix"][rows], slips["limit"][rows, column], far)
-            )
+            lines = _lines(slips["matrix"][rows], slips["limit"][rows, column], far)
+            self.draw(name, *lines)
 
 
 def _lines(matrix: Floats, limit: Floats, far: float) -> Floats:
-    """Lines A w = b as one curve broken by NaN, shape (2, n)."""
+    """Lines A w = b as one curve broken by NaN, shape (2, n), m.
+
+    A has shape (n_lines, 2), N/m, b (n_lines,), N. Each line goes a length `far`, m, to
+    both sides of its point nearest to the origin.
+    """
     sizes = np.linalg.norm(matrix, axis=1)
     feet = matrix * (limit / sizes**2)[:, None]
     along = far * np.stack([-matrix[:, 1], matrix[:, 0]], axis=1) / sizes[:, None]

@@ -46,13 +46,13 @@ class Picture:
         self._factor = factor
         self._peaks = peaks
         self._geometry = frame.run.geometry
-        self._described = layout.description
+        self._description = layout.description
         # Values of a description are not thinned.
         instant = frame.run.instants[column]
-        self._now = int(np.argmin(np.abs(self._described.instants - instant)))
+        self._now = int(np.argmin(np.abs(self._description.instants - instant)))
         self.tilt = 0.0
-        if self._described.tilt is not None:
-            self.tilt = float(self._described.tilt[self._now])
+        if self._description.tilt is not None:
+            self.tilt = float(self._description.tilt[self._now])
 
     @cached_property
     def nodes(self) -> Array:
@@ -66,9 +66,9 @@ class Picture:
         """Contact points, px from the middle of the foot, shape (n_points, 2)."""
         positions = self._geometry.points
         local = self._moved(positions, self.frame.deformed.points[:, :, self.column])
-        if self._described.height is not None and self._described.bodies == 1:
+        if self._description.height is not None and self._description.bodies == 1:
             # The band lies below a single body. Rods leave room for it.
-            at_foot = positions[:, 1] <= 1e-6 * self._described.length
+            at_foot = positions[:, 1] <= 1e-6 * self._description.length
             local[at_foot, 1] -= 0.5 * BAND
         return local
 
@@ -78,19 +78,21 @@ class Picture:
         layout = self.layout
         behind = self.frame.run.settings.behind()
         arrows = []
-        for act in self._described.acts:
+        for act in self._description.acts:
             setting = behind.get(act.where)
             peak = self._peaks[act.where]
-            places = self._follow(act.points * layout.size)
-            arrows.append(Arrows(act, setting, places, layout, peak, self._now))
+            points = self._follow(act.points * layout.size)
+            arrows.append(Arrows(act, setting, points, layout, peak, self._now))
         return arrows
 
     @property
     def draggable(self) -> list[Arrows]:
         """The arrows whose load is a setting."""
-        return [
-            arrows for arrows in self.arrows if arrows.setting and len(arrows.handles)
-        ]
+        draggable = []
+        for arrows in self.arrows:
+            if arrows.setting and len(arrows.handles):
+                draggable.append(arrows)
+        return draggable
 
     def columns(self) -> dict[str, Columns]:
         """Columns of all sources, by their names."""
@@ -109,7 +111,7 @@ class Picture:
 
         Both are outlines with NaN behind each, shape (n, 2), px.
         """
-        if not any(hold.kind == "image" for hold in self._described.holds):
+        if not any(hold.kind == "image" for hold in self._description.holds):
             return np.zeros((0, 2))
         # As far as there is room.
         y = np.maximum(-bodies[:, 1], -IMAGE)
@@ -128,9 +130,10 @@ class Picture:
         return strokes
 
     def _heads(self) -> Strokes:
-        return [
-            (gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows
-        ]
+        heads: Strokes = []
+        for arrows in self.arrows:
+            heads.append((gapped(arrows.heads), color_of(arrows.act), 1.0))
+        return heads
 
     def _marks(self) -> Columns:
         """The handles of arrows that can be dragged."""
@@ -146,10 +149,7 @@ class Picture:
         return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
-        """Outline of bodies that begin to collapse.
-
-        Nodes move by `moved`, (n_nodes, 2).
-        """
+        """Outline of bodies that begin to collapse, by moved nodes, (n_nodes, 2), m."""
         size = float(np.abs(moved).max(initial=0.0))
         if size == 0.0:
             size = 1.0
@@ -190,35 +190,33 @@ class Picture:
 
     @cached_property
     def _at_break(self) -> Array:
-        """Numbers of the nodes on both sides of a break, (2, 2).
-
-        (0, 2) without a break.
-        """
-        if self._described.broken is None:
+        """Numbers of the nodes on both sides of a break, (2, 2); (0, 2) without one."""
+        if self._description.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
-        body, position = self._described.broken
+        body, position = self._description.broken
         x, y = self._geometry.nodes.T
-        is_there = np.abs(x - position) < 1e-4 * self._described.length
-        row = np.floor(y * self._described.bodies / self.layout.size[1])
+        is_there = np.abs(x - position) < 1e-4 * self._description.length
+        row = np.floor(y * self._description.bodies / self.layout.size[1])
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _columns(self, strokes: Strokes) -> Columns:
         """Columns of strokes on the page: binary arrays go fast to the browser."""
-        pages = [self.page(line).T.astype(np.float32) for line, _, _ in strokes]
-        return {
-            "xs": [x for x, _ in pages],
-            "ys": [y for _, y in pages],
-            "line_color": [color for _, color, _ in strokes],
-            "line_width": [width for _, _, width in strokes],
-        }
+        columns: Columns = {"xs": [], "ys": [], "line_color": [], "line_width": []}
+        for line, color, width in strokes:
+            x, y = self.page(line).T.astype(np.float32)
+            columns["xs"].append(x)
+            columns["ys"].append(y)
+            columns["line_color"].append(color)
+            columns["line_width"].append(width)
+        return columns
 
     def _holds(self) -> Array:
         """Strokes of the supports, and a horizontal where bodies tilt, (n, 2), px."""
         layout = self.layout
-        length = self._described.length
+        length = self._description.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
         strokes = strokes_of(layout, self._factor, self._now, feet)
-        if self._described.tilt is not None:
+        if self._description.tilt is not None:
             corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
@@ -229,10 +227,12 @@ class Picture:
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
-        height = self.layout.size[1] * self.layout.scale[1] / self._described.bodies
+        height = self.layout.size[1] * self.layout.scale[1] / self._description.bodies
         width = min(BAND, 0.35 * height)
-        if chains.max() >= self._described.bodies:
+        # Broad bands of many interfaces, as in a wall, would cover the bodies.
+        if chains.max() >= self._description.bodies:
             width = min(width, 5.0)
+        # A dark rim below all colours, but for open stretches.
         closed = [line for kind, line in lines.items() if kind != OPEN]
         rims = np.concatenate([np.zeros((0, 2)), *closed])
         strokes: Strokes = [(rims, EDGE, width + 2.0)]
@@ -252,6 +252,7 @@ class Picture:
         colors = []
         for arrows in self.arrows:
             act = arrows.act
+            # Pressures from both sides have one text.
             if self._is_repeated(act):
                 continue
             anchor, align = anchor_of(arrows, layout)
@@ -259,8 +260,8 @@ class Picture:
             anchors.append(self.page(anchor))
             aligns.append(align)
             colors.append(color_of(act))
-        if self._described.tilt is not None:
-            x = 0.5 * self._described.length * layout.scale[0] + 30.0
+        if self._description.tilt is not None:
+            x = 0.5 * self._description.length * layout.scale[0] + 30.0
             texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
             anchors.append(np.array([x, -14.0]) + layout.origin)
             aligns.append("left")
@@ -278,17 +279,14 @@ class Picture:
         """Check whether a load is a pressure from below that is named above already."""
         if not act.where.startswith("bottom"):
             return False
-        above = [act for act in self._described.acts if act.where.startswith("top")]
+        above = [act for act in self._description.acts if act.where.startswith("top")]
         return any(is_opposite(act, other) for other in above)
 
 
 def _inside(
     layout: Layout, texts: list[str], anchors: list[Array], aligns: list[str]
 ) -> tuple[Array, Array]:
-    """Anchors, (2,) each, px, moved inwards where their texts would be cut.
-
-    X and y, (n,).
-    """
+    """X and y, (n,), px, of anchors, (2,) each, moved so that no text is cut."""
     x, y = np.reshape(anchors, (-1, 2)).T
     widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
     left = widths * [LEFT_OF[align] for align in aligns]

@@ -17,12 +17,13 @@ from app.views.view import ExtraView, color_bar, hover, joined
 from app.worker.geometry import MOST_WIRES
 
 COLORS = [color for color in RANKS if color != ERROR]
-"""Of wires; the broken one has a colour of its own."""
+"""Colours of wires; a broken wire has the colour of errors."""
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]
+"""Names of the curves of wires, with one for a broken wire."""
 
 
 class WireSection(ExtraView):
-    """Section of a bent strand: wires coloured by stress, ringed where they slip.
+    """Section of a bent strand: wires are coloured by stress, and ringed if they slip.
 
     A tap selects a wire.
     """
@@ -34,64 +35,75 @@ class WireSection(ExtraView):
 
     def make(self) -> None:
         """Draw the wires as circles, the colour bar of the stress, and the legend."""
-        made = self.begin(
+        plot = self.begin(
             match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d()
         )
-        made.axis.visible = False
-        made.center = []
+        plot.axis.visible = False
+        plot.center = []
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         self.add(
-            "wires", "Circle", "x y radius line_color line_width", also="stress",
+            "wires",
+            "Circle",
+            "x y radius line_color line_width",
+            also="stress",
             fill_color={"field": "stress", "transform": self.colors},
-        )  # fmt: skip
-        # Without data BokehJS would complain of ranges that follow them.
-        nothing = {
-            column: [0.0] for column in ("x", "y", "radius", "line_width", "stress")
-        }
-        self.fill("wires", **nothing, line_color=["white"])
-        self.bar = color_bar(made, self.colors)
+        )
+        # A circle of no size: BokehJS complains of ranges that follow no data.
+        self.fill(
+            "wires",
+            x=[0.0],
+            y=[0.0],
+            radius=[0.0],
+            stress=[0.0],
+            line_color=["white"],
+            line_width=[0.0],
+        )
+        self.bar = color_bar(plot, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
         self.mark(rings, fill_color="white", line_width=3, marker="circle")
         self.legend(*rings)
-        made.on_event(Tap, self._tap)
+        plot.on_event(Tap, self._tap)
 
     def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:
-        column = frame.run.column(selection.phase)
+        run = frame.run
+        column = run.column(selection.phase)
         unit = unit_for(float(np.abs(cut["stress"]).max()), "Pa")
-        low, high = (end / unit.factor for end in extent([cut["stress"]]))
+        low, high = np.divide(extent([cut["stress"]]), unit.factor).tolist()
+        # A scale of no length has no colours.
         self.colors.update(low=low, high=max(high, low + 1e-9))
-        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['place'])}"
-        number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
+        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['position'])}"
         slips = cut["slips"][:, column]
-        chosen = cut["wires"] == number
-        rings = [
-            STATUS[int(slip)] if slip else ERROR if is_chosen else EDGE
-            for slip, is_chosen in zip(slips, chosen, strict=True)
-        ]
+        selected = list(run.interfaces).index(selection.interface_of(run))
+        chosen = cut["wires"] == selected
+        # Slip shows before the selection.
+        rings = np.where(chosen, ERROR, EDGE)
+        for status in (-1, 1):
+            rings = np.where(slips == status, STATUS[status], rings)
         self.fill(
             "wires",
             x=cut["centres"][:, 0],
             y=cut["centres"][:, 1],
             radius=0.96 * cut["radii"],
             stress=cut["stress"][:, column] / unit.factor,
-            line_color=rings,
+            line_color=rings.tolist(),
             line_width=np.where(slips != 0, 3.0, np.where(chosen, 2.5, 1.0)),
         )
 
     def _tap(self, event: Any) -> None:
+        """Select the wire under the pointer; the core has no interface."""
         frame = self.state.frame
-        cut = frame and frame.extras.get("section")
-        if cut is None:
+        if frame is None or "section" not in frame.extras:
             return
-        away = np.hypot(*(cut["centres"] - [event.x, event.y]).T)
-        nearest = int(away.argmin())
+        cut = frame.extras["section"]
+        distance = np.hypot(*(cut["centres"] - [event.x, event.y]).T)
+        nearest = int(distance.argmin())
         wire = int(cut["wires"][nearest])
-        if away[nearest] <= cut["radii"][nearest] and wire >= 0:
+        if distance[nearest] <= cut["radii"][nearest] and wire >= 0:
             self.state.select(interface=list(frame.run.interfaces)[wire])
 
 
 class AxialForces(ExtraView):
-    """Force along a rod or each wire; a broken one regains it from its break on."""
+    """Force along a rod or each wire; a broken wire regains it from its break on."""
 
     name = "Axial force"
     needs = frozenset({"axial force"})
@@ -100,37 +112,38 @@ class AxialForces(ExtraView):
 
     def make(self) -> None:
         """Draw a curve for each wire, and the closed form."""
-        made = self.begin(("x", "m"), ("force", "N"))
+        plot = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
         self._lines = [self.add(wire, width=2) for wire in WIRES]
         self.legend(*WIRES, stuck="all stick", exact="closed form")
-        hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
+        hover(plot, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
-        """Show the force in each wire, the broken one in its own colour."""
+        """Show the force in each wire, and in a broken one in a colour of its own."""
         run = frame.run
         column = run.column(selection.phase)
-        known = run.known("axial force")
         x = axial["x"]
         names = axial["names"]
         stuck = axial["stuck"]
+        exact = run.known("axial force")
+        # Of a strand one wire is shown: the axes are those of the wires that are shown.
         key = (*frame.stage, *names)
-        along = run.interfaces[selection.interface_of(run)].positions
-        self.x.hold(key, x, along)
-        ups = [curve.up for curve in known]
+        self.x.hold(key, x, run.interfaces[selection.interface_of(run)].positions)
+        ups = [curve.up for curve in exact]
         self.y.hold(key, axial["force"], *ups, stuck, [0.0], margin=0.05)
-        self.draw(
-            "exact", *joined([(curve.across, curve.up[:, column]) for curve in known])
-        )
+        curves = [(curve.across, curve.up[:, column]) for curve in exact]
+        self.draw("exact", *joined(curves))
         self.draw("stuck", x[: len(stuck)], stuck[:, column])
+        self._color(names)
+        self.draw_each(WIRES, x, axial["force"][:, :, column], names)
+
+    def _color(self, names: list[str]) -> None:
+        """Set colours and widths of the curves of wires."""
+        # More wires than colours: they begin again.
         colors = iter(COLORS * 2)
         for line, wire in zip(self._lines, names, strict=False):
             if "broken" in wire:
-                color = ERROR
-                width = 3.5
+                line.glyph.update(line_color=ERROR, line_width=3.5)
             else:
-                color = next(colors)
-                width = 2.0
-            line.glyph.update(line_color=color, line_width=width)
-        self.draw_each(WIRES, x, axial["force"][:, :, column], names)
+                line.glyph.update(line_color=next(colors), line_width=2.0)

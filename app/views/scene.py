@@ -1,7 +1,4 @@
-"""The figure of the scene, which the pointer drags and selects in.
-
-Stress and thrust.
-"""
+"""The figure of the scene, in which the pointer drags and selects; stress; thrust."""
 
 from __future__ import annotations
 
@@ -33,9 +30,9 @@ CLOSE = 14.0
 KEPT = 0.3, 1.5
 """Largest values over full length between which arrows keep their scale."""
 WIDEST = 9.0
-LEAST = 0.01
-"""Width of the line of the largest thrust, px, and share of it below which no line is
-drawn."""
+FAINTEST = 0.01
+"""Width of the line of the largest thrust, px, and share of it below which a thrust has
+no line."""
 STRESS_STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 """Ends of the scale of stresses, times a power of ten: it seldom changes."""
 
@@ -147,6 +144,7 @@ class Scene(View):
         if shown is None or shown.run.settings.scene != frame.run.settings.scene:
             self._factor = None
             self._peaks = {}
+        # Along the time of a frame the scale stays, so that motions can be compared.
         if self._factor is None or shown is not frame:
             largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
             self._factor = layout.fitting(largest, self._factor)
@@ -178,6 +176,7 @@ class Scene(View):
             self._peaks[act.where] = peak
 
     def _resize(self, name: str, old: float, new: float) -> None:
+        # A figure that is out of sight reports a size of zero.
         self._size[name] = max(float(new), 60.0)
         if self._shown is not None:
             with pn.io.hold():
@@ -213,6 +212,7 @@ class Scene(View):
         present = float(getattr(picture.frame.run.settings, arrows.setting))
         dragged = arrows.scaled(present, picture.to_local(event.x, event.y))
         low, high = self.state.settings.definitions()[arrows.setting].softbounds
+        # A value that was typed may lie outside of the range of the slider.
         clipped = np.clip(dragged, min(low, present), max(high, present))
         return float(f"{clipped:.3g}")
 
@@ -228,6 +228,7 @@ class Scene(View):
         chosen: dict[str, Any] = {"substructure": int(run.geometry.parts[nearest])}
         away = np.hypot(*(picture.points - at).T)
         if np.any(away <= CLOSE):
+            # Points are NaN where a line of them is broken.
             chain = int(run.geometry.chains[int(np.nanargmin(away))])
             chosen["interface"] = list(run.interfaces)[chain]
         self.state.select(**chosen)
@@ -277,6 +278,7 @@ class Stress(ExtraScene):
         largest = float(np.abs(values).max())
         unit = unit_for(largest, si)
         high = rounded_up(0.999 * largest / unit.factor, STRESS_STEPS)
+        # Tension and compression have a scale with white in the middle.
         if float(values.min()) < -1e-3 * largest:
             self.colors.update(palette=RdBu11, low=-high, high=high)
         else:
@@ -307,7 +309,7 @@ class Thrust(ExtraScene):
     def _show(self, extra: Any, picture: Picture) -> None:
         largest = float(extra["forces"].max())
         share = extra["forces"][:, picture.column] / (largest or 1.0)
-        is_drawn = share > LEAST
+        is_drawn = share > FAINTEST
         lines = picture.layout.local(extra["lines"][is_drawn, :, :, picture.column])
         self.fill("thrust", **picture.many(lines), line_width=WIDEST * share[is_drawn])
         self.show("note", f"widest line {unit_for(largest, 'N')(largest)}")

@@ -33,13 +33,14 @@ class StatusMap(View):
         plot = self.begin(("x", "m"), ("t", "s"))
         plot.center = []
         self.mark(KEYS)
+        # A colour for each status from -1 to 2.
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
         image = self.add("status", "Image", "image x y dw dh", color_mapper=colors)
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.6, line_width=1)
         self.add("front", color=EXACT, width=3)
         self.add("ghost", "Segment", "x0 y0 x1 y1", color=GHOST, width=1.5)
         self.add("now", "HSpan", "y", color=ERROR, line_width=2)
-        self.add("place", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
+        self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
         self.legend(*KEYS, "ghost", front="closed form")
         hover(plot, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         plot.on_event(Tap, self._select)
@@ -58,12 +59,14 @@ class StatusMap(View):
         self.show("open", interface.coefficient is not None)
         self.fill("now", y=self.y(run.instants[[run.column(selection.phase)]]))
         selected = []
-        if selection.place is not None:
-            selected = [selection.place]
-        self.fill("place", x=self.x(selected))
+        if selection.position is not None:
+            selected = [selection.position]
+        self.fill("position", x=self.x(selected))
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
+        # Of another run only the boundaries are drawn: two images would hide each
+        # other.
         lines = np.zeros((4, 0))
         if ghost is not None:
             lines = _boundary(ghost, selection)
@@ -75,6 +78,7 @@ class StatusMap(View):
         self, run: Run, interface: FrictionInterface, fields: InterfaceFields
     ) -> None:
         """Show the status as an image whose cells lie about points and instants."""
+        # The first and the last cell stand out by half a cell.
         left, right = self.x(edges(interface.positions)[[0, -1]])
         low, high = self.y(edges(run.instants)[[0, -1]])
         self.fill(
@@ -92,7 +96,7 @@ class StatusMap(View):
             return
         end = float(frame.run.instants[-1])
         phase = min(max(self.y.si(event.y) / end, 0.0), 1.0)
-        self.state.select(phase=phase, place=self.x.si(event.x))
+        self.state.select(phase=phase, position=self.x.si(event.x))
 
 
 def _boundary(frame: Frame, selection: Selection) -> Floats:

@@ -16,12 +16,13 @@ from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_opposite
 from app.views.view import View, bare
 from solver.arrays import Array
+from solver.discrete.structure import Description
 
 PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
-"""Colours of the paths."""
+"""Colours of the paths; further paths are not drawn."""
 LOW = -1.5
 HIGH = 2.7
-"""Of the axis up: the paths lie between -1 and 1, their names above."""
+"""Ends of the axis up: paths lie between -1 and 1, and their names above them."""
 
 
 class Timeline(View):
@@ -31,9 +32,10 @@ class Timeline(View):
 
     def make(self) -> None:
         """Draw the paths, and follow the pointer along them."""
-        made = self._figure = bare(40, (-0.01, 1.01), (LOW, HIGH))
+        plot = bare(40, (-0.01, 1.01), (LOW, HIGH))
+        self._figure = plot
         self._number = 0
-        axis = made.xaxis
+        axis = plot.xaxis
         axis.major_label_standoff = 1
         axis.axis_line_alpha = 0.4
         axis.major_tick_out = 3
@@ -46,11 +48,11 @@ class Timeline(View):
         self.add("now", "Scatter", color=FORCE, size=13)
         self.mark(PATHS | {"time": UNSEEN})
         self.legend(*PATHS, "time", place="center")
-        # The range has bounds, so that the tool only keeps a touch from scrolling the
-        # page.
-        made.add_tools(PanTool(dimensions="width"))
+        # As the range has bounds, the tool pans nothing. It only keeps a touch from
+        # scrolling the page.
+        plot.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
-            made.on_event(event, self._select)
+            plot.on_event(event, self._select)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
@@ -64,29 +66,34 @@ class Timeline(View):
         self.fill("now", x=[area["x"][column]], y=[area["y2"][column]])
 
     def _show_paths(self, run: Run) -> None:
+        """Show the paths of a run over time; they stay until the next run."""
         unit = unit_for(float(run.instants[-1]), "s")
         times = run.instants / np.float32(unit.factor)
         ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
-        # The bounds first: the browser moves ends that are outside.
+        # In one step with the bounds: the browser moves ends that lie outside of them.
         self.figure.x_range.update(bounds=ends, start=ends[0], end=ends[1])
-        titles, values = zip(*paths_of(run)[: len(PATHS)], strict=True)
-        ups = [
-            np.float32(each / (np.abs(each).max(initial=0.0) or 1.0)) for each in values
-        ]
-        # The first is on top.
+        paths = paths_of(run)[: len(PATHS)]
+        heights = []
+        for _, values in paths:
+            largest = np.abs(values).max(initial=0.0) or 1.0
+            heights.append(np.float32(values / largest))
+        # The first path is the last line, which lies on top, and the widest one.
+        count = len(paths)
         self.fill(
             "paths",
-            xs=[times] * len(ups),
-            ys=ups[::-1],
-            line_color=list(PATHS.values())[: len(ups)][::-1],
-            line_width=[1.4] * (len(ups) - 1) + [2.0],
+            xs=[times] * count,
+            ys=heights[::-1],
+            line_color=list(PATHS.values())[:count][::-1],
+            line_width=[1.4] * (count - 1) + [2.0],
         )
-        self.fill("area", x=times, y2=ups[0])
+        self.fill("area", x=times, y2=heights[0])
+        titles = [title for title, _ in paths]
         for path, title in zip_longest(PATHS, titles, fillvalue=""):
             self.show(path, title)
         self.show("time", f"t in {unit.name}")
 
     def _select(self, event: Any) -> None:
+        """Select the instant under the pointer."""
         end = self.figure.x_range.end / 1.01
         if self.state.frame is not None:
             self.state.select(phase=min(max(event.x / end, 0.0), 1.0))
@@ -95,30 +102,38 @@ class Timeline(View):
 def paths_of(run: Run) -> list[tuple[str, Array]]:
     """Title with range, and values, (n_instants,), of all paths, constant ones last."""
     description = run.geometry.description
-    given: list[tuple[str, Array, Unit]] = []
-    if description.tilt is not None:
-        given.append(("tilt", np.degrees(description.tilt), Unit("°")))
-    for place, act in enumerate(description.acts):
-        if not any(is_opposite(act, other) for other in description.acts[:place]):
-            if act.values.ndim == 1:
-                values = act.values
-            else:
-                values = act.values[len(act.values) // 2]
-            given.append((act.symbol, values, unit_of(act)))
     changing = []
     constant = []
-    for symbol, values, unit in given:
+    for symbol, values, unit in _given_in(description):
         # Adding 0 takes the sign from a zero.
         low = float(values.min()) + 0.0
         high = float(values.max()) + 0.0
-        changes = high - low > 1e-6 * max(abs(low), abs(high))
-        if changes:
+        path = np.interp(run.instants, description.instants, values)
+        if high - low > 1e-6 * max(abs(low), abs(high)):
             text = f"{number(low / unit.factor)} to {unit(high)}"
+            changing.append((f"{symbol} = {text}", path))
         else:
-            text = unit(high)
-        path = (
-            f"{symbol} = {text}",
-            np.interp(run.instants, description.instants, values),
-        )
-        (changing if changes else constant).append(path)
-    return [*changing, *constant] or [("nothing acts", np.zeros(len(run.instants)))]
+            constant.append((f"{symbol} = {unit(high)}", path))
+    if not changing and not constant:
+        return [("nothing acts", np.zeros(len(run.instants)))]
+    return [*changing, *constant]
+
+
+def _given_in(description: Description) -> list[tuple[str, Array, Unit]]:
+    """Symbol, values, (n_given,), and unit of the tilt and of each load.
+
+    The same pressure from both sides is a single load; a load that varies along a side
+    has its values in the middle.
+    """
+    given: list[tuple[str, Array, Unit]] = []
+    if description.tilt is not None:
+        given.append(("tilt", np.degrees(description.tilt), Unit("°")))
+    for index, act in enumerate(description.acts):
+        before = description.acts[:index]
+        if any(is_opposite(act, other) for other in before):
+            continue
+        values = act.values
+        if values.ndim > 1:
+            values = values[len(values) // 2]
+        given.append((act.symbol, values, unit_of(act)))
+    return given

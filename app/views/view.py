@@ -43,29 +43,30 @@ SHORT = 200
 """Length of a curve up to which it is sent as a list: faster there than an array."""
 TEXT = "12px"
 WORDS = "14px"
-"""Type sizes of plots, and of words at arrows."""
+"""Type sizes of plots, and of words at arrows, as CSS has them."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
-"""Keeps sizes that are not the theme's, as the browser sets these when it draws a
-figure."""
+"""Script that keeps sizes that are not the theme's: the browser sets those of the theme
+as it draws a figure."""
 ABOVE = {"margin-left": "-60px", "top": "-1px"}
-"""Has a legend begin at the left end of the figure."""
+"""Style of a legend that begins at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 5px !important; }
 .bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
-"""Lets a legend of seven entries stand in one line; the theme keeps them farther
-apart."""
+"""Style sheet by which a legend of seven entries stands in one line; the theme keeps
+entries farther apart."""
 
 
 HIDE = """
 const [shown] = cb_obj.item.renderers
 const is_mark = shown.name == null
 const others = (each) => each.name == shown.name && each != shown
-for (const each of is_mark ? [shown] : plot.renderers.filter(others)) each.visible = !each.visible
+const hidden = is_mark ? [shown] : plot.renderers.filter(others)
+for (const each of hidden) each.visible = !each.visible
 """
-"""Hides the glyph whose copy in the legend is clicked, or shows it again; marks stay as
-they are."""
+"""Script that hides the glyph whose copy in the legend is clicked, or shows it again;
+marks stay as they are."""
 
 
 class View:
@@ -77,9 +78,9 @@ class View:
     """
 
     name: ClassVar[str]
-    """Title of its tab."""
+    """Title of the view's tab."""
     needs: ClassVar[frozenset[str]] = frozenset()
-    """Names of the extras of a frame that it shows."""
+    """Names of the extras of a frame that the view shows."""
     applies: ClassVar[Callable[[Settings], bool]] = staticmethod(lambda settings: True)
     """Check whether the view applies to a run with some settings."""
 
@@ -216,6 +217,7 @@ class View:
             glyph,
             name=name,
             view=CDSView(filter=self._filter),
+            # By default Bokeh makes further glyphs for selections, which none here has.
             selection_glyph=None,
             nonselection_glyph=None,
             muted_glyph=None,
@@ -227,7 +229,7 @@ class View:
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
         """Add marks to the legend only, by name.
 
-        They share a glyph, as each costs time.
+        The marks share a glyph, as each glyph costs time.
         """
         nowhere = [np.nan] * len(colors)
         columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
@@ -277,10 +279,7 @@ class View:
                 item.label = value(wanted)
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
-        """Fill a source.
-
-        The legend has its entry, by a title, if the source has data.
-        """
+        """Fill a source; show its entry in the legend, by a title, if it has data."""
         target = self.sources[name]
         columns = {column: _sent(values) for column, values in columns.items()}
         new = [
@@ -310,10 +309,7 @@ class View:
         ys: Sequence[ArrayLike],
         titles: Sequence[str],
     ) -> None:
-        """Draw curves over the same x, shape (n,), in SI.
-
-        Empty the names that are left.
-        """
+        """Draw curves over one x, shape (n,), in SI; empty names without a curve."""
         for name, y, title in zip_longest(names, ys, titles):
             if y is None:
                 self.draw(name, [], [])
@@ -336,12 +332,15 @@ class ExtraView(View):
 
 
 def bare(
-    least: int, across: tuple[float, float], up: tuple[float, float], **more: Any
+    min_height: int,
+    across: tuple[float, float],
+    up: tuple[float, float],
+    **more: Any,
 ) -> figure:
     """A figure without tools, frame and grid, with a least height, px, and limits."""
     plot = figure(
         sizing_mode="stretch_both",
-        min_height=least,
+        min_height=min_height,
         tools="",
         toolbar_location=None,
         title=None,
@@ -382,10 +381,7 @@ def hover(
 
 
 def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
-    """Properties of a kind of glyph.
-
-    `color`, `width` etc. hold for its line and fill.
-    """
+    """Properties of a kind of glyph; `color`, `width` etc. are of its line and fill."""
     names = kind.properties()
     properties = {}
     for trait, given in look.items():
@@ -399,10 +395,7 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _sent(values: Any) -> Any:
-    """Values with short curves as lists.
-
-    An array is sent by itself, in two messages.
-    """
+    """Values with short curves as lists: an array is sent in two further messages."""
     if isinstance(values, list):
         return [_sent(each) for each in values]
     is_curve = isinstance(values, np.ndarray) and values.ndim == 1

@@ -81,8 +81,8 @@ def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats]
     "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4,
     n_instants), N, whose first and third lines are those of the left point; "room", the
     corners of the region in which both may stay in the whole last cycle, (n_corners,
-    2), m. None where contact alone holds the body: then slip says nothing of the
-    pressure.
+    2), m. The result is None where contact alone holds the body: then slip says nothing
+    of the pressure.
     """
     space = _slip_space(sampled)
     if space is None:
@@ -125,11 +125,14 @@ def cycles(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     found = cycles_of(sampled.settings, iterate)
     if not len(found):
         return None
-    slipped = bool(found.slip.any() or found.before.any())
+    # Where nothing slips, no cycle differs from the next.
+    text = "nothing slips"
+    if found.slip.any() or found.before.any():
+        text = _fate_text(found)
     return {
         "columns": np.searchsorted(sampled.columns, found.ends),
         "energy": floats(found.energy),
-        "text": _fate_text(found) if slipped else "nothing slips",
+        "text": text,
     }
 
 
@@ -203,7 +206,8 @@ def clips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
 
     "table", the number of its values; "branches", the number of branches of the load;
     and for each of "SVD", "PGD" (None without bases) and "clips" the count of stored
-    numbers and the relative error, shape (2, n). None where clips cannot represent it.
+    numbers and the relative error, shape (2, n). The result is None where clips cannot
+    represent the friction.
     """
     if not can_be_clipped(sampled.settings) or sampled.settings.instants < 2:
         return None
@@ -228,7 +232,8 @@ def beside(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     """Measured loop or results of another program, and the iterate's distance to them.
 
     "brought" is the loop or the results; "distance" is relative, NaN where both share
-    too few rows. None where nothing was brought, or it is of another scene.
+    too few rows. The result is None where nothing was brought, or it is of another
+    scene.
     """
     brought = needs.brought
     loop = sampled.loop
@@ -236,6 +241,7 @@ def beside(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     if isinstance(brought, MeasuredLoop):
         if brought.units != (loop.across[1], loop.up[1]):
             return None
+        # Loops that share too few points have no distance.
         with suppress(SettingError):
             distance = LoopComparison(brought, loop, sampled.problem).of(iterate)
     elif brought is None or brought.scene != sampled.settings.scene:

@@ -31,7 +31,7 @@ MOST_WIRES = 6
 MOST_QUADS = 400
 """Largest number of quadrilaterals that are drawn, or one for each body."""
 NONE = -1
-"""In place of a degree of freedom, and between two lines in a list of nodes."""
+"""Number in place of a missing degree of freedom, and between two lines of nodes."""
 StressField = tuple[str, str, Floats]
 """Title, SI unit, and values in the quadrilaterals, (n_quads, n_instants)."""
 Extras = dict[str, Callable[[Iterate, Needs], Any]]
@@ -43,11 +43,11 @@ def floats(values: NDArray[np.generic]) -> Floats:
     return values.astype(np.float32, order="C")
 
 
-def thinned(size: int, most: int) -> Indices:
-    """Indices of a thinned axis, first and last included, at most `most`."""
-    if size <= most:
+def thinned(size: int, limit: int) -> Indices:
+    """Indices of a thinned axis, (n,), first and last included, n up to a limit."""
+    if size <= limit:
         return np.arange(size)
-    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(np.intp))
+    return np.unique(np.linspace(0, size - 1, limit).round().astype(np.intp))
 
 
 class Drawn:
@@ -102,7 +102,7 @@ class Drawn:
 def _dofs_of(problem: Problem, law: Contact, pairs: Indices) -> Indices:
     """Degrees of freedom of pairs of an interface, along and across it, (n_points, 2).
 
-    Where bodies do not open, none is across: `NONE`.
+    Where bodies do not open, the degree of freedom across is `NONE`.
     """
     components = [law.tangent]
     if law.normal:
@@ -118,35 +118,20 @@ class DrawnRods(Drawn):
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         description = settings.structure().description()
-        parts = problem.substructures
-        length = description.length
-        per_rod = len(parts) // description.bodies
-        positions = np.stack([problem.positions, np.zeros(problem.n_dofs)], axis=1)
-        grids = []
-        dofs = []
-        elements = []
-        first = 0
-        for number, part in enumerate(parts):
-            low = PITCH * length * (number // per_rod)
-            # Contact points lie in the gap below a rod.
-            positions[part.dofs, 1] = low - 0.5 * (PITCH - THICKNESS) * length
-            kept = thinned(len(part.dofs), max(MOST_POINTS // per_rod, 2))
-            shown = part.dofs[kept]
-            heights = [low, low + THICKNESS * length]
-            grid = np.meshgrid(problem.positions[shown], heights)
-            grids.append(np.stack(grid, axis=-1))
-            dofs.append(np.tile(shown, 2))
-            # The element in the middle of each quadrilateral.
-            elements.append(first + (kept[:-1] + kept[1:]) // 2)
-            first += len(part.dofs) - 1
+        grids, dofs, elements = _rectangles(problem, description)
         self._along = np.concatenate(dofs)
         self._elements = np.concatenate(elements)
         self._force = AxialForce(problem, columns)
         self._broken: int | None = None
         if description.broken is not None:
             self._broken = description.broken[0]
-        mesh = mesh_of(grids, np.arange(len(parts)))
+        mesh = mesh_of(grids, np.arange(len(grids)))
         self.extras: Extras = {"stress": self._stress, "axial force": self._axial_force}
+        positions = np.stack([problem.positions, np.zeros(problem.n_dofs)], axis=1)
+        # Contact points lie in the gap below a rod.
+        gap = (PITCH - THICKNESS) * description.length
+        for part, grid in zip(problem.substructures, grids, strict=True):
+            positions[part.dofs, 1] = grid[0, 0, 1] - 0.5 * gap
         super().__init__(problem, description, columns, mesh, positions)
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
@@ -195,6 +180,36 @@ class DrawnRods(Drawn):
         return floats(np.stack([along, np.zeros_like(along)], axis=1))
 
 
+def _rectangles(
+    problem: Problem, description: Description
+) -> tuple[list[Array], list[Indices], list[Indices]]:
+    """Rectangles of the substructures of rods, which stand above each other.
+
+    Returns
+    -------
+    For each substructure its nodes, (2, n, 2), m; their degrees of freedom along the
+    rod, (2 n,); and the element in the middle of each quadrilateral, (n - 1,).
+    """
+    parts = problem.substructures
+    length = description.length
+    per_rod = len(parts) // description.bodies
+    grids = []
+    dofs = []
+    elements = []
+    first = 0
+    for number, part in enumerate(parts):
+        low = PITCH * length * (number // per_rod)
+        kept = thinned(len(part.dofs), max(MOST_POINTS // per_rod, 2))
+        shown = part.dofs[kept]
+        heights = [low, low + THICKNESS * length]
+        grid = np.meshgrid(problem.positions[shown], heights)
+        grids.append(np.stack(grid, axis=-1))
+        dofs.append(np.tile(shown, 2))
+        elements.append(first + (kept[:-1] + kept[1:]) // 2)
+        first += len(part.dofs) - 1
+    return grids, dofs, elements
+
+
 class DrawnMesh(Drawn):
     """Plane bodies, with some lines of the mesh of each substructure."""
 
@@ -207,15 +222,15 @@ class DrawnMesh(Drawn):
         self.extras: Extras = {"stress": self._stress}
         if settings.has_joints:
             self.extras["thrust"] = self._thrust
-        # All grids are thinned alike, to a number of quadrilaterals each at most.
-        most = max(MOST_QUADS // len(inside.grids), 1)
+        # All grids are thinned alike, so that bodies of one size look alike.
+        limit = max(MOST_QUADS // len(inside.grids), 1)
         shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
-        share = min(np.sqrt(most / shapes.prod(axis=1).max()), 1.0)
+        share = min(np.sqrt(limit / shapes.prod(axis=1).max()), 1.0)
         grids = []
         quads = []
         first = 0
         for grid in inside.grids:
-            up, across = _kept_lines(grid, share, most)
+            up, across = _kept_lines(grid, share, limit)
             grids.append(grid[np.ix_(up, across)])
             quads.append(first + _quads_of(grid, up, across))
             first += (len(up) - 1) * (len(across) - 1)
@@ -296,9 +311,9 @@ class DrawnMesh(Drawn):
         return middles
 
     def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of nodes, (n_nodes, 2), m, of all degrees of freedom, (n_dofs,)."""
+        """Displacement of nodes, (n_nodes, 2), m, from all displacements, (n_dofs,), m."""
         moved = self._inside.displacement(displacement[:, None], [0])
-        # Displacements that are given are no part of it.
+        # Given displacements are added to all, and are no part of a motion.
         still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])
         return floats((moved - still)[self._nodes, :, 0])
 
@@ -311,14 +326,14 @@ class DrawnMesh(Drawn):
         return floats(self._moved(iterate)[self._nodes])
 
 
-def _kept_lines(grid: Indices, share: float, most: int) -> tuple[Indices, Indices]:
-    """Rows and columns of a grid of nodes that are drawn.
+def _kept_lines(grid: Indices, share: float, limit: int) -> tuple[Indices, Indices]:
+    """Rows and columns of a grid of nodes that are drawn, (n_up,) and (n_across,).
 
-    A share, `most` cells at most.
+    They are a share of all lines, and make no more cells than a limit.
     """
     n_rows, n_columns = np.subtract(grid.shape, 1)
     rows = max(int(share * n_rows), 1)
-    columns = max(min(int(share * n_columns), most // rows), 1)
+    columns = max(min(int(share * n_columns), limit // rows), 1)
     return thinned(n_rows + 1, rows + 1), thinned(n_columns + 1, columns + 1)
 
 

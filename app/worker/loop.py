@@ -8,7 +8,9 @@ import signal
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from multiprocessing.connection import Connection
+from typing import Any
 
 import numpy as np
 
@@ -20,31 +22,36 @@ from solver.refusal import RefusedError
 
 NICENESS = 5
 NICEST = 19
-"""Of a worker that is alone, so that pages stay alive (at 10 its first picture waits
-0.1 s), and beside fourteen others: thirty at 5 would leave the server a fifth of a
-processor."""
+"""Niceness of a worker that is alone, and of one beside fourteen others or more. The
+server goes first: thirty workers at 5 would leave it a fifth of a processor. At 10 the
+first picture of a worker that is alone waits 0.1 s longer."""
 UNSEEN = 30.0
-"""Seconds without a picture on the screen after which a run waits: nobody sees it."""
+"""Time without a picture on the screen after which a run waits, as it is unseen, s."""
 LONG = 60.0
 LARGE = 2e9
-"""Seconds and bytes of a run from which it waits to be agreed to."""
+"""Estimated time, s, and memory, bytes, above which a run waits to be agreed to."""
 PAUSE = messages.Pace(0.0)
 HEARTBEAT = 2.0
-"""Seconds between two signs of life."""
+"""Time between two signs of life, s."""
 
 
 def main(connection: Connection, others: int) -> None:
     """Take orders until the server, or the page, is gone."""
     os.nice(min(NICENESS + others, NICEST))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # A run that diverges is told by its status.
+    # The status of a run says that it diverges: NumPy need not warn of it, too.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")
     with contextlib.suppress(OSError, EOFError):
         WorkerLoop(connection).serve()
 
 
 class WorkerLoop:
-    """Orders from the server in, reports to it out; one run at a time."""
+    """A worker at work: it takes orders, works at one run, and sends reports.
+
+    It waits for orders without end while there is no run, or nobody sees the run.
+    Between pieces of work it takes all orders that have come. A frame is sent when the
+    page is ready for it: `Ready` says so, and the frame that is sent takes it back.
+    """
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
@@ -59,15 +66,20 @@ class WorkerLoop:
         threading.Thread(target=self._beat, daemon=True).start()
 
     def serve(self) -> None:
-        """Take orders and work in between, without end."""
+        """Take orders, and work between them, without end."""
         while True:
-            self._receive(0.0 if self._orders else self._rest())
+            # Orders may have come while the last piece of work lasted.
+            timeout: float | None = 0.0
+            if not self._orders:
+                timeout = self._rest()
+            self._receive(timeout)
             while self._orders:
                 self._guard(self._obey, self._orders.popleft())
             if self._runner is not None and not self._is_unseen:
                 self._guard(self._work, self._runner)
 
     def _work(self, runner: Runner) -> None:
+        """Do the next piece of work if it is due, and send a frame if it is wanted."""
         if runner.rest(self._is_ready) == 0.0:
             runner.advance()
         if self._is_ready and runner.is_presentable:
@@ -76,7 +88,7 @@ class WorkerLoop:
             self._send(messages.NewFrame(runner.frame(self._needs)))
 
     def _rest(self) -> float | None:
-        """Seconds to wait for an order; None waits without end."""
+        """Time to wait for an order, s; None: without end."""
         runner = self._runner
         if runner is None or self._is_unseen:
             return None
@@ -86,9 +98,11 @@ class WorkerLoop:
 
     @property
     def _is_unseen(self) -> bool:
+        """Check whether the page has shown no picture for long, as in a hidden tab."""
         return not self._is_ready and time.monotonic() > self._shown_at + UNSEEN
 
     def _obey(self, order: Order) -> None:
+        """Do as an order says; without a run only a new one, and the needs, count."""
         runner = self._runner
         match order:
             case Start():
@@ -106,28 +120,32 @@ class WorkerLoop:
                 runner.pacing.step()
 
     def _begin(self, start: Start) -> None:
+        """Take up a run; ask first if it takes long or much memory."""
+        # At once, as the supervisor ends a worker that does not take up a run in time.
         self._send(messages.Began(start.number))
         self._number = start.number
         self._runner = None
         runner = Runner(start, self._references, self._is_superseded, self._is_halted)
         cost = runner.cost
-        if (cost.seconds > LONG or cost.memory > LARGE) and not start.is_agreed:
+        is_costly = cost.seconds > LONG or cost.memory > LARGE
+        if is_costly and not start.is_agreed:
             self._send(messages.Costly(start.number, str(cost)))
         else:
             self._runner = runner
 
-    def _guard(self, action: object, argument: object) -> None:
+    def _guard(self, action: Callable[[Any], None], argument: Any) -> None:
         """Call an action; an error in it is reported, and ends the run."""
         try:
-            action(argument)  # type: ignore[operator]
+            action(argument)
         except (RefusedError, FloatingPointError) as problem:
             self._fail(str(problem))
         except (OSError, EOFError):
+            # The pipe is gone, and with it the page.
             raise
         except Exception as problem:  # a page outlives a fault of the engine
-            text = f"The run broke ({type(problem).__name__}: {problem})."
             self._fail(
-                f"{text} Change a setting, or lower the numbers of elements and instants."
+                f"The run broke ({type(problem).__name__}: {problem}). Change a "
+                "setting, or lower the numbers of elements and instants."
             )
 
     def _fail(self, text: str) -> None:
@@ -149,17 +167,21 @@ class WorkerLoop:
         while self._connection.poll(timeout):
             order = self._connection.recv()
             if isinstance(order, Start):
-                self._orders = deque(
-                    o for o in self._orders if isinstance(o, Ready | Needs)
-                )
+                # Orders for the run before, such as its pace, mean nothing to this one.
+                kept = [
+                    each for each in self._orders if isinstance(each, Ready | Needs)
+                ]
+                self._orders = deque(kept)
             self._orders.append(order)
             timeout = 0.0
 
     def _send(self, report: Report) -> None:
+        # Two threads send: parts of their messages must not mix in the pipe.
         with self._sending:
             self._connection.send(report)
 
     def _beat(self) -> None:
+        """Send signs of life, also while a long piece of work lasts."""
         with contextlib.suppress(OSError):
             while True:
                 self._send(messages.Alive())

@@ -1,4 +1,4 @@
-"""The worker process of a page, as the server sees it."""
+"""The worker process of a page, from the side of the server."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from app.messages import Order, Report
 from app.worker.loop import main
 
 PROCESSES = get_context("forkserver")
-# Workers share the memory of these modules; the script that serves imports the last,
-# and so would each of them.
+# Workers share the memory of these modules. The script that serves imports the last
+# one, so each worker would import it, too.
 PROCESSES.set_forkserver_preload(["app.worker.loop", "panel.command"])
-# One thread a worker: pages share the processors. The fork server inherits it.
+# A worker has one thread for linear algebra, as pages share the processors. The fork
+# server inherits the variable.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 SILENT = 8.0
-"""Seconds without a sign of life after which a process is taken to hang."""
+"""Time without a sign of life after which a process is taken to hang, s."""
 
 
 class Worker:
     """A worker process, with a pipe for its orders and reports.
 
-    `hear` is called with this and each report, and with None once the process has
-    ended, on a thread of its own. The more others there are, the nicer it is: the
-    server goes before all.
+    `hear` is called on a thread of its own: with this worker and each report, and with
+    None once the process has ended. The more `others` there are, the nicer the process
+    is, as the server goes first.
     """
 
     def __init__(
@@ -40,6 +41,7 @@ class Worker:
             target=main, args=(theirs, others), daemon=True
         )
         self._process.start()
+        # Else the pipe would outlive the process, as the server holds this end, too.
         theirs.close()
         self._heard = time.monotonic()
         threading.Thread(target=self._listen, daemon=True).start()
@@ -62,6 +64,8 @@ class Worker:
         self._connection.close()
 
     def _listen(self) -> None:
+        """Pass on reports until the pipe ends."""
+        # A pipe that is closed while it is read from has no handle: a TypeError.
         with contextlib.suppress(EOFError, OSError, TypeError):
             while True:
                 report: Report = self._connection.recv()

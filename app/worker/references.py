@@ -49,11 +49,13 @@ class ReferenceCache:
                 reference = reference_of(problem, stop)
         if reference is None:
             return None
+        # A reference that ends early is of use only if it tells of a collapse.
         if not reference.converged.all():
             if reference.collapse is None:
                 return None
             return reference
         self._kept[key] = replace(reference, problem=None)
+        # The first is the one that was used longest ago.
         if len(self._kept) > ENTRIES:
             self._kept.popitem(last=False)
         return replace(reference, problem=problem)

@@ -1,4 +1,4 @@
-"""A run in the worker process: its pieces of work when they are due, and its frames."""
+"""A run in the worker process: pieces of work, when they are due, and frames."""
 
 from __future__ import annotations
 
@@ -20,15 +20,14 @@ from solver.scenes import discretise
 from solver.scenes.method import method_of
 
 HURRY = 0.1
-"""Seconds that a run which follows a dragged slider has to end before it is shown."""
+"""Longest time for which a run that follows a dragged slider is not shown, s."""
 WHOLE_LASTS = 3.0
 FIRST = 0.25
-"""Seconds that a search takes at the pace `WHOLE`, and those before its second iterate.
-Intervals shrink by one ratio: each of the first iterates is seen, and a hundred last as
-long as thirty."""
+"""Time of a search at the pace `WHOLE`, and time before its second iterate, s.
+Intervals shrink by one ratio: the first iterates are seen one by one, and a hundred
+iterations last as long as thirty."""
 LATE = 0.1
-"""Seconds that iterations may be behind and catch up: pictures are painted in
-between."""
+"""Longest delay, s, that iterations make up for. Pictures are painted between them."""
 
 
 class Pacing:
@@ -55,10 +54,11 @@ class Pacing:
         """Count the iteration that was done."""
         self._done = number
         self._steps = max(self._steps - 1, 0)
+        # From the time when this iteration was due, so that delays do not add up.
         self._due = max(self._due, time.monotonic() - LATE) + self._interval()
 
     def rest(self) -> float | None:
-        """Seconds until the next iteration is due; None waits for an order."""
+        """Time until the next iteration is due, s; None: not before an order."""
         if self._steps:
             return 0.0
         if self._pace == 0.0:
@@ -66,6 +66,7 @@ class Pacing:
         return max(self._due - time.monotonic(), 0.0)
 
     def _interval(self) -> float:
+        """Time between two iterations, s."""
         if self._pace == WHOLE:
             return FIRST * float((1.0 - FIRST / WHOLE_LASTS) ** self._done)
         if 0.0 < self._pace < math.inf:
@@ -76,11 +77,15 @@ class Pacing:
 class Runner:
     """A run: its first iteration, the reference, then iterations as they are due.
 
-    It is `interrupted` where an order waits that ends it; where one waits that halts it
-    a status step is given up until it goes on. The problem is shown by `sampler`; it
-    has the newest `iterate`, a `history` with a record of each, and at its end a
-    `status`. `pacing` says when the next iteration is due, `has_news` whether anything
-    changed since the last frame.
+    `interrupted` says that an order waits that ends the run, and `halted` that one is
+    there that ends or halts it: a status step is then given up until the run goes on.
+    The run
+    has a `sampler` of its problem, the newest `iterate`, a `history` with a record of
+    each iterate, and at its end a `status`. `pacing` says when the next iteration is
+    due, `has_news` whether anything changed since the last frame.
+
+    A run does its first iteration, hurries on for a moment if a slider is dragged,
+    finds the reference, and goes on at the pace until its end.
     """
 
     def __init__(
@@ -92,12 +97,16 @@ class Runner:
     ) -> None:
         self.settings = settings = start.settings
         self.is_dragged = start.is_dragged
+        # What is made here counts as time of the method.
         began = time.perf_counter()
         problem = discretise(settings)
         latin = method_of(settings)
-        is_compared = has_reference(settings)
-        most = settings.max_iterations
-        self.cost: RunCost = run_cost(problem, latin, most, with_reference=is_compared)
+        self.cost: RunCost = run_cost(
+            problem,
+            latin,
+            settings.max_iterations,
+            with_reference=has_reference(settings),
+        )
         spent = time.perf_counter() - began
         self.sampler = Sampler(problem, settings, start.number)
         self.iterate: Iterate | None = None
@@ -110,7 +119,9 @@ class Runner:
         self._interrupted = interrupted
         self._is_compared = False
         self._distance: Distance | None = None
-        self._hurries_until = time.monotonic() + (HURRY if start.is_dragged else 0.0)
+        self._hurries_until = time.monotonic()
+        if start.is_dragged:
+            self._hurries_until += HURRY
 
     @property
     def hurries(self) -> bool:
@@ -123,23 +134,20 @@ class Runner:
         return self.has_news and self.iterate is not None and not self.hurries
 
     def rest(self, is_seen: bool = True) -> float | None:
-        """Seconds until the next piece of work.
-
-        None waits for an order, or to be seen.
-        """
+        """Time until the next piece of work, s; None: before an order there is none."""
+        if self.iterate is None or self.hurries:
+            return 0.0
+        # The reference of a run that follows a slider waits until its picture is seen:
+        # the slider may have moved on by then.
         is_to_be_seen = self.is_dragged and (self.has_news or not is_seen)
-        if (
-            self.iterate is None
-            or self.hurries
-            or not (self._is_compared or is_to_be_seen)
-        ):
+        if not self._is_compared and not is_to_be_seen:
             return 0.0
         if self.status is not None:
             return None
         return self.pacing.rest()
 
     def advance(self) -> None:
-        """Do one piece of work."""
+        """Do one piece of work: an iteration, or after the first one the reference."""
         if self.iterate is not None and not self._is_compared and not self.hurries:
             self._compare()
         else:
@@ -151,11 +159,13 @@ class Runner:
         return self.sampler.frame(self.iterate, self.history, self.status, needs)
 
     def _iterate(self) -> None:
+        """Do an iteration, and record it unless it diverged."""
         iterate, decision = next(self._iterates)
         self.pacing.count(iterate.number)
         self.status = decision.status
         self.has_news = True
         if self.status is not None and self.status.ending is Ending.DIVERGED:
+            # The iterate before has numbers that can be drawn.
             return
         self.iterate = iterate
         self.history.append(record(iterate, decision, self._distance))
@@ -170,6 +180,7 @@ class Runner:
         self._is_compared = self.has_news = True
         if reference is not None and reference.collapse is not None:
             self.sampler.collapse(reference.collapse)
+            # The answer of a run that has ended before its reference is there stands.
             if self.status is None or self.status.ending is not Ending.CONVERGED:
                 self.status = collapses(problem, reference.collapse)
             return

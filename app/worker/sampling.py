@@ -1,4 +1,4 @@
-"""The sampler: makes of an iterate the frame that the page is sent."""
+"""The sampler, which makes the frames of the page from iterates."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ MOST_VALUES = 100_000
 the selected one alone."""
 MOST_ITERATIONS = 1000
 """Largest number of entries of the history in a frame."""
-SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("modes", "is_answer"))
+NO_SCALARS = ("modes", "is_answer")
+SCALARS = tuple(f.name for f in fields(Record) if f.name not in NO_SCALARS)
+"""Names of the scalars of a record."""
 
 
 class Sampler:
@@ -111,6 +113,7 @@ class Sampler:
     ) -> Frame:
         """Frame of an iterate, with the extras that views in sight need."""
         needs = replace(needs, interface=self.run.interface(needs.interface))
+        # Quantities are those of a run that ended here.
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, made_loop=self.loop)
         remarks: tuple[str, ...] = ()
@@ -183,6 +186,7 @@ class Sampler:
         Shape (n_points, n_shown), or (n_points, 1) where it does not change.
         """
         highest = law.by_point(law.tangential.highest)
+        # A bound that does not change has a single column.
         if highest.shape[1] > 1:
             highest = highest[:, self.columns]
         force = highest * self.problem.scales.force
@@ -195,6 +199,7 @@ class Sampler:
         for name in names:
             nodal = shown.contact(name)
             rows = self.rows[name]
+            # Forces at nodes depend on the mesh; over their lengths they do not.
             lengths = self._lengths[name]
             pressure = None
             if nodal.normal_force is not None:
@@ -221,7 +226,8 @@ def _shown(field: Array | None, points: slice, rows: Indices) -> Floats | None:
 def _scalars(history: Sequence[Record]) -> dict[str, Floats]:
     """Scalars of the records of a history, thinned, shape (n_records,) each."""
     kept = [history[number] for number in thinned(len(history), MOST_ITERATIONS)]
-    return {
-        name: floats(np.array([getattr(record, name) for record in kept]))
-        for name in SCALARS
-    }
+    scalars = {}
+    for name in SCALARS:
+        values = [getattr(record, name) for record in kept]
+        scalars[name] = floats(np.array(values))
+    return scalars

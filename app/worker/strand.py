@@ -1,8 +1,8 @@
 """A bent strand: its wires as seen from the side, and the extras of its views.
 
-From the side one sees the wires in front of its outer layer: one looks across the plane
-of bending onto the cylinder that they share. Each has its strip of it, and half of them
-are hidden behind it at any place; the outermost fibre is below.
+The view is across the plane of bending onto the cylinder of the outer layer. Each wire
+has a strip of the cylinder, and half of the wires are hidden behind it at any position;
+the outermost fibre is below.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ from solver.latin import Iterate
 from solver.settings.scene import Settings
 
 A_TURN = 20
-FEWEST = 40
-MOST = 100
-"""Steps along the strand for each turn of an outer wire, and their number in any
-case."""
+FEWEST_STEPS = 40
+MOST_STEPS = 100
+"""Steps along the strand for each turn of an outer wire; least and largest number of
+steps."""
 SHOWN_SHARE = 0.12 * np.pi
-"""Angle from the edges of what is in front within which a wire has no line of
-contact."""
+"""Angle from the edges of the visible half within which a wire has no line of contact,
+rad."""
 
 
 class DrawnRope:
@@ -59,6 +59,7 @@ class DrawnRope:
         assert isinstance(rope, Rope)
         self._rope = rope
         self._columns = columns
+        # Only the outer layer is seen.
         description = rope.description()
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
@@ -68,7 +69,7 @@ class DrawnRope:
         self._radius = 0.5 * description.height
         self._count = sum(wire.stands_for for wire in wires)
         turns = description.length * np.tan(abs(self._lay)) / (2 * np.pi * self._helix)
-        n_steps = int(np.clip(A_TURN * turns, FEWEST, MOST))
+        n_steps = int(np.clip(A_TURN * turns, FEWEST_STEPS, MOST_STEPS))
         self._z = np.linspace(0.0, description.length, n_steps + 1)
         mesh = self._mesh()
         rows, heights, chains, self._points, self._sides = self._lines()
@@ -108,17 +109,20 @@ class DrawnRope:
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
-    def _angle(self, wire: Array, place: Array) -> Array:
-        """Polar angle of outer wires, rad, by number and position along the strand, m."""
-        turned = place * np.tan(self._lay) / self._helix
+    def _angle(self, wire: Array, position: Array) -> Array:
+        """Polar angle of outer wires, rad, at positions along the strand, m.
+
+        Numbers of the wires and positions have the shape of the result, or are scalars.
+        """
+        turned = position * np.tan(self._lay) / self._helix
         return np.asarray(2.0 * np.pi * wire / self._count + turned)
 
     def _height(self, angle: Array) -> Array:
-        """Height of outer wires above the foot, m, at polar angles, rad."""
+        """Height of outer wires above the foot, m, at polar angles, rad, same shape."""
         return np.asarray(self._radius * (1.0 - np.cos(angle)))
 
     def _strips(self) -> Iterator[tuple[int, Indices, Array]]:
-        """Number, steps and grid of nodes of each stretch of a wire in front."""
+        """Stretches of wires in front: number, steps, (n,), and nodes, (2, n, 2), m."""
         half = np.pi / self._count
         for number in range(self._count):
             middle = self._angle(number, self._z)
@@ -133,24 +137,26 @@ class DrawnRope:
                     yield number, steps, np.stack([z, heights], axis=-1)
 
     def _nearest(
-        self, numbers: Array, place: Array
+        self, numbers: Array, positions: Array
     ) -> tuple[Indices, Indices, Indices, Bytes]:
-        """Wire, contact point, node and sign of slip at places on outer wires.
+        """Wire, contact point, node and sign of slip at positions on outer wires.
 
-        Numbers of wires and places along the strand, m, have shape (n,), as all results.
+        Numbers of wires and positions along the strand, m, have shape (n,), as all
+        results.
         """
         wires = self._first + numbers
-        sides = np.ones(len(place), dtype=np.int8)
-        share = place / self._z[-1]
+        sides = np.ones(len(positions), dtype=np.int8)
+        share = positions / self._z[-1]
         if not self._rope.is_clamped:
-            turned = np.sign(self._lay) * self._angle(numbers, place)
-            wires = np.full(len(place), self._first)
+            # One wire stands for the layer: on its way back it slips the other way.
+            turned = np.sign(self._lay) * self._angle(numbers, positions)
+            wires = np.full(len(positions), self._first)
             share = np.arccos(np.cos(turned)) / np.pi
             sides = np.where(np.sin(turned) < 0.0, -1, 1).astype(np.int8)
         return wires, *self._points_at(wires, share), sides
 
     def _points_at(self, wires: Indices, share: Array) -> tuple[Indices, Indices]:
-        """Nearest contact points and nodes, (n,), at shares of the wires' lengths, (n,)."""
+        """Nearest contact points and nodes, (n,), at shares of the length, (n,)."""
         elements = self._rope.elements
         nearest = np.round(share * elements).astype(np.intp)
         node = np.clip(nearest, 1, max(elements - 1, 1))
@@ -159,20 +165,21 @@ class DrawnRope:
     def _lines(self) -> tuple[Indices, Array, Indices, Indices, Bytes]:
         """Contact points along the wires in front: steps, heights with NaN, and wires.
 
-        Further the number of the point that each has the status of, and its sign of
-        slip. All have shape (n,).
+        The last two are the number of the point whose status each shows, and the sign
+        of its slip. All have shape (n,).
         """
         numbers = np.repeat(np.arange(self._count), len(self._z))
         rows = np.tile(np.arange(len(self._z)), self._count)
         angle = np.remainder(self._angle(numbers, self._z[rows]), 2.0 * np.pi)
         is_seen = (angle >= SHOWN_SHARE) & (angle <= np.pi - SHOWN_SHARE)
         heights = np.where(is_seen, self._height(angle), np.nan)
+        # The point behind each stretch stays: its NaN ends the line.
         kept = is_seen | np.append(False, is_seen[:-1])
         wires, points, _, sides = self._nearest(numbers[kept], self._z[rows[kept]])
         return rows[kept], heights[kept], wires, points, sides
 
     def _moved(self, rows: Indices, heights: Array) -> Floats:
-        """Displacement of points at heights, (n, 2, n_instants), m.
+        """Displacement of points at heights, (n,), m: (n, 2, n_instants), m.
 
         Sections stay plane.
         """
@@ -196,6 +203,7 @@ class DrawnRope:
         slope = cumulative_trapezoid(curvature, dx=z[1], axis=0, initial=0.0)
         up = cumulative_trapezoid(slope, dx=z[1], axis=0, initial=0.0)
         if not rope.is_clamped:
+            # A strand that nothing holds is drawn level in its middle.
             middle = len(z) // 2
             up = up - up[middle] - slope[middle] * (z - z[middle])[:, None]
             slope = slope - slope[middle]
@@ -222,17 +230,18 @@ class DrawnRope:
     def _section(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         """All wires in a section at the selected position or the clamp, core first.
 
-        "place" along the strand, m; "wires", the interface of each, -1 for the core,
+        "position" along the strand, m; "wires", the interface of each, -1 for the core,
         (n,); "centres", (n, 2), and "radii", (n,), m, the outermost fibre below; mean
         "stress", Pa, and "slips", its status, (n, n_instants).
         """
         rope = self._rope
         columns = self._columns
-        place = float(np.clip(needs.place or 0.0, 0.0, rope.seen_length))
-        cut = cut_at(rope, place)
+        position = float(np.clip(needs.position or 0.0, 0.0, rope.seen_length))
+        cut = cut_at(rope, position)
         lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
         points, _ = self._points_at(cut.wire, cut.arc / lengths)
         slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
+        # The core is only stretched, and does not slip.
         core = rope.section.core
         stretched = core.young / rope.section.stiffness * rope.tension[columns]
         stress = stress_at(
@@ -240,7 +249,7 @@ class DrawnRope:
         )
         radii = [0.5 * rope.wires[number].layer_data.diameter for number in cut.wire]
         return {
-            "place": place,
+            "position": position,
             "wires": np.append(-1, cut.wire),
             "centres": floats(
                 np.concatenate([[[0.0, 0.0]], cut.centres * (1.0, -1.0)])

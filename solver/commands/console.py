@@ -6,7 +6,9 @@ import argparse
 import contextlib
 import json
 import math
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -73,6 +75,38 @@ def warn(*messages: str) -> None:
     """Print messages to stderr, one a line."""
     for message in messages:
         print(f"slipfront: {message}", file=sys.stderr, flush=True)
+
+
+@contextlib.contextmanager
+def postponed_interrupt() -> Iterator[Callable[[], bool]]:
+    """Postpone a first Ctrl-C to the end of the body, which asks whether one came.
+
+    `KeyboardInterrupt` may come between any two steps of the main thread, and leave a
+    lock of a library taken, or a process half started. A second Ctrl-C is not postponed.
+
+    Yields
+    ------
+    Whether Ctrl-C was pressed.
+    """
+    pressed = threading.Event()
+    before = signal.getsignal(signal.SIGINT)
+    is_main = threading.current_thread() is threading.main_thread()
+    # Who ignores Ctrl-C, as of "nohup", goes on to.
+    if not is_main or before is not signal.default_int_handler:
+        yield pressed.is_set
+        return
+
+    def press(*_signal: object) -> None:
+        signal.signal(signal.SIGINT, before)
+        pressed.set()
+
+    signal.signal(signal.SIGINT, press)
+    try:
+        yield pressed.is_set
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if pressed.is_set():
+        raise KeyboardInterrupt
 
 
 def print_tables(tables: Mapping[str, str]) -> None:

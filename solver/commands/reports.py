@@ -13,6 +13,7 @@ from solver.commands.console import (
     INTERRUPTED,
     add_command,
     given,
+    postponed_interrupt,
     print_files,
     print_tables,
     warn,
@@ -24,7 +25,7 @@ from solver.settings.definitions import SettingError
 from solver.study import proof, stability
 from solver.study import study_report as study
 from solver.study.measured_times import error_against_time, times_at_sizes
-from solver.study.page import aligned, head_of, line_of, write_page
+from solver.study.page import aligned, head_of, line_of
 from solver.study.paper_figures import paper_figures
 from solver.study.paper_runs import FILE, paper_runs, write_figures
 from solver.study.random_runs import random_cases
@@ -38,8 +39,7 @@ from solver.study.sweep.report import (
     growth,
     lines_of,
     rows_in,
-    sections,
-    title_of,
+    write_sweep,
 )
 from solver.study.sweep.run import patience, sweep
 from solver.study.trade_case import case_from_file
@@ -217,7 +217,7 @@ def _sweep(chosen: argparse.Namespace) -> int:
             warn(f"{end}; the same command goes on from here")
         by_number = [rows[number] for number in sorted(rows)]
         write(chosen.out / TABLE, csv_of(plan, by_number))
-        write_page(chosen.out / PAGE, title_of(plan), sections(plan, by_number))
+        write_sweep(plan, by_number, chosen.out / PAGE)
     print("\n".join([counts(plan, by_number), *growth(plan, by_number)]))
     print_files(f"{TABLE} and {PAGE}", chosen.out)
     if is_ended:
@@ -233,7 +233,10 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
     """
     known = {row.number for row in rows.values() if row.ending not in (STUCK, LOST)}
     table = chosen.out / TABLE
-    with opened(chosen.on, patience(chosen.limit)) as executor:
+    with (
+        postponed_interrupt() as is_interrupted,
+        opened(chosen.on, patience(chosen.limit)) as executor,
+    ):
         # The table is written anew, as its last line may have been cut off.
         write(table, csv_of(plan, list(rows.values())))
         runs = sweep(
@@ -242,6 +245,7 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
             done=set(known),
             limit=chosen.limit,
             warm=not chosen.cold,
+            cancelled=is_interrupted,
         )
         progress = _Progress(plan.size, len(known))
         with table.open("a", encoding="utf-8", newline="") as lines:

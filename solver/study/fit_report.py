@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +20,7 @@ from solver.study.page import (
     PanelAxis,
     PanelCurve,
     PlotSection,
-    Section,
     aligned,
-    bullets,
-    html_table,
     write_csv,
     write_page,
 )
@@ -256,14 +252,15 @@ def write_fit(fit: Fit, measured: MeasuredLoop, folder: Path) -> None:
         _distances(fit, measured),
         f"{measured.source}: {measured.message}",
     ]
-    sections: list[Section] = [
-        bullets(sentences),
-        html_table(_rows(fit)),
-        PlotSection("Loop and differences", _panels(fit, measured)),
-        f"<h2>Settings</h2>\n<pre>{escape(dump(fit.settings))}</pre>",
-    ]
-    title = f"{fit.settings.scene.capitalize()} fitted to a loop"
-    write_page(folder / PAGE, title, sections)
+    write_page(
+        folder / PAGE,
+        "fit.html",
+        [PlotSection("Loop and differences", _panels(fit, measured))],
+        title=f"{fit.settings.scene.capitalize()} fitted to a loop",
+        sentences=sentences,
+        rows=_rows(fit),
+        settings=dump(fit.settings),
+    )
 
 
 def _panels(fit: Fit, measured: MeasuredLoop) -> list[Panel]:

@@ -1,6 +1,7 @@
-"""Report of a command: sections of words, tables and charts, as one HTML page.
+"""Report of a command: words, tables and charts, as one HTML page.
 
-Words and tables are HTML. A chart is plain data: curves on a pair of axes, or a map
+Each report has a template beside this file, which extends `page.html` and takes lists
+and tables from `parts.html`. A chart is plain data: curves on a pair of axes, or a map
 over two. It is drawn by an entry point of the group `slipfront.renderers`, as the
 engine has none.
 """
@@ -13,10 +14,8 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from importlib.metadata import entry_points
 from pathlib import Path
-from string import Template
 from typing import Literal
 
 from solver.arrays import Array, Flags, Indices
@@ -179,10 +178,8 @@ class PlotSection:
     charts: Sequence[Chart]
 
 
-Section = str | PlotSection
-"""Words and tables are HTML."""
 Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
-"""Function of sections that gives the head of a page with charts, and HTML of each."""
+"""Function that draws sections: HTML for the head of a page, and of each section."""
 Shown = Mapping[str, tuple[str, int]]
 """Columns on a console: head and number of characters by name."""
 NUMBER = re.compile(r"-|-?\d[\d.e+-]*")
@@ -196,32 +193,36 @@ VERDICTS = (
     "FAILS",
 )
 """Texts of cells that have a colour."""
-PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
-def write_page(file: Path, title: str, report: Sequence[Section]) -> None:
-    """Write a report as a page that needs nothing beside it."""
-    plots = [part for part in report if isinstance(part, PlotSection)]
-    head, drawn = _drawn(plots)
-    parts = []
-    # Charts stand in the report where their sections do.
-    charts = iter(drawn)
-    for part in report:
-        if isinstance(part, str):
-            parts.append(part)
-        else:
-            parts.append(next(charts))
-    body = "\n".join(parts)
-    write(file, PAGE.substitute(title=escape(title), head=head, body=body))
+def write_page(
+    file: Path, template: str, plots: Sequence[PlotSection], **values: object
+) -> None:
+    """Write a report as a page that needs nothing beside it.
 
+    Parameters
+    ----------
+    file
+        File of the page.
+    template
+        Name of the report's template.
+    plots
+        Sections of charts: the template finds them drawn, in this order, as `charts`.
+    values
+        Further values of the template, among them the `title` of the page.
+    """
+    # Not above: jinja2 takes a tenth of a second, which most commands do without.
+    from solver.files.templates import templates_in
 
-def _drawn(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
-    """Head of a page with these charts, and HTML of each section."""
-    if plots:
-        render = renderer()
-        if render:
-            return render(plots)
-    return "", [f"<p>{escape(NO_CHARTS)}</p>"] * len(plots)
+    templates = templates_in(Path(__file__).parent)
+    templates.filters["kind"] = kind_of
+    head = ""
+    charts: Sequence[str] = []
+    render = renderer() if plots else None
+    if render is not None:
+        head, charts = render(plots)
+    page = templates.get_template(template)
+    write(file, page.render(values, head=head, charts=charts, no_charts=NO_CHARTS))
 
 
 def renderer() -> Renderer | None:
@@ -233,38 +234,13 @@ def renderer() -> Renderer | None:
     return None
 
 
-def bullets(lines: Sequence[str]) -> str:
-    """Sentences as an HTML list."""
-    entries = "\n".join(f"<li>{escape(line)}</li>" for line in lines)
-    return f"<ul>\n{entries}\n</ul>"
-
-
-def html_table(rows: Iterable[Sequence[str]]) -> str:
-    """HTML table of texts, whose first row is its head.
-
-    A row of a single entry is HTML, as wide as the table.
-    """
-    head, *rest = rows
-    lines = ["".join(f"<th>{escape(text)}</th>" for text in head)]
-    for row in rest:
-        if len(row) == 1 < len(head):
-            lines.append(f'<td class="more" colspan="{len(head)}">{row[0]}</td>')
-        else:
-            lines.append("".join(_cell(text) for text in row))
-    body = "\n".join(f"<tr>{line}</tr>" for line in lines)
-    return f"<table>\n{body}\n</table>"
-
-
-def _cell(text: str) -> str:
-    """HTML cell of a text: numbers and verdicts have classes of their own."""
-    kind = ""
+def kind_of(text: str) -> str:
+    """Classes of a table's cell by its text: of numbers, of verdicts, or none."""
     if NUMBER.fullmatch(text):
-        kind = "number"
-    elif text in VERDICTS:
-        kind = f"verdict {text}"
-    if kind:
-        return f'<td class="{kind}">{escape(text)}</td>'
-    return f"<td>{escape(text)}</td>"
+        return "number"
+    if text in VERDICTS:
+        return f"verdict {text}"
+    return ""
 
 
 def text_of(value: object, digits: int = 2) -> str:

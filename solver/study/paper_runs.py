@@ -5,7 +5,6 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 
 from solver.latin import Iterate, Solution, solve
@@ -15,7 +14,7 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study.page import Panel, PlotSection, Section, bullets, write_page
+from solver.study.page import Panel, PlotSection, write_page
 
 WORDS = tomllib.loads(
     Path(__file__).with_name("paper_figures.toml").read_text(encoding="utf-8")
@@ -23,11 +22,6 @@ WORDS = tomllib.loads(
 LOAD = (
     "The paper's load path (Fig. 2b) is lost; taken here: one period of a sine of "
     "900 N, relaxation 0.8, all else as in Table 1."
-)
-INTRODUCTION = (
-    "<p>Computed by Slipfront. The paper prints curves without numbers; each figure\n"
-    "here stands with what the paper says of it, and with the numbers that bear it "
-    "out or do not.</p>"
 )
 SAYS = {True: "Bears it out.", False: "Speaks against it."}
 FILE = "figures.html"
@@ -129,6 +123,11 @@ class PaperFigure:
         return f"Fig. {self.number}: {self.title}"
 
     @property
+    def sentences(self) -> list[str]:
+        """Findings, each with what it says of the claim."""
+        return [f"{finding.text} {SAYS[finding.holds]}" for finding in self.findings]
+
+    @property
     def verdict(self) -> str:
         """Verdict on the claim: "holds", "holds in part" or "does not hold"."""
         held = [finding.holds for finding in self.findings]
@@ -156,17 +155,6 @@ def paper_figure(
 
 def write_figures(figures: Sequence[PaperFigure], folder: Path) -> None:
     """Write the figures as `FILE` into a folder."""
-    report: list[Section] = [INTRODUCTION]
-    for figure in figures:
-        claim = (
-            f"<b>The paper's claim:</b> {escape(figure.claim)} "
-            f"<b>Here it {figure.verdict}.</b>"
-        )
-        findings = bullets(
-            [f"{finding.text} {SAYS[finding.holds]}" for finding in figure.findings]
-        )
-        caption = f'<p class="caption">{escape(figure.caption)}</p>'
-        report.append(f"<h2>{escape(figure.heading)}</h2>")
-        report.append(PlotSection(figure.heading, figure.panels))
-        report.append(f"<p>{claim}</p>\n{findings}\n{caption}")
-    write_page(folder / FILE, "The paper's figures, drawn again", report)
+    plots = [PlotSection(figure.heading, figure.panels) for figure in figures]
+    title = "The paper's figures, drawn again"
+    write_page(folder / FILE, "figures.html", plots, title=title, figures=figures)

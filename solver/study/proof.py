@@ -6,7 +6,6 @@ import json
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from html import escape
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -21,7 +20,7 @@ from solver.settings.scene import Settings
 from solver.study import known_numbers
 from solver.study.known_numbers import Answer, Number
 from solver.study.mesh import size_of
-from solver.study.page import html_table, text_of, write_csv, write_page
+from solver.study.page import text_of, write_csv, write_page
 from solver.study.quantities.finished import FinishedRun
 from solver.study.trade_case import Case, all_cases
 
@@ -55,18 +54,13 @@ NUMBERS = (
     "allowed",
 )
 """Columns of the page."""
+CASE = ("address", "case", "mesh", "source")
+"""Columns that say of which case a row is."""
 CASES = Path(__file__).with_name("known_numbers.toml")
 FILES = "proof.csv", "proof.html"
 PAGE = "http://localhost:5006/app"
 """Default address of the page, on which links of the report open runs."""
 TITLE = "Proof: what is known beside what Slipfront finds"
-WORDS = (
-    f'<p>Links open the run on a page served at <a href="{PAGE}">{PAGE}</a>.</p>\n'
-    "<p>Each row is a number that is known, and the same number of a run: by LATIN, "
-    "ended as a run on the page ends, and but for cases of the trade by the "
-    "incremental solver on the same mesh. <em>Deviation</em> is the distance of both "
-    "over the number that is known, <em>allowed</em> what the mesh leaves.</p>"
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,24 +187,31 @@ def summary(rows: Sequence[Row]) -> str:
 def write_proof(rows: Sequence[Row], folder: Path) -> None:
     """Write `FILES` into an existing folder."""
     write_csv(folder / FILES[0], list(rows[0]), [row.values() for row in rows])
-    sections = [f"{WORDS}<p>{summary(rows)}</p>"]
+    parts = {}
     for part in PARTS:
         of_part = [row for row in rows if row["part"] == part]
         if of_part:
-            sections.append(f"<h2>{part}</h2>{html_table(_table(of_part))}")
-    write_page(folder / FILES[1], TITLE, sections)
+            parts[part] = _by_case(of_part)
+    write_page(
+        folder / FILES[1],
+        "proof.html",
+        [],
+        title=TITLE,
+        page=PAGE,
+        summary=summary(rows),
+        names=NUMBERS,
+        parts=parts,
+    )
 
 
-def _table(rows: Sequence[Row]) -> list[list[str]]:
-    """Table of rows, with a line on each case before its numbers."""
+def _by_case(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Cases of rows: entries by the columns of `CASE`, and lines of texts (`rows`)."""
     digits = {"known": 6, "ours": 6}
-    lines = [list(NUMBERS)]
-    case_of = itemgetter("address", "case", "mesh", "source")
+    cases = []
     # Rows of a case follow each other.
-    for case, of_case in groupby(rows, case_of):
-        address, title, mesh, source = map(escape, case)
-        link = f'<a class="run" href="{escape(PAGE)}{address}"><b>{title}</b></a>'
-        lines.append([f"{link} · {mesh}<br><small>{source}</small>"])
+    for case, of_case in groupby(rows, itemgetter(*CASE)):
+        lines = []
         for row in of_case:
             lines.append([text_of(row[name], digits.get(name, 2)) for name in NUMBERS])
-    return lines
+        cases.append({**dict(zip(CASE, case, strict=True)), "rows": lines})
+    return cases

@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,8 +24,6 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.study.page import (
     aligned,
-    bullets,
-    html_table,
     line_of,
     text_of,
     write_csv,
@@ -409,15 +406,21 @@ def write_stability(runs: Sequence[Row], folder: Path) -> None:
     """Write `FILES` into an existing folder."""
     short = [column for column in COLUMNS if column not in LONG]
     cells = []
-    every = [[column.replace("_", " ") for column in short]]
+    shown = []
     for row in runs:
         cells.append([row[column] for column in COLUMNS])
         words = " · ".join(str(row[column]) for column in LONG if row[column])
-        every += [[text_of(row[column]) for column in short], [escape(words)]]
+        shown.append(([text_of(row[column]) for column in short], words))
     write_csv(folder / FILES[0], COLUMNS, cells)
-    sections = [
-        f"<p><b>{escape(summary(runs))}</b></p>\n{html_table(counts(runs))}\n"
-        f"{html_table(judges(runs))}\n{bullets(NOTES)}",
-        f"<h2>Every run</h2>\n{html_table(every)}",
-    ]
-    write_page(folder / FILES[1], "Stability on extreme or random runs", sections)
+    write_page(
+        folder / FILES[1],
+        "stability.html",
+        [],
+        title="Stability on extreme or random runs",
+        summary=summary(runs),
+        counts=counts(runs),
+        judges=judges(runs),
+        notes=NOTES,
+        names=[column.replace("_", " ") for column in short],
+        runs=shown,
+    )

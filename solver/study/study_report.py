@@ -25,9 +25,6 @@ from solver.study.page import (
     PanelAxis,
     PanelCurve,
     PlotSection,
-    Section,
-    bullets,
-    html_table,
     text_of,
     write_csv,
     write_page,
@@ -36,15 +33,7 @@ from solver.study.sweep.executors import machine
 
 FILES = "curves.csv", "levels.csv", "map.csv", "study.html"
 Row = list[str]
-TABLE_NOTE = (
-    "In brackets: iterations of LATIN; a star: the first. The last row is the time of "
-    "LATIN's best form over that of the incremental solver: below 1, LATIN is quicker."
-)
 CURVES = "Error against run time, set-up included"
-CAPTION = (
-    "A line is a form of LATIN, iteration by iteration; the dashed line is when the "
-    "incremental solver is done. Errors below the lower edge are drawn on it."
-)
 TIMES = "LATIN / incremental solver"
 BILLED = (
     "The time of a method is all that it takes from settings to result: "
@@ -232,17 +221,14 @@ def write_study(
     head = ["setting", "size", "instants", "latin", "incremental", "said"]
     rows = [(settings.GROWS[0], *astuple(times)) for times in measured]
     write_csv(folder / "map.csv", head, rows)
-    sizes = html_table(sizes_table(settings, measured))
-    sections: list[Section] = [
-        "<h2>Time to an error of the friction force</h2>\n"
-        f"{html_table(table(curves))}\n"
-        f"<p>{TABLE_NOTE}</p>\n"
-        f"<h2>{CURVES}</h2>",
-        PlotSection(CURVES, error_panels(curves)),
-        f"<p>{CAPTION}</p>\n"
-        "<h2>Who is first where</h2>\n"
-        f"{sizes}\n"
-        f"{bullets(notes(settings, measured))}",
-        f"<h2>How it was measured</h2>\n{bullets(conditions(settings, repeats))}",
-    ]
-    write_page(folder / FILES[-1], "Error against run time", sections)
+    write_page(
+        folder / FILES[-1],
+        "study.html",
+        [PlotSection(CURVES, error_panels(curves))],
+        title="Error against run time",
+        heading=CURVES,
+        times=table(curves),
+        sizes=sizes_table(settings, measured),
+        notes=notes(settings, measured),
+        conditions=conditions(settings, repeats),
+    )

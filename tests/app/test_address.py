@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,10 @@ from app.link import (
     LONGEST,
     Link,
     link_of,
-    place_of,
     query_of,
     read,
     show,
+    shown_by,
 )
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
@@ -86,7 +87,7 @@ def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
     state = PageState(settings_of(CASES["crate"]), case="crate")
     seen: list[str] = []
     watched = ["settings", "case", "plots"]
-    state.param.watch(lambda *events: seen.append(query_of(place_of(state))), watched)
+    state.param.watch(lambda *events: seen.append(query_of(shown_by(state))), watched)
     show(state, read("?scene=bar&peak=800.0")[0])
     assert seen == ["?scene=bar&peak=800.0"]
 
@@ -144,7 +145,7 @@ def test_what_is_too_long_is_left_out_and_said_and_stays_while_the_page_does() -
 def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     state = PageState(default_settings("bar"))
     link = Link(state, Browser())
-    before = query_of(place_of(state))
+    before = query_of(shown_by(state))
     state.change(peak=1200.0)
     state.choose_scene("rope")
     link.go("?scene=bar&peak=1200.0")
@@ -190,10 +191,10 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
     problem = runner.sampler.problem
     force = runner.iterate.contact(next(iter(problem.rubbing))).tangential_force
     density = force / law.by_point(law.weights)[:, None]
+    points = product(law.positions.tolist(), problem.instants.tolist())
     rows = [
-        f"{x!r},{t!r},{1.1 * density[i, j]!r}"
-        for i, x in enumerate(law.positions.tolist())
-        for j, t in enumerate(problem.instants.tolist())
+        f"{x!r},{t!r},{1.1 * value!r}"
+        for (x, t), value in zip(points, density.ravel(), strict=True)
     ]
     table = (
         "\n".join(["x,t,friction force", *rows])

@@ -138,7 +138,8 @@ def test_a_page_of_a_command_loads_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(page, "renderer", lambda: render)
-    write_page(tmp_path / "page.html", "Two", [PlotSection("Both", [PANEL])])
+    plots = [PlotSection("Both", [PANEL])]
+    write_page(tmp_path / "page.html", "page.html", plots, title="Two")
     text = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert "<script src" not in text
     assert 'aria-label="Both"' in text

@@ -43,9 +43,7 @@ class Document:
 
 
 class Worker:
-    """What stands for a page's supervisor:
-    whether its process is there, and its orders.
-    """
+    """Double of a page's supervisor: its process is there or not, and its orders."""
 
     def __init__(self, state: PageState) -> None:
         self.state = state

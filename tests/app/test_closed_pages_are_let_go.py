@@ -1,6 +1,4 @@
-"""Nothing of a page that was closed stays in the server:
-no state, no document, no process.
-"""
+"""A closed page leaves nothing in the server: no state, document or process."""
 
 from __future__ import annotations
 

@@ -5,6 +5,7 @@ and refuse at the control what does not hold.
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 from typing import Any
 
 import param
@@ -13,6 +14,7 @@ import pytest
 from app.controls import POINTS, Controls, SettingControl
 from app.files.opener import TableOpener
 from app.messages import Start
+from app.refusals import advice_in_titles
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
 from solver.files.saved import dump
@@ -148,6 +150,18 @@ def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words
     state = of_scene("block")
     state.change(substructures_up=state.settings.elements_up + 1)
     assert "lower Substructures up or raise Elements up" in state.refusal
+
+
+def test_advice_on_a_run_has_the_names_of_the_page_and_keeps_its_other_words() -> None:
+    advice = (
+        "Friction falls with slip. Raise max_iterations, or lower friction_ratio or "
+        "friction, or try a k_scale ten times smaller, where friction falls."
+    )
+    assert advice_in_titles(default_settings("bar"), advice) == (
+        "Friction falls with slip. Raise Most iterations, or lower Last friction over "
+        "first or Friction coefficient μ, or try a Factor on k ten times smaller, where "
+        "friction falls."
+    )
 
 
 def test_an_empty_field_is_the_default() -> None:
@@ -292,7 +306,8 @@ def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> No
 
     assert "3 points" in open_file("load.csv", "time,force\n0,0\n1,800\n2,0\n")
     assert state.settings.duration == 2.0
-    rows = "".join(f"{x},{t},{x * t}\n" for x in (0.2, 0.4) for t in (0.5, 1.0))
+    points = product((0.2, 0.4), (0.5, 1.0))
+    rows = "".join(f"{x},{t},{x * t}\n" for x, t in points)
     assert "4 points" in open_file("other.csv", f"x,t,friction force\n{rows}")
     assert state.brought is not None
     assert state.brought.source == "other.csv"

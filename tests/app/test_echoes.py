@@ -1,4 +1,4 @@
-"""What a widget was given comes back from the browser, and is no choice of anybody."""
+"""The browser's echo of a widget's value is no choice of anybody."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""One goes back and forth among the iterates that were shown,
-though not each of them was.
-"""
+"""Back and forth go among the iterates that were shown, though not each was."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Watch:
 
 
 def played(watch: Watch, pace: float, count: int, takes: float = 0.0) -> list[float]:
-    """When each of so many iterations begins, if each takes so long."""
+    """Times at which a number of iterations of a given length begin."""
     times = []
     paced = Pacing(pace)
     for done in range(1, count + 1):

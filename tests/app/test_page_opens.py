@@ -21,7 +21,7 @@ from app.state import PageState, default_settings
 
 @pytest.fixture
 def orders(monkeypatch: pytest.MonkeyPatch) -> list[Order]:
-    """What a page's worker is told."""
+    """Orders that a page's worker gets."""
     told: list[Order] = []
     worker = SimpleNamespace(send=told.append, end=lambda: None, hangs=False)
     monkeypatch.setattr(app.supervisor, "Worker", lambda on_report, others: worker)

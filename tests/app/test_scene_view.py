@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import chain
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,7 +24,8 @@ from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
 SCENES = tuple(CATALOGUE)
-NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
+KINDS = tuple(chain.from_iterable(CARDS))
+NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
 SMALL = {"elements": 24, "instants": 21}
 PHASES = np.linspace(0.0, 1.0, 7)
 

@@ -1,4 +1,4 @@
-"""What is taken away holds the numbers that are on the page."""
+"""Files that are taken away hold the numbers that are on the page."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import math
 import re
 import runpy
 from functools import cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,8 @@ from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.files.saved import dump, settings_from_toml
 
-NEEDS = frozenset(need for card in CARDS for kind in card for need in kind.needs)
+KINDS = tuple(chain.from_iterable(CARDS))
+NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
 
 SMALL: dict[str, dict[str, Any]] = {
     "bar": {"elements": 20, "instants": 21, "substructures": 4},
@@ -52,7 +54,7 @@ def page(scene: str) -> tuple[PageState, list[View]]:
     _, frame = ended(scene)
     state = PageState(frame.run.settings)
     state.newest = state.frame = frame
-    kinds = [kind for card in CARDS for kind in card if kind.applies(state.settings)]
+    kinds = [kind for kind in KINDS if kind.applies(state.settings)]
     views = [kind(state) for kind in (Scene, Timeline, *kinds)]
     for view in views:
         assert view.figure is not None

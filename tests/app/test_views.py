@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -30,8 +31,8 @@ from app.worker.runner import Runner
 from solver.settings.scene import Settings
 from solver.study.comparison import DISPLACEMENT, FRICTION, OtherResults
 
-VIEWS = [kind for card in CARDS for kind in card]
-NEEDS = frozenset(need for kind in VIEWS for need in kind.needs)
+VIEWS = list(chain.from_iterable(CARDS))
+NEEDS = frozenset(chain.from_iterable(kind.needs for kind in VIEWS))
 SMALL = {
     "bar": {"elements": 60},
     "block": {},
@@ -108,7 +109,7 @@ def view_of(kind: type[View], frame: Frame) -> View:
 
 @pytest.mark.parametrize(
     ("kind", "case"),
-    [(k, c) for k in VIEWS for c in (*SMALL, *MORE) if k.applies(settings_of(c))],
+    [(k, c) for k, c in product(VIEWS, (*SMALL, *MORE)) if k.applies(settings_of(c))],
 )
 def test_each_view_that_applies_shows_each_frame(kind: type[View], case: str) -> None:
     frames = frames_of(case)
@@ -149,12 +150,9 @@ def test_logarithmic_axes_have_positive_finite_values_only(case: str) -> None:
                 continue
             view = view_of(kind, frame)
             is_log = "Log" in type(view.figure.y_scale).__name__
-            columns = [
-                s.data.get(name, [])
-                for s in view.sources.values()
-                for name in ("y", "ys")
-            ]
-            values = [np.ravel(each) for column in columns for each in column]
+            sources = product(view.sources.values(), ("y", "ys"))
+            columns = [source.data.get(name, []) for source, name in sources]
+            values = [np.ravel(each) for each in chain.from_iterable(columns)]
             shown_values = np.concatenate([*values, np.ones(1)])
             assert not is_log or (
                 np.isfinite(shown_values).all() and (shown_values > 0.0).all()
@@ -292,7 +290,7 @@ def test_a_tap_on_the_map_selects_the_instant_and_the_place() -> None:
     tap = type("Tap", (), {"x": 0.5, "y": 0.25 * float(frame.run.instants[-1])})
     view._select(tap)
     assert view.state.selection.phase == pytest.approx(0.25)
-    assert view.state.selection.place == pytest.approx(0.5)
+    assert view.state.selection.position == pytest.approx(0.5)
 
 
 def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:

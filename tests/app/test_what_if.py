@@ -1,6 +1,4 @@
-"""What if: runs reach the chart as they come. Reports:
-commands are run in turn, and read.
-"""
+"""Runs of What if reach the chart as they come; Reports run commands in turn."""
 
 from __future__ import annotations
 
@@ -89,7 +87,8 @@ def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
     first.values.value = "500 mm, 1, 2"
     assert made.question.vary[0] == "length=0.5,1,2"
     first.values.value = "1, long"
-    assert "number" in made.message.object
+    refusal = "Values, m cannot be “1, long”: write a number in m."
+    assert made.message.object == refusal
     for wrong in ("-1, 2", "1:2", "1:2:x"):
         first.values.value = wrong
         assert "cannot be" in made.message.object
@@ -167,7 +166,7 @@ def test_pages_share_the_processes_of_a_server(
 
 @pytest.fixture
 def no_queue() -> Iterator[None]:
-    """Nothing else waits for its turn, and nothing is left running."""
+    """No other run waits for its turn, and no process is left running."""
     jobs.executor.cache_clear()
     yield
     jobs.executor().shutdown(cancel_futures=True)
@@ -215,7 +214,7 @@ class Done:
         }
 
     def close(self) -> None:
-        """Nothing is left."""
+        """No process is left."""
 
 
 @pytest.fixture

@@ -109,8 +109,9 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
         for _ in range(REPEATS)
     ]
     mine, other, own, known = map(statistics.median, zip(*samples, strict=True))
+    assignments = [f"{name}={value:g}" for name, value in changes.items()]
     return [
-        " ".join([scene, *(f"{name}={value:g}" for name, value in changes.items())]),
+        " ".join([scene, *assignments]),
         *(f"{mine:.2g}", f"{other:.2g}", f"{mine / other:.2g}", str(number), found_at),
         f"{own_at} in {own:.2g}" if own_at else "-",
         f"{known_at} in {known:.2g} {known_by}" if known_at else "-",
@@ -118,9 +119,7 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
 
 
 def _course(settings: Settings) -> tuple[bool, int, int, str]:
-    """When LATIN's own way is within the goal,
-    and when and by what it is known; 0 for never.
-    """
+    """Iterations until LATIN's own way is at the goal, and until it is known, or 0."""
     problem = discretise(settings)
     try:
         distance = distance_to(reference_of(problem), problem)
@@ -172,9 +171,11 @@ def main() -> None:
         groups = [chosen.group]
     else:
         groups = list(PROBLEMS)
-    problems = [one for group in groups for one in PROBLEMS[group]]
-    if chosen.large:
-        problems += [one for group in groups for one in LARGE.get(group, [])]
+    problems = []
+    for group in groups:
+        problems += PROBLEMS[group]
+        if chosen.large:
+            problems += LARGE.get(group, [])
     os.environ.update(ONE_THREAD)
     print(machine())
     options: dict[str, Any] = {

@@ -46,9 +46,7 @@ class BlockFields(NamedTuple):
 
 @cache
 def interpreter() -> str | None:
-    """This interpreter, or that of the system,
-    of which its package mostly is; None without it.
-    """
+    """Python that has GetFEM: this one, or that of the system; None without either."""
     for python in (sys.executable, shutil.which("python3", path=os.defpath)):
         if python is not None:
             try:

@@ -1,5 +1,4 @@
-"""How small a rank the argument of a clip has in the plane, where the bound is mu N(x,
-t) as it is.
+"""Rank of the argument of a clip in the plane, where the bound is mu N(x, t).
 
 A matrix of low rank is sought that is the friction where a point sticks, and beyond the
 bound where it slips: clipped at the bound it is the friction. Both factors are found at

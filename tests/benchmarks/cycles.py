@@ -1,5 +1,4 @@
-"""What many cycles of a load cost: LATIN and LATIN-PGD, at once and in slabs of a
-cycle.
+"""Cost of many cycles of a load: LATIN and LATIN-PGD, at once and in slabs.
 
 `python tests/benchmarks/cycles.py`, of one problem `cycles.py strand`; `--large` up to
 100 cycles. Iterations to 1 % of the contact force are counted without the clock, then
@@ -167,7 +166,8 @@ def _course(
     counts = []
     while slab is not None:
         fields = (reference.displacement, reference.contact_force)
-        part = AtInstants(*(field[:, slab.instants] for field in fields))
+        inside = [field[:, slab.instants] for field in fields]
+        part = AtInstants(*inside)
         distance = distance_to(part, slab.problem)
         way_there = iterations(slab.problem, slab.latin, slab.start)
         for iterate in islice(way_there, MOST):
@@ -242,7 +242,8 @@ def main() -> None:
     print(machine())
     for name in [chosen.problem] if chosen.problem else PROBLEMS:
         scene, changes, most = PROBLEMS[name]
-        print("", scene, *(f"{key}={value}" for key, value in changes.items()))
+        assignments = [f"{key}={value}" for key, value in changes.items()]
+        print("", scene, *assignments)
         ways = list(WAYS)
         for cycles in MANY if chosen.large else FEW:
             if cycles <= most:

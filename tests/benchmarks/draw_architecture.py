@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from graphlib import TopologicalSorter
 from html import escape
+from itertools import chain
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -83,9 +84,10 @@ def reached_by(graph: Mapping[str, set[str]]) -> Graph:
     while grows:
         grows = False
         for node, others in graph.items():
-            more = set().union(*(reached[other] for other in others)) - reached[node]
-            reached[node] |= more
-            grows = grows or bool(more)
+            sizes = len(reached[node])
+            for other in others:
+                reached[node] |= reached[other]
+            grows = grows or len(reached[node]) > sizes
     return reached
 
 
@@ -118,11 +120,8 @@ def boxes_of(root: Path, floors: Mapping[str, int]) -> list[list[Box]]:
     for floor in range(max(floors.values()) + 1):
         boxes = []
         for package in PACKAGES:
-            here = [
-                node
-                for node in sorted(floors)
-                if floors[node] == floor and node.startswith(f"{package}.")
-            ]
+            level = [node for node in sorted(floors) if floors[node] == floor]
+            here = [node for node in level if node.startswith(f"{package}.")]
             rooms = [node for node in here if folder_of(root, node).is_dir()]
             lone = [node for node in here if node not in rooms]
             boxes.extend(room(root, package, node) for node in rooms)
@@ -146,13 +145,13 @@ def room(root: Path, package: str, node: str) -> Box:
 
 
 def arrows_of(boxes: list[list[Box]], graph: Graph) -> list[tuple[Box, Box]]:
-    """Which box imports which below it, without what follows by detours."""
-    every = [box for floor in boxes for box in floor]
+    """Pairs of boxes of which one imports the other, without those by detours."""
+    every = list(chain.from_iterable(boxes))
     below: dict[Box, set[Box]] = {}
     lower: list[Box] = []
     for floor in boxes:
         for box in floor:
-            used = set().union(*(graph[part] for part in box.parts))
+            used = set(chain.from_iterable(graph[part] for part in box.parts))
             below[box] = {other for other in lower if used & other.parts}
         lower += floor
     reached: dict[Box, set[Box]] = {}

@@ -1,4 +1,4 @@
-"""How often what made a loop is within two standard errors of what a fit calls known.
+"""Share of fits whose margins of two standard errors hold the values behind a loop.
 
     python tests/benchmarks/fit_coverage.py 40            seeds 0 to 39 of all kinds
     python tests/benchmarks/fit_coverage.py 40 20 young   20 to 39 of kinds with young
@@ -102,9 +102,7 @@ def made_loop(names: tuple[str, ...], seed: int) -> MadeLoop:
 
 
 def judge(found: Fit, true: dict[str, float]) -> tuple[list[bool], list[bool]]:
-    """Whether what made a loop is within the margins:
-    of known settings, and of products.
-    """
+    """Check whether true values are in the margins: settings alone, and products."""
     values = np.array(list(true.values()))
     is_known = np.isfinite(found.errors)
     is_within = (found.lower <= values) & (values <= found.upper)

@@ -121,12 +121,12 @@ def _touching(model: Any, displaced: Any, lowest: Any, friction: float) -> None:
 
 def _work(elastic: Sequence[Sequence[float]], u: str, a: str) -> str:
     """Write the work of the stresses of a displacement with its bending modes."""
-    return "+".join(
-        f"({value!r})*{strain}*{test}"
-        for line, test in zip(elastic, _strains("Test_u", "Test_a"), strict=True)
-        for value, strain in zip(line, _strains(u, a), strict=True)
-        if value
-    )
+    terms = []
+    for line, test in zip(elastic, _strains("Test_u", "Test_a"), strict=True):
+        for value, strain in zip(line, _strains(u, a), strict=True):
+            if value:
+                terms.append(f"({value!r})*{strain}*{test}")
+    return "+".join(terms)
 
 
 def _strains(u: str, a: str) -> tuple[str, str, str]:

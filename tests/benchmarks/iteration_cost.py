@@ -1,12 +1,10 @@
-"""What one iteration costs: by stage, and against the arithmetic that it cannot do
-without.
+"""Cost of an iteration by stage, beside the arithmetic that it cannot do without.
 
 `python tests/benchmarks/iteration_cost.py`, `iteration_cost.py 3` with medians of three
 """
 
 from __future__ import annotations
 
-import statistics
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -161,7 +159,7 @@ OVERHEADS: tuple[tuple[str, dict[str, object]], ...] = (
 
 @dataclass(frozen=True)
 class Overhead:
-    """What a run pays beside both stages, as shares of an iteration's own work.
+    """Cost of a run beside both stages, as shares of an iteration's own work.
 
     Attributes
     ----------
@@ -212,13 +210,10 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
             rules.judge(iterate)
 
     ways: list[Callable[[], object]] = [bare, kept, judged_without_step]
-    times = zip(*samples_of(ways, repeats), strict=True)
-    own, snapshot, stop = (
-        statistics.median(found)
-        for found in zip(
-            *((a, (b - a) / a, (c - b) / a) for a, b, c in times), strict=True
-        )
-    )
+    alone, watched, whole = np.array(samples_of(ways, repeats))
+    own = float(np.median(alone))
+    snapshot = float(np.median((watched - alone) / alone))
+    stop = float(np.median((whole - watched) / alone))
     return Overhead(own / number, snapshot, stop)
 
 

@@ -133,7 +133,7 @@ def _friction(page: Page) -> Locator:
 
 
 def pictures_a_second(page: Page) -> float:
-    """How many pictures are painted in a second."""
+    """Number of pictures that are painted in a second."""
     before = page.evaluate(f"{PULSE}.painted")
     began = time.perf_counter()
     page.wait_for_timeout(1e3 * SECONDS)

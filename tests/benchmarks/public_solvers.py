@@ -70,18 +70,18 @@ class Public:
 
     @property
     def installed(self) -> bool:
-        """Whether it can be imported."""
+        """Check whether the package can be imported."""
         return importlib.util.find_spec(self.module) is not None
 
     @property
     def version(self) -> str:
-        """Which one is installed."""
+        """Installed version of the package."""
         return version(self.module)
 
 
 @dataclass(frozen=True, eq=False)
 class PublicFields:
-    """What a solver found, SI.
+    """Fields that a solver found, SI.
 
     Attributes
     ----------
@@ -104,17 +104,18 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
         Where the solver gives up, or takes longer than `TIME_LIMIT`.
     """
     start = time.perf_counter()
-    bound = np.zeros((problem.n_dofs, problem.n_instants))
-    for law in problem.rubbing.values():
-        np.add.at(bound, problem.row_dofs[law.tangent.above], law.tangential.bound)
+    bound = _bound_of(problem)
     fixed, prescribed = problem.prescribed
     free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
     stiffness = assembled_stiffness(problem)
     force = external_force(problem)
     unit = float(bound[free].max(initial=0.0)) or float(np.abs(force).max()) or 1.0
-    reach = bound[free] / unit
-    never = np.asarray(~reach.any(axis=1))
-    solve = public.prepare(sparse.csc_array(stiffness[free][:, free]), never, tolerance)
+    largest = bound[free] / unit
+    solve = public.prepare(
+        sparse.csc_array(stiffness[free][:, free]),
+        np.asarray(~largest.any(axis=1)),
+        tolerance,
+    )
     displacement = space_time(problem.n_dofs, problem.n_instants)
     pull = space_time(problem.n_dofs, problem.n_instants)
     before = np.zeros(problem.n_dofs)
@@ -123,9 +124,8 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
         after[fixed] = prescribed[:, instant]
         left = (force[:, instant] - stiffness @ after)[free] / unit
         try:
-            after[free] += (
-                solve(left - reach[:, instant], left + reach[:, instant]) * unit
-            )
+            friction = largest[:, instant]
+            after[free] += solve(left - friction, left + friction) * unit
         except PeerError as trouble:
             raise PeerError(f"gave up at instant {instant + 1}: {trouble}") from None
         pull[:, instant] = force[:, instant] - stiffness @ after
@@ -135,10 +135,18 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
         before = after
         if time.perf_counter() - start > TIME_LIMIT:
             raise PeerError(f"stopped after {TIME_LIMIT:g} s, at instant {instant + 1}")
-    friction = -pull[points_dofs(problem)]
     return PublicFields(
-        displacement * problem.scales.displacement, friction * problem.scales.force
+        displacement * problem.scales.displacement,
+        -pull[points_dofs(problem)] * problem.scales.force,
     )
+
+
+def _bound_of(problem: Problem) -> Array:
+    """Largest friction force of every degree of freedom, (n_dofs, n_instants), scaled."""
+    bound = np.zeros((problem.n_dofs, problem.n_instants))
+    for law in problem.rubbing.values():
+        np.add.at(bound, problem.row_dofs[law.tangent.above], law.tangential.bound)
+    return bound
 
 
 def _piqp(

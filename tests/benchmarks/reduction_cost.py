@@ -1,6 +1,4 @@
-"""What the linear stage costs on separated bases,
-against the full one, by size and modes.
-"""
+"""Cost of the linear stage on separated bases, against the full one, by size."""
 
 from __future__ import annotations
 
@@ -265,10 +263,8 @@ def print_reduction_cost(repeats: int) -> None:
         "multiscale"
     )
     print("in brackets: with a pair added and one dropped in every substructure")
-    print(
-        f"{'operator':<11} {'rows x instants':>15} {'full':>9}",
-        *(f"{n:>15}" for n in MODES),
-    )
+    heads = [f"{n:>15}" for n in MODES]
+    print(f"{'operator':<11} {'rows x instants':>15} {'full':>9}", *heads)
     for nodes, instants in BARS:
         bar = BarSettings.checked(
             {
@@ -289,11 +285,13 @@ def print_reduction_cost(repeats: int) -> None:
         "of the"
     )
     print(f"displacement from the full form's, iteration {LAST}")
-    print(f"{'nodes x instants':>17}", *(f"{form:>17}" for form in FORMS))
+    heads = [f"{form:>17}" for form in FORMS]
+    print(f"{'nodes x instants':>17}", *heads)
     for nodes, instants in WHOLE:
         found = whole_iterations(nodes, instants, min(repeats, 3))
-        cells = (f"{1e3 * time:8.2f} ({far:.1e})" for time, far in found.values())
-        print(f"{nodes:>8} x {instants:<6}", *(f"{cell:>17}" for cell in cells))
+        texts = [f"{1e3 * time:8.2f} ({far:.1e})" for time, far in found.values()]
+        cells = [f"{text:>17}" for text in texts]
+        print(f"{nodes:>8} x {instants:<6}", *cells)
 
 
 def _print(cost: ReductionCost) -> None:
@@ -303,10 +301,11 @@ def _print(cost: ReductionCost) -> None:
         else "-"
         for size in MODES
     ]
+    aligned = [f"{cell:>15}" for cell in cells]
     print(
         f"{cost.operator:<11} {cost.points:>6} x {cost.instants:<6} "
         f"{1e3 * cost.full:9.3f}",
-        *(f"{cell:>15}" for cell in cells),
+        *aligned,
         f" pays up to {cost.pays_up_to} modes",
     )
     values = " ".join(

@@ -32,7 +32,7 @@ load."""
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What an incremental solver finds.
+    """Result of an incremental solver.
 
     Attributes
     ----------

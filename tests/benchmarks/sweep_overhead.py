@@ -1,4 +1,4 @@
-"""What a sweep takes besides its runs."""
+"""Time of a sweep besides its runs."""
 
 from __future__ import annotations
 

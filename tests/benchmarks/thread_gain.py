@@ -1,6 +1,4 @@
-"""What threads gain: the same iterations of a block by
-one thread and by several, in turn.
-"""
+"""Gain by threads: iterations of a block by one thread and by several, in turn."""
 
 from __future__ import annotations
 

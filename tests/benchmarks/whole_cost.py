@@ -1,4 +1,4 @@
-"""What whole runs take beside what `solver.latin.end.cost` expects of them.
+"""Cost of whole runs, beside the estimate of `solver.latin.end.cost`.
 
 `python tests/benchmarks/whole_cost.py`
 """
@@ -21,8 +21,9 @@ from solver.settings.scene import Settings
 from solver.study.quantities.finished import finished_run, settle
 from solver.study.sweep.executors import ONE_THREAD, machine
 
-SIZES: tuple[tuple[str, dict[str, Any]], ...] = (
-    *((scene, {}) for scene in CATALOGUE),
+BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [(scene, {}) for scene in CATALOGUE]
+SIZES = (
+    *BY_DEFAULT,
     ("bar", {"elements": 3200, "instants": 401}),
     ("strand", {"wires": 20}),
     ("block", {"elements": 192, "elements_up": 96}),
@@ -40,11 +41,11 @@ def print_whole_cost() -> None:
     print(f"{'run':<40} {'s':>13} {'MB':>13} {'reference, s':>13}")
     for scene, changes in SIZES:
         settings = CATALOGUE[scene].checked(changes)
-        label = " ".join(
-            [scene, *(f"{name}={value}" for name, value in changes.items())]
-        )
+        assignments = [f"{name}={value}" for name, value in changes.items()]
+        label = " ".join([scene, *assignments])
         pairs = zip(expected(settings), measured(settings), strict=True)
-        print(f"{label:<40}", *(f"{one:>6.2g} {other:>6.2g}" for one, other in pairs))
+        cells = [f"{estimate:>6.2g} {size:>6.2g}" for estimate, size in pairs]
+        print(f"{label:<40}", *cells)
 
 
 def expected(settings: Settings) -> tuple[float, float, float]:

@@ -171,7 +171,7 @@ def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(
     assert json.loads(capsys.readouterr().out)["error_force"] is None
     monkeypatch.setattr("solver.reference.contact.MOST_JUMPS", 100)
     many = ["wires=5", "elements=50", "instants=2", "max_iterations=1"]
-    changes = [text for assignment in many for text in ("--set", assignment)]
+    changes = [f"--set={assignment}" for assignment in many]
     assert main(["run", "strand", *changes, "--json"]) == 1
     printed = capsys.readouterr()
     assert json.loads(printed.out)["error_force"] is None
@@ -282,7 +282,7 @@ def test_a_command_that_does_not_exist_exits_2(arguments, capsys):
     ],
 )
 def test_what_a_run_does_not_heed_is_said(capsys, assignments, words):
-    changes = [text for assignment in assignments for text in ("--set", assignment)]
+    changes = [f"--set={assignment}" for assignment in assignments]
     main(["run", "bar", *SMALL, "--set", "max_iterations=2", *changes])
     printed = capsys.readouterr()
     assert words in printed.err

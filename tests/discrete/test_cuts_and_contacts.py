@@ -5,6 +5,7 @@ contacts alike are one; driven points obey their law.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -241,7 +242,8 @@ def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
     cut = CutStack(pressed((3, 2), bodies=2))
     areas = [part.rectangle.columns * part.rectangle.rows for part in cut.parts]
     assert sum(areas) == 2 * 6 * 4
-    rows = np.concatenate([r.ravel() for part in cut.parts for r in part.rows.values()])
+    sides = chain.from_iterable(part.rows.values() for part in cut.parts)
+    rows = np.concatenate([rows.ravel() for rows in sides])
     assert np.array_equal(np.sort(rows), np.arange(len(rows)))
     lengths: dict[str, float] = {}
     for joint, (_, length) in cut.pairs.items():

@@ -241,18 +241,17 @@ def test_a_block_balances_whatever_is_at_its_sides(
     generator = np.random.default_rng(seed)
     sizes = generator.uniform(-1.0, 1.0, 8)
     sides = {"left": left, "right": right, "top": top}
-    given_there = {
-        f"{side}_{name}": value
-        for side in sides
-        for name, value in {
-            "normal_displacement": -1e-5 * abs(sizes[0]),
-            "tangential_displacement": 2e-5 * sizes[1],
-            "normal_traction": -1e6 * abs(sizes[2]),
-            "tangential_traction": 1e6 * sizes[3],
-            "normal_slope": sizes[4],
-            "normal_load": "sine",
-        }.items()
+    on_a_side = {
+        "normal_displacement": -1e-5 * abs(sizes[0]),
+        "tangential_displacement": 2e-5 * sizes[1],
+        "normal_traction": -1e6 * abs(sizes[2]),
+        "tangential_traction": 1e6 * sizes[3],
+        "normal_slope": sizes[4],
+        "normal_load": "sine",
     }
+    given_there: dict[str, Any] = {}
+    for side in sides:
+        given_there |= {f"{side}_{name}": value for name, value in on_a_side.items()}
     settings = CATALOGUE["block"].checked(
         sides
         | given_there

@@ -120,10 +120,9 @@ STEPS = 8
 def cycles(size):
     """Two cycles of a path, at rest until 0.2 s, over 1 s."""
     times = np.linspace(0.2, 1.0, len(TURNS))
-    return [
-        [0.0, 0.0],
-        *([float(t), size * turn] for t, turn in zip(times, TURNS, strict=True)),
-    ]
+    points = zip(times.tolist(), TURNS, strict=True)
+    turns = [[time, size * turn] for time, turn in points]
+    return [[0.0, 0.0], *turns]
 
 
 def at_once(size):

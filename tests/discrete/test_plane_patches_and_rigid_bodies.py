@@ -29,10 +29,15 @@ PATCH = {
     "violation": 1e-10,
 }
 SHEARED = {
-    f"{side}_tangential_{name}": value
-    for side, sign in (("left", -1.0), ("right", 1.0), ("top", 1.0))
-    for name, value in (("traction", sign * SHEAR), ("load", "hold"))
-} | {"left": "traction", "right": "traction"}
+    "left": "traction",
+    "right": "traction",
+    "left_tangential_traction": -SHEAR,
+    "left_tangential_load": "hold",
+    "right_tangential_traction": SHEAR,
+    "right_tangential_load": "hold",
+    "top_tangential_traction": SHEAR,
+    "top_tangential_load": "hold",
+}
 
 
 def cut(decomposition):

@@ -138,9 +138,7 @@ def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiff
 
 @pytest.mark.parametrize("method", ["paper", "fast"])
 def test_the_iteration_itself_does_not_see_how_soft_the_spring_is(method):
-    """What the body's own deformation takes is all:
-    a shift of the whole body takes nothing.
-    """
+    """A shift of the whole body takes no iterations: its own deformation takes all."""
     own = {**SMALL, "young": STEEL, "method": method, "finish": "none"}
     soft, steel, hard = (
         errors(InclineSettings.checked({**own, "spring": spring}), 100)

@@ -1,4 +1,4 @@
-"""Who follows `solver/EXTENDING.md` to the letter has what it promises."""
+"""Steps of `solver/EXTENDING.md`, followed to the letter, have what it promises."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""One loop, as testing machines,
-spreadsheets and programs write it, is read as that loop.
-"""
+"""A loop is read as that loop, as rigs, spreadsheets or programs write it."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -46,12 +47,10 @@ def results(text: str, source: str, settings: Settings) -> OtherResults:
 
 def table(quantity: str, x: Any, t: Any, values: Any) -> str:
     """Write a field, (n_points, n_instants), as another program would."""
+    points = product(np.asarray(x).tolist(), np.asarray(t).tolist())
     rows = [
         f"{place!r},{time!r},{value!r}"
-        for place, line in zip(
-            np.asarray(x).tolist(), np.asarray(values).tolist(), strict=True
-        )
-        for time, value in zip(np.asarray(t).tolist(), line, strict=True)
+        for (place, time), value in zip(points, np.ravel(values).tolist(), strict=True)
     ]
     return "\n".join([f"x,t,{quantity}", *rows])
 
@@ -85,9 +84,7 @@ def test_our_own_friction_times_a_factor_is_as_far_as_the_factor_says(
 
 
 def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
-    """It is given at places that are no nodes,
-    and at instants that are not those of the run.
-    """
+    """Results are given at places that are no nodes, and at other instants."""
     rng = np.random.default_rng(1)
     distances = []
     for elements in (20, 40, 80):
@@ -190,5 +187,6 @@ def test_the_command_refuses_in_words(
 ) -> None:
     path = tmp_path / "theirs.csv"
     path.write_text(HEAD + ROWS)
-    assert main(["compare", "bar", *(one.format(path) for one in options)]) == 2
+    command = ["compare", "bar"] + [option.format(path) for option in options]
+    assert main(command) == 2
     assert why in capsys.readouterr().err

@@ -62,7 +62,7 @@ class Written:
 
 @dataclass(frozen=True)
 class Dialect:
-    """How somebody writes numbers, and what beside them."""
+    """Way in which somebody writes numbers, and the remark beside them."""
 
     decimal: str
     thousands: str
@@ -99,6 +99,58 @@ def dialects(draw: st.DrawFn, separator: str) -> Dialect:
 
 
 @st.composite
+def heads(
+    draw: st.DrawFn, order: list[str], separator: str
+) -> tuple[list[list[str]], tuple[str, str]]:
+    """Draw the rows of words over the columns, and the units of time and force."""
+    forces = ["force", "Kraft", "F", "load", "Last", "Standardkraft"]
+    names = {
+        "time": draw(st.sampled_from(["time", "Zeit", "t", "Prüfzeit", "TIME"])),
+        "force": draw(st.sampled_from(forces)),
+        "extra": draw(st.sampled_from(["Weg", "displacement", "Kanal"])),
+    }
+    units = {
+        "time": draw(st.sampled_from(list(TIMES))),
+        "force": draw(st.sampled_from([*FORCES])),
+        "extra": "mm",
+    }
+    styles = STYLES
+    if separator == " ":
+        styles = [style for style in STYLES if " " not in style]
+    style = draw(st.sampled_from(styles))
+    if style == "row":
+        rows = [[names[key] for key in order], [units[key] for key in order]]
+    else:
+        rows = [[style.format(names[key], units[key]) for key in order]]
+    return rows, (units["time"], units["force"])
+
+
+def joined(cells: list[str], separator: str) -> str:
+    """Cells in a line; those that have the separator in them stand in quotes."""
+    quoted = [f'"{cell}"' if separator in cell else cell for cell in cells]
+    return separator.join(quoted)
+
+
+@st.composite
+def tables(
+    draw: st.DrawFn, values: np.ndarray, above: list[list[str]], separator: str
+) -> list[str]:
+    """Draw the lines of a table of values, (n_rows, n_columns), below its heads."""
+    dialect = draw(dialects(separator))
+    rows = [[dialect.write(cell) for cell in row] for row in values.tolist()]
+    # Rows that lack a number are left out, and pages begin with the head again.
+    gap = draw(st.sampled_from(["", "NaN", "n/a", "-"]))
+    if gap:
+        rows.insert(1, [gap] * len(rows[0]))
+    page = draw(st.sampled_from([[], above]))
+    ends = draw(st.sampled_from(["", separator]))
+    filled = [*above, *rows[:-1], *page, rows[-1]]
+    lines = [joined(row, separator) + ends for row in filled]
+    lines[-1] += dialect.remark
+    return lines
+
+
+@st.composite
 def files(draw: st.DrawFn) -> Written:
     """Draw points, and a file of them as somebody might write it."""
     count = draw(st.integers(2, 8))
@@ -109,61 +161,31 @@ def files(draw: st.DrawFn) -> Written:
         "force": np.array(forces),
         "extra": np.arange(count) * 0.5,
     }
-    units = {
-        "time": draw(st.sampled_from(list(TIMES))),
-        "force": draw(st.sampled_from([*FORCES])),
-    }
-    names = {
-        "time": draw(st.sampled_from(["time", "Zeit", "t", "Prüfzeit", "TIME"])),
-        "force": draw(
-            st.sampled_from(["force", "Kraft", "F", "load", "Last", "Standardkraft"])
-        ),
-        "extra": draw(st.sampled_from(["Weg", "displacement", "Kanal"])),
-    }
-    order = draw(
-        st.permutations(["time", "force", *draw(st.sampled_from([[], ["extra"]]))])
-    )
+    others = draw(st.sampled_from([[], ["extra"]]))
+    order = draw(st.permutations(["time", "force", *others]))
     separator = BETWEEN[draw(st.sampled_from(list(BETWEEN)))]
-    style = draw(
-        st.sampled_from([s for s in STYLES if separator != " " or " " not in s])
+    above, units = draw(heads(order, separator))
+    values = np.stack([columns[key] for key in order], axis=1)
+    lines = draw(tables(values, above, separator))
+    return Written(
+        data=draw(encoded(lines)),
+        points=np.array(
+            [columns["time"] * TIMES[units[0]], columns["force"] * FORCES[units[1]]]
+        ).T,
+        units=units,
     )
-    dialect = draw(dialects(separator))
-    units["extra"] = "mm"
-    heads = [
-        names[key] if style == "row" else style.format(names[key], units[key])
-        for key in order
-    ]
-    names_and_units = [heads] + (
-        [[units[key] for key in order]] if style == "row" else []
-    )
-    rows = [
-        [dialect.write(cell) for cell in row]
-        for row in zip(*(columns[key].tolist() for key in order), strict=True)
-    ]
-    # Rows that lack a number are left out, and pages begin with the head again.
-    gap = draw(st.sampled_from([[], ["NaN"], ["n/a"], ["-"]]))
-    rows[1:1] = [gap * len(order)] * bool(gap)
-    page = draw(st.sampled_from([[], names_and_units]))
-    ends = draw(st.sampled_from(["", separator]))
-    lines = [
-        separator.join(f'"{cell}"' if separator in cell else cell for cell in row)
-        + ends
-        for row in [*names_and_units, *rows[:-1], *page, rows[-1]]
-    ]
-    lines[-1] += dialect.remark
-    above = draw(
-        st.lists(
-            st.sampled_from(["Rate (Hz),100", "Prüfung 3", "", "# 7 N"]), max_size=2
-        )
-    )
+
+
+@st.composite
+def encoded(draw: st.DrawFn, lines: list[str]) -> bytes:
+    """Draw what stands above the lines, their ends, and the bytes of it all."""
+    remarks = st.sampled_from(["Rate (Hz),100", "Prüfung 3", "", "# 7 N"])
+    above = draw(st.lists(remarks, max_size=2))
     text = draw(st.sampled_from(["\n", "\r\n"])).join([*above, *lines, ""])
     encodings = ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "cp1252"]
     if {"\u202f", "\N{MINUS SIGN}"} & set(text):
         encodings.remove("cp1252")
-    encoding = draw(st.sampled_from(encodings))
-    sizes = TIMES[units["time"]], FORCES[units["force"]]
-    points = np.array([columns["time"] * sizes[0], columns["force"] * sizes[1]]).T
-    return Written(text.encode(encoding), points, (units["time"], units["force"]))
+    return text.encode(draw(st.sampled_from(encodings)))
 
 
 def read(

@@ -149,7 +149,7 @@ class Server:
 
     @property
     def log(self) -> str:
-        """What it has printed."""
+        """Text that the process has printed."""
         return self._log.read_text()
 
     def processes(self) -> list[int]:

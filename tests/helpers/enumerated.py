@@ -1,6 +1,4 @@
-"""All equilibria of one instant of a short rod,
-by trying every status of every point.
-"""
+"""All equilibria of one instant of a short rod, by trying every status."""
 
 from __future__ import annotations
 
@@ -15,8 +13,7 @@ ROUNDING = 1e-9
 
 
 def numbers_of_equilibria(solution):
-    """How many equilibria each instant has after the instants before it, as they were
-    solved.
+    """Number of equilibria of each instant, after the instants before it as solved.
 
     Of a rod on a support with friction that changes with slip. What is singular is left
     out: there a rod may lie anywhere.
@@ -40,51 +37,84 @@ def equilibria(problem, instant, before, accumulated_slip):
     strength: for each choice of all points the problem is linear, and its solution
     shows whether the choice was right. All choices are solved side by side.
     """
-    rules = rules_of(problem)
-    dofs = points_dofs(problem)
-    strength = rules.strength
-    fixed, prescribed = problem.prescribed
-    bound = np.zeros(problem.n_dofs)
-    bound[dofs] = rules.bound_at(instant)
-    stiffness = assembled_stiffness(problem).toarray()
-    force = external_force(problem)[:, instant] - stiffness @ before
-    rubbing = np.array([dof for dof in dofs if dof not in fixed and bound[dof] > 0.0])
-    pieces = range(len(strength.slips))
-    each = [(0, 0), *product((-1, 1), pieces)]
-    choices = np.array(list(product(each, repeat=len(rubbing))))
-    way = choices[..., 0]
-    piece = choices[..., 1]
-    slopes = strength.slopes
-    ends = np.append(strength.slips[1:], np.inf)
-    starts = np.array(strength.slips)
-    factors = np.array(strength.factors)
-    # The bound at the end of a slip is linear in it: what is left without slip, and the
-    # slope.
-    left = bound[rubbing] * (
-        factors[piece] + slopes[piece] * (accumulated_slip[rubbing] - starts[piece])
-    )
-    slope = np.abs(way) * bound[rubbing] * slopes[piece]
-    matrices = np.tile(stiffness, (len(choices), 1, 1))
-    rights = np.tile(force, (len(choices), 1))
-    matrices[:, rubbing, rubbing] += slope
-    rights[:, rubbing] -= way * left
-    held = np.zeros((len(choices), problem.n_dofs), dtype=bool)
-    held[:, rubbing] = way == 0
-    held[:, fixed] = True
-    given = np.zeros(problem.n_dofs)
-    given[fixed] = prescribed[:, instant] - before[fixed]
-    matrices[held] = np.eye(problem.n_dofs)[np.nonzero(held)[1]]
-    rights = np.where(held, given, rights)
-    regular = np.linalg.cond(matrices) < 1e13
-    way = way[regular]
-    piece = piece[regular]
-    moved = np.linalg.solve(matrices[regular], rights[regular][..., None])[..., 0]
-    slack = ROUNDING * max(np.abs(force).max(), bound.max())
-    pulled = np.abs(force - moved @ stiffness)[:, rubbing]
-    slip = way * moved[:, rubbing]
-    rests = accumulated_slip[rubbing] + slip
-    sticks = pulled <= bound[rubbing] * strength(accumulated_slip[rubbing]) + slack
-    slips = (slip > 0.0) & (starts[piece] <= rests) & (rests <= ends[piece])
-    found = moved[np.where(way == 0, sticks, slips).all(axis=1)]
+    tried = _Instant(problem, instant, before, accumulated_slip)
+    direction, piece = tried.choices()
+    moved, is_regular = tried.increments(direction, piece)
+    is_right = tried.obeys(moved, direction[is_regular], piece[is_regular])
+    found = moved[is_right]
     size = np.abs(found).max(initial=0.0) or 1.0
     return np.unique(np.round(found / size, 8), axis=0) * size
+
+
+class _Instant:
+    """Linear problems of one instant, one for each choice of statuses.
+
+    A choice has a direction for each point that rubs, -1, 0 (it sticks) or 1, and the
+    piece of the strength on which its slip ends; shape (n_choices, n_rubbing) each.
+    """
+
+    def __init__(self, problem, instant, before, accumulated_slip):
+        fixed, prescribed = problem.prescribed
+        rules = rules_of(problem)
+        dofs = points_dofs(problem)
+        bound = np.zeros(problem.n_dofs)
+        bound[dofs] = rules.bound_at(instant)
+        free = np.setdiff1d(dofs, fixed)
+        self._fixed = fixed
+        self._given = prescribed[:, instant] - before[fixed]
+        self._strength = rules.strength
+        self._stiffness = assembled_stiffness(problem).toarray()
+        self._force = external_force(problem)[:, instant] - self._stiffness @ before
+        self._rubbing = free[bound[free] > 0.0]
+        self._bound = bound[self._rubbing]
+        self._slipped = accumulated_slip[self._rubbing]
+        self._slack = ROUNDING * max(np.abs(self._force).max(), bound.max())
+
+    def choices(self):
+        """All choices: directions and pieces."""
+        pieces = range(len(self._strength.slips))
+        each = [(0, 0), *product((-1, 1), pieces)]
+        choices = np.array(list(product(each, repeat=len(self._rubbing))))
+        return choices[..., 0], choices[..., 1]
+
+    def increments(self, direction, piece):
+        """Solution of each choice, (n_regular, n_dofs), and which choices have one."""
+        starts = np.array(self._strength.slips)[piece]
+        factors = np.array(self._strength.factors)[piece]
+        slopes = self._strength.slopes[piece]
+        # The bound at the end of a slip is linear in it: what is left without slip, and
+        # the slope.
+        left = self._bound * (factors + slopes * (self._slipped - starts))
+        n_choices = len(direction)
+        matrices = np.tile(self._stiffness, (n_choices, 1, 1))
+        rights = np.tile(self._force, (n_choices, 1))
+        rubbing = self._rubbing
+        matrices[:, rubbing, rubbing] += np.abs(direction) * self._bound * slopes
+        rights[:, rubbing] -= direction * left
+        self._hold(matrices, rights, direction)
+        is_regular = np.linalg.cond(matrices) < 1e13
+        columns = rights[is_regular][..., None]
+        return np.linalg.solve(matrices[is_regular], columns)[..., 0], is_regular
+
+    def _hold(self, matrices, rights, direction):
+        """Write what sticks, and what is prescribed, into systems in place."""
+        held = np.zeros(rights.shape, dtype=bool)
+        held[:, self._rubbing] = direction == 0
+        held[:, self._fixed] = True
+        given = np.zeros(rights.shape[1])
+        given[self._fixed] = self._given
+        matrices[held] = np.eye(len(given))[np.nonzero(held)[1]]
+        rights[:] = np.where(held, given, rights)
+
+    def obeys(self, moved, direction, piece):
+        """Check which solutions, (n, n_dofs), are what was chosen, (n,)."""
+        strength = self._strength
+        pulled = np.abs(self._force - moved @ self._stiffness)[:, self._rubbing]
+        slip = direction * moved[:, self._rubbing]
+        rests = self._slipped + slip
+        starts = np.array(strength.slips)[piece]
+        ends = np.append(strength.slips[1:], np.inf)[piece]
+        bound = self._bound * strength(self._slipped)
+        sticks = pulled <= bound + self._slack
+        slips = (slip > 0.0) & (starts <= rests) & (rests <= ends)
+        return np.where(direction == 0, sticks, slips).all(axis=1)

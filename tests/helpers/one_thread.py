@@ -1,5 +1,4 @@
-"""One BLAS thread for every process of the tests: they share the processors as the
-workers do.
+"""A single BLAS thread for every process of the tests, as the workers have it.
 
 Those of several processes spin against each other, and a dense factor takes twenty
 times as long.

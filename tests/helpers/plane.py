@@ -53,9 +53,7 @@ def stress(iterate, instant=-1):
 
 
 def whole_force_error(reference, iterate):
-    """How wrong the contact force is as one field,
-    pressure and friction together, (-).
-    """
+    """Error of the contact force as one field, pressure and friction together, (-)."""
     wanted = reference.contact_force
     return float(
         np.linalg.norm(iterate.contact_force - wanted) / np.linalg.norm(wanted)

@@ -1,4 +1,4 @@
-"""What tests of processes ask and wait for."""
+"""Helpers of tests of processes: what to ask of them, and waiting."""
 
 from __future__ import annotations
 

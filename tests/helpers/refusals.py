@@ -1,4 +1,4 @@
-"""How settings are refused."""
+"""Texts with which settings are refused."""
 
 from __future__ import annotations
 

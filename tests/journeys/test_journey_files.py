@@ -24,7 +24,7 @@ RESULTS = f"x (mm),t (s),friction force (kN/m)\n{ROWS}"
 
 
 def download(page: Page, name: str, folder: Path) -> Path:
-    """What a button of the dialog writes."""
+    """Text that a button of the dialog writes."""
     with page.expect_download() as event:
         page.get_by_role("button", name=name).click()
     path = folder / event.value.suggested_filename

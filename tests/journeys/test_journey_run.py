@@ -82,7 +82,7 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
 
 
 def has_plots_beside(page: Page) -> bool:
-    """Whether plots stand beside the picture, and not below it."""
+    """Check whether plots stand beside the picture, and not below it."""
     scene, plot = (figure(page, number).bounding_box() for number in (0, 2))
     return bool(scene and plot and scene["x"] + scene["width"] <= plot["x"])
 

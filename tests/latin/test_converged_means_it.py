@@ -1,6 +1,4 @@
-"""What is called converged has its contact force
-within the accuracy, or is told not to.
-"""
+"""A run that is called converged has its contact force within the accuracy."""
 
 from __future__ import annotations
 

@@ -220,11 +220,7 @@ SMALL_BAR = {"elements": 40, "instants": 21, "substructures": 4}
 def test_the_command_ends_with_a_file_and_the_code_of_a_run_that_has_not_converged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    changes = [
-        word
-        for name, value in SMALL_BAR.items()
-        for word in ("--set", f"{name}={value}")
-    ]
+    changes = [f"--set={name}={value}" for name, value in SMALL_BAR.items()]
     file = tmp_path / "limited.npz"
     assert main(["run", "bar", *changes, "--limit", "1e-9", "--out", str(file)]) == 1
     out, err = capsys.readouterr()

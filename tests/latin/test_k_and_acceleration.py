@@ -33,7 +33,7 @@ def within(solution, level: float) -> int:
 
 @pytest.mark.parametrize(
     "changes",
-    [*({"load": load} for load in PRESETS), {"peak": 300.0}, {"peak": 2400.0}],
+    [{"load": load} for load in PRESETS] + [{"peak": 300.0}, {"peak": 2400.0}],
     ids=str,
 )
 def test_all_together_reach_one_percent_of_friction_force_early(changes):

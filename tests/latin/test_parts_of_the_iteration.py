@@ -4,6 +4,7 @@ starts and ends: each by what it must not change.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from itertools import islice
@@ -128,7 +129,7 @@ def test_a_fixed_point_is_not_left() -> None:
 
 
 def test_weights_of_a_mixture_add_up_to_one() -> None:
-    """What is added to all states and images is added to the mixture."""
+    """A shift of all states and images is a shift of the mixture."""
     random = np.random.default_rng(4)
     plain = Mixed(0)
     moved = Mixed(0)
@@ -367,6 +368,16 @@ def test_a_certified_solution_is_a_fixed_point_of_the_method_for_every_k(
     assert np.array_equal(again.outgoing, iterate.outgoing)
 
 
+def opposite_on_cuts(of: Problem) -> Iterator[np.ndarray]:
+    """Yield the matrix that sums forces of both sides of a cut, (n_points, n_rows)."""
+    for cut in of.cuts:
+        opposite = np.zeros((len(cut.first), of.n_rows))
+        points = np.arange(len(cut.first))
+        opposite[points, cut.first] = 1.0
+        opposite[points, cut.second] = 1.0
+        yield opposite
+
+
 @pytest.mark.parametrize("scene", SCENES)
 def test_forces_of_rows_balance_bodies_and_cuts_and_are_the_smallest(
     scene: str,
@@ -383,14 +394,7 @@ def test_forces_of_rows_balance_bodies_and_cuts_and_are_the_smallest(
     assert close(balance @ force, needed, 1e-9)
     for cut in of.cuts:
         assert np.abs(force[cut.first] + force[cut.second]).max() <= 1e-9 * size
-    conditions = [balance.toarray()]
-    for cut in of.cuts:
-        opposite = np.zeros((len(cut.first), of.n_rows))
-        places = np.arange(len(cut.first))
-        opposite[places, cut.first] = 1.0
-        opposite[places, cut.second] = 1.0
-        conditions.append(opposite)
-    system = np.vstack(conditions)
+    system = np.vstack([balance.toarray(), *opposite_on_cuts(of)])
     right = np.zeros((len(system), of.n_instants))
     right[: len(needed)] = needed
     right -= system @ (known * is_known[:, None])

@@ -166,7 +166,7 @@ def exact_of_damped(damping: float = 2.0) -> Array:
 
 
 def is_honest(solution: Solution) -> bool:
-    """Whether a run has ended without claiming a proof."""
+    """Check whether a run has ended without claiming a proof."""
     assert not solution.is_certified
     assert "ertified" not in solution.status.advice
     return solution.status.ending in (
@@ -399,7 +399,7 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
 
 
 def test_bases_that_nothing_can_prove_do_not_converge() -> None:
-    """What is converged on a few modes need not be near the answer."""
+    """A run that has converged on a few modes need not be near the answer."""
     method = Latin(
         linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40)
     )

@@ -347,7 +347,8 @@ def test_a_body_on_its_image_rubs_as_one_of_two_that_move_the_opposite_way(
 def test_friction_of_a_law_has_no_units_but_those_of_its_scales() -> None:
     law = FrictionLaw(stiffness=2e9, cohesion=3e3, cap=4e3, strength=FALLING)
     weights = np.array([0.1, 0.2, 0.3, 0.4])
-    length, force = 1e-3, 1e2
+    length = 1e-3
+    force = 1e2
     along = law.at(
         Component(np.arange(4)), weights, (length, force), friction=np.full(4, 0.3)
     )

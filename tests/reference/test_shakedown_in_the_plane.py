@@ -149,7 +149,7 @@ def test_a_spring_that_catches_a_block_and_too_many_points_are_refused() -> None
 
 
 def test_a_pressing_that_leaves_contacts_open_has_no_factor() -> None:
-    """It pulls at a block that a side holds."""
+    """A load lifts a block that a side holds."""
     lifted = {**FREE, "left": "clamped", "top_normal_load": ((0.0, 1e6),)}
     assert math.isnan(factor(ran("block", lifted, 1e6)))
 

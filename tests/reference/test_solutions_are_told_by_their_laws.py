@@ -1,4 +1,4 @@
-"""What obeys equilibrium and all laws is called solved, whatever led to it."""
+"""Fields that obey equilibrium and all laws are called solved, by whatever way."""
 
 from __future__ import annotations
 

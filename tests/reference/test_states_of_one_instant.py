@@ -268,9 +268,7 @@ def test_springs_that_soften_lead_to_the_solution_from_any_states(seed: int) -> 
 
 
 def single(k_along: float, k_across: float, bound: float, mu: float, force: Array):
-    """One point with springs along and across it,
-    on a support; force is (2, n_instants).
-    """
+    """A point with springs along and across it, on a support; force (2, n_instants)."""
     part = substructure(np.diag([k_along, k_across]), (0, 0), force)
     if mu > 0.0:
         law = contact(np.array([1]), np.array([0]), None, np.zeros(1), mu)

@@ -82,9 +82,7 @@ def test_pressure_spreads_as_diffusion_has_it_whatever_is_given_at_the_well() ->
 
 
 def test_stress_ahead_of_a_zone_holds_the_balance_of_forces() -> None:
-    """What a zone no longer carries its surroundings do:
-    the sum over the whole line is nothing.
-    """
+    """Surroundings carry the load of a zone: the sum over the line is nothing."""
     place = np.linspace(0.0, 4.0, 4001)
     lack = (0.5 - erfc(place))[:, None]
     (front,) = fronts(place, lack)
@@ -123,7 +121,7 @@ def test_the_front_does_not_depend_on_the_size_of_the_body() -> None:
 
 
 def test_slip_goes_on_after_the_fluid_is_stopped() -> None:
-    """What has spread still does: the front runs on, while the well sticks again."""
+    """Fluid that has spread still acts: the front runs on, the well sticks again."""
     settings, problem, found = solved(
         injection_load="stopped", shear_stress=5e6, instants=61
     )

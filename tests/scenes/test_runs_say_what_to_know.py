@@ -95,9 +95,7 @@ def test_a_contact_that_grows_by_leaps_has_friction_in_a_saw_and_says_so() -> No
 def test_the_command_prints_remarks_with_the_result(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    changes = [
-        text for name, value in TALL.items() for text in ("--set", f"{name}={value}")
-    ]
+    changes = [f"--set={name}={value}" for name, value in TALL.items()]
     command = ["run", "block", *changes, "--set", "friction=0.9", "--no-reference"]
     assert main(command) == 0
     shown = capsys.readouterr().out

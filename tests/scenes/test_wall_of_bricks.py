@@ -150,9 +150,7 @@ def test_the_order_of_the_bricks_changes_nothing():
 
 @pytest.mark.parametrize("cuts", [(2, 1), (3, 2)])
 def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
-    """Where cuts of one brick are not those of the next,
-    a side has joints with several parts.
-    """
+    """A side has joints of several parts where cuts of two bricks do not meet."""
     whole = wall(3, 3, size=(6, 2))
     cut = replace(whole, substructures=cuts)
     found = []
@@ -186,7 +184,7 @@ def column(shear, courses, *, friction, **law):
     [(1, 0.3, 0.3), (1, 0.6, 0.6), (2, 0.9, 0.5), (3, 0.6, 0.24 / 0.72), (3, 0.2, 0.2)],
 )
 def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, limit):
-    """It slides at mu p, and tips about its toe at p b / (2 h)."""
+    """A brick slides at mu p, and tips about its toe at p b / (2 h)."""
     for share, stands in ((0.97, True), (1.03, False)):
         made = column(share * limit * 1e6, courses, friction=friction)
         found = reference_of(discrete.discretise(made))
@@ -233,9 +231,7 @@ PILE = {
 def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(
     friction, instants
 ):
-    """It slides at mu p, and tips at p b / (2 h),
-    whatever the path and its instants.
-    """
+    """A brick slides at mu p, and tips at p b / (2 h), whatever the path."""
     values = {**PILE, "friction": friction, "instants": instants, "traction": 5e5}
     settings = CATALOGUE["wall"].checked(values)
     limit = min(friction, 0.25 / (2.0 * 0.36)) * 1e6

@@ -93,8 +93,11 @@ KINDS: dict[str, tuple[Kind, list[Any], list[Any]]] = {
         [{"c": 1}, {"a": 0}, {1: 1}, [("a", 1)], None],
     ),
 }
-ALLOWED = [(kind, value) for kind, fine, _ in KINDS.values() for value in fine]
-REFUSED = [(kind, value) for kind, _, wrong in KINDS.values() for value in wrong]
+ALLOWED: list[tuple[Kind, Any]] = []
+REFUSED: list[tuple[Kind, Any]] = []
+for one_kind, fine, wrong in KINDS.values():
+    ALLOWED += [(one_kind, value) for value in fine]
+    REFUSED += [(one_kind, value) for value in wrong]
 
 
 @pytest.mark.parametrize(("kind", "value"), ALLOWED)

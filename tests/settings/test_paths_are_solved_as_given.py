@@ -1,6 +1,4 @@
-"""What a path over time or a table along a body has,
-a run sees, or says that it does not.
-"""
+"""Paths over time and tables along a body are solved as given, or a run says not."""
 
 from __future__ import annotations
 
@@ -20,12 +18,14 @@ from solver.settings.definitions import SettingError
 from solver.settings.load import EVERY_POINT, THINNED
 
 SPIKE = [[0.0, 0.0], [0.5, 0.0], [0.503, 1200.0], [0.506, 0.0], [1.0, 0.0]]
-SCENES_AND_PATHS = [
-    (scene, name)
-    for scene, kind in CATALOGUE.items()
-    for name in kind.checked({}).paths
-    if hasattr(kind.definitions()[name], "presets")
-]
+SCENES_AND_PATHS: list[tuple[str, str]] = []
+for scene_name, scene_kind in CATALOGUE.items():
+    definitions = scene_kind.definitions()
+    SCENES_AND_PATHS += [
+        (scene_name, path)
+        for path in scene_kind.checked({}).paths
+        if hasattr(definitions[path], "presets")
+    ]
 """Paths that may be tables, of scenes by default."""
 
 

@@ -1,4 +1,4 @@
-"""What is no setting, or no value of one, is refused in one clear line."""
+"""Unknown settings and bad values are refused in one clear line."""
 
 import json
 import math

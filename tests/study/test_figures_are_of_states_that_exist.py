@@ -1,6 +1,4 @@
-"""What is read off a run is the largest of states that exist,
-under the catalogue's names.
-"""
+"""Figures of a run are the largest of states that exist, by the catalogue's names."""
 
 from __future__ import annotations
 
@@ -82,7 +80,7 @@ def printed(
 
 @pytest.mark.parametrize("instants", [12, 20, 33])
 def test_a_block_on_a_slope_is_held_up_to_the_angle_of_friction(instants: int) -> None:
-    """There friction is mu W cos(atan(mu)), whatever instants lie around it."""
+    """Friction at the steepest slope is mu W cos(atan(mu)), whatever the instants."""
     run = ran("incline", slope_load="ramp", instants=instants, **COARSE)
     exact = 0.3 * 1000.0 * math.cos(math.atan(0.3))
     assert reading("holding_force")(run) == pytest.approx(exact, rel=5e-4)

@@ -90,9 +90,8 @@ def test_it_is_said_which_to_refine(
     scene: str, asked: str, refined: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name, *changes = scene.split()
-    assert (
-        main(["mesh", name, "--of", asked, *(f"--set={one}" for one in changes)]) == 0
-    )
+    settings = [f"--set={change}" for change in changes]
+    assert main(["mesh", name, "--of", asked, *settings]) == 0
     assert f"Refine {refined} first" in capsys.readouterr().out
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import functools
 import re
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -183,11 +184,12 @@ def test_the_command_refuses_what_is_no_lesson_and_runs_nothing(
 
 
 LESSONS = {path.stem: lesson_from_file(path) for path in sorted(FOLDER.glob("*.toml"))}
-CHECKPOINTS = [
-    pytest.param(name, number, id=f"{name}: {one.claim}")
-    for name, lesson in LESSONS.items()
-    for number, one in enumerate(lesson.checkpoints)
-]
+CHECKPOINTS = []
+for title, taught in LESSONS.items():
+    CHECKPOINTS += [
+        pytest.param(title, number, id=f"{title}: {checkpoint.claim}")
+        for number, checkpoint in enumerate(taught.checkpoints)
+    ]
 each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))
 
 
@@ -208,9 +210,8 @@ def test_what_a_lesson_shows_is_there_and_moves_only_after_the_choice(
     lesson: Lesson,
 ) -> None:
     assert {lesson.interface} <= {"", *discretise(lesson.settings).rubbing}
-    shown = {
-        kind.name for card in CARDS for kind in card if kind.applies(lesson.settings)
-    }
+    kinds = chain.from_iterable(CARDS)
+    shown = {kind.name for kind in kinds if kind.applies(lesson.settings)}
     assert set(lesson.views) <= shown
     before = " ".join(lesson.text)
     after = " ".join(lesson.explanation)

@@ -99,8 +99,9 @@ def test_rows_lie_anywhere_in_time_and_along_the_path() -> None:
     units = ("m", "N")
     timed = beside(run, MeasuredLoop(*pair, times, units, "a.csv", ""))
     assert timed.of(run.iterate) < 1e-12
-    later = np.append(times, 2.0), *(np.append(values, 0.0) for values in pair)
-    also = beside(run, MeasuredLoop(*later[1:], later[0], units, "a.csv", ""))
+    longer = [np.append(values, 0.0) for values in pair]
+    later = np.append(times, 2.0)
+    also = beside(run, MeasuredLoop(*longer, later, units, "a.csv", ""))
     assert (also.counted.sum(), also.of(run.iterate)) == (70, timed.of(run.iterate))
     # Between two instants around a reversal the path is cut.
     assert (

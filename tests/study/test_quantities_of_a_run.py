@@ -396,7 +396,7 @@ COMES_BACK = {"fault": {"injection_load": "pulses"}}
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_every_scene_has_as_many_cycles_as_it_is_asked_for(scene: str) -> None:
-    """One more of the preset is always so many cycles more of the load."""
+    """A preset with one cycle more has as many cycles more of the load."""
     settings = CATALOGUE[scene]
     values = {"instants": 401, **COMES_BACK.get(scene, {})}
     counted = [cycles_in(settings.checked({**values, "cycles": n})) for n in (2, 3, 9)]

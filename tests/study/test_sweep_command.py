@@ -18,18 +18,18 @@ from solver.commands import reports as report_commands
 from solver.commands.cli import main
 from solver.scenes.bar import BarSettings
 from solver.settings.definitions import SettingError
-from solver.study.page import Map, write_page
+from solver.study.page import Map
 from solver.study.sweep.plan import Row, axis_of, plan_of
-from solver.study.sweep.report import chart_of
+from solver.study.sweep.report import chart_of, write_sweep
 from solver.study.sweep.run import snake
 
-SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
+SMALL = [f"--set={name}={value}" for name, value in TINY.items()]
 
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> Here:
     """Run sweeps of the command in this process, and draw no page."""
-    monkeypatch.setattr(report_commands, "write_page", lambda *given: None)
+    monkeypatch.setattr(report_commands, "write_sweep", lambda *given: None)
     executor = Here()
     monkeypatch.setattr(report_commands, "opened", lambda *given: nullcontext(executor))
     return executor
@@ -72,7 +72,7 @@ def test_the_table_holds_what_varies_what_is_asked_and_what_is_fixed(
 def test_the_page_needs_nothing_beside_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(report_commands, "write_page", write_page)
+    monkeypatch.setattr(report_commands, "write_sweep", write_sweep)
     assert command(tmp_path, "--vary", "friction=0.2,0.3,0.4") == 0
     page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 2

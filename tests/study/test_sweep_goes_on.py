@@ -22,6 +22,7 @@ from sweeps import Here, rows_in_table, rows_of, tiny
 
 from solver.commands import reports as report_commands
 from solver.commands.cli import main
+from solver.commands.console import postponed_interrupt
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import SettingError
 from solver.study.quantities.finished import finished_run
@@ -263,7 +264,7 @@ def test_a_sweep_that_is_killed_goes_on(
     with started([sys.executable, "-m", "solver", *asked]):
         wait_for(lambda: rows_in_table(table) > 3)
     rows = table.read_text(encoding="utf-8").splitlines()
-    monkeypatch.setattr(report_commands, "write_page", lambda *given: None)
+    monkeypatch.setattr(report_commands, "write_sweep", lambda *given: None)
     assert main(asked) == 0
     assert rows_in_table(table) == 24
     assert {*rows[:-1]} <= {*table.read_text(encoding="utf-8").splitlines()}
@@ -313,6 +314,136 @@ def test_growth_is_told_of_a_setting_over_decades_for_every_name() -> None:
         "iterations, method=paper: elements^2.00, of 3 runs",
     ]
     assert growth(tiny(["elements=10,20,40"], ["iterations"]), rows[:3]) == []
+
+
+def test_an_interrupt_from_a_terminal_ends_a_sweep_in_a_line(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    command = [sys.executable, "-m", "solver", "sweep", "bar", "--out", str(folder)]
+    command += ["--vary", "friction=0.1:0.6:5000", "--of", "dissipation"]
+    command += ["--on", "processes:2"]
+    options = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL}
+    with started(command, start_new_session=True, **options) as process:
+        wait_for(lambda: rows_in_table(folder / "sweep.csv") > 5)
+        # A terminal sends it to all processes of the command.
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate()
+        wait_for(lambda: not in_session(process.pid))
+    assert process.returncode == 130
+    *progress, last = said.decode().splitlines()
+    assert last == "slipfront: stopped; the same command goes on from here"
+    assert all(line.endswith(" s left") for line in progress)
+
+
+SLOW_START = """
+import sys, time
+from multiprocessing.util import Finalize
+from pathlib import Path
+
+from solver.study.sweep.executors import opened
+
+HERE = Path(sys.argv[1])
+
+
+def wait_for(name, seconds):
+    end = time.monotonic() + seconds
+    while not (HERE / name).exists() and time.monotonic() < end:
+        time.sleep(0.01)
+
+
+def hold():
+    (HERE / "first is told to end").touch()
+    # The second has begun, or a complaint has been printed; a pool waits for 3 s.
+    wait_for("second has begun", 2.0)
+
+
+def work():
+    Finalize(None, hold, exitpriority=10)
+    (HERE / "first works").touch()
+    time.sleep(600.0)
+
+
+if __name__ == "__mp_main__":
+    # Each process imports this file before it looks for the pool's locks.
+    try:
+        (HERE / "first").mkdir()
+    except FileExistsError:
+        wait_for("first is told to end", 60.0)
+elif __name__ == "__main__":
+    with opened("processes:2") as executor:
+        executor.submit(work)
+        wait_for("first works", 60.0)
+"""
+"""Program that ends its executor while one of two processes is still starting."""
+
+
+def test_an_executor_ends_in_silence_while_a_process_starts(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(SLOW_START, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, str(program), str(tmp_path)], capture_output=True, check=False
+    )
+    assert (tmp_path / "first is told to end").exists()
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+INTERRUPTED_EXIT = """
+import atexit, os, runpy, signal, sys
+
+atexit.register(os.kill, os.getpid(), signal.SIGINT)
+sys.argv = ["solver", "scenes"]
+runpy.run_module("solver", run_name="__main__")
+"""
+
+
+def test_an_interrupt_of_an_exit_ends_in_silence() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED_EXIT], capture_output=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")
+
+
+def press() -> None:
+    os.kill(os.getpid(), signal.SIGINT)
+
+
+def test_a_first_interrupt_waits_for_the_end_of_the_body() -> None:
+    steps = []
+
+    def body() -> None:
+        with postponed_interrupt() as is_interrupted:
+            steps.append(is_interrupted())
+            press()
+            steps.append(is_interrupted())
+
+    with pytest.raises(KeyboardInterrupt):
+        body()
+    assert steps == [False, True]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_second_interrupt_does_not_wait() -> None:
+    steps = []
+
+    def body() -> None:
+        with postponed_interrupt():
+            press()
+            steps.append("goes on")
+            press()
+            steps.append("is not reached")
+
+    with pytest.raises(KeyboardInterrupt):
+        body()
+    assert steps == ["goes on"]
+
+
+def test_an_interrupt_that_is_ignored_stays_so() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with postponed_interrupt() as is_interrupted:
+            press()
+            assert not is_interrupted()
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 INTERRUPTED_IMPORT = """

@@ -1,4 +1,4 @@
-"""What is known stands beside what is found: in the proof, and as curves under runs."""
+"""Known values stand beside found ones: in the proof, and as curves under runs."""
 
 from __future__ import annotations
 
@@ -118,37 +118,43 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
     assert [one.of for one in curves] == known
     for curve in curves:
         assert np.abs(curve.up).max() > 0.0
-        if curve.of == "axial force":
-            continue
         if curve.of == "front":
-            places = problem.rubbing["support"].positions
-            slips = found.contact("support").status != 0
-            last = np.where(slips, places[:, None], 0.0).max(axis=0)
-            assert curve.up == pytest.approx(problem.instants)
-            assert np.abs(curve.across - last).max() <= 1.1 * places[1]
-            continue
-        if curve.of == "loop":
+            assert_front(curve, problem, found)
+        elif curve.of == "loop":
             loop = settings.structure().loop(problem)
-            pairs = [
-                (curve.up, loop.force(found)),
-                (curve.across, loop.displacement(found.displacement)),
-            ]
-        else:
-            (name, law), *_ = problem.rubbing.items()
-            contact = found.contact(name)
-            if curve.of == "pressure":
-                own = contact.normal_force
-            else:
-                own = contact.tangential_force
-            weights = law.by_point(law.weights)[:, None]
-            if curve.of == "friction" and contact.normal_force is not None:
-                missing = np.cumsum(curve.up * weights - own, axis=0)
-                most = settings.friction * contact.normal_force.sum(axis=0).max()
-                assert np.abs(missing).max() <= PRESSED * most
-                continue
-            pairs = [(curve.up, own / weights)]
-        for exact, ours in pairs:
-            assert np.abs(exact - ours).mean() <= APART[curve.of] * np.abs(exact).mean()
+            assert_near(curve.of, curve.up, loop.force(found))
+            assert_near(curve.of, curve.across, loop.displacement(found.displacement))
+        elif curve.of != "axial force":
+            assert_traction(curve, settings, problem, found)
+
+
+def assert_near(of, exact, ours):
+    """Check that a field is near a known one, in the mean."""
+    assert np.abs(exact - ours).mean() <= APART[of] * np.abs(exact).mean()
+
+
+def assert_front(curve, problem, found):
+    """Check that the last point that slips is at the known front, within an element."""
+    places = problem.rubbing["support"].positions
+    slips = found.contact("support").status != 0
+    last = np.where(slips, places[:, None], 0.0).max(axis=0)
+    assert curve.up == pytest.approx(problem.instants)
+    assert np.abs(curve.across - last).max() <= 1.1 * places[1]
+
+
+def assert_traction(curve, settings, problem, found):
+    """Check a pressure or friction; under a pressure that is found, its sums."""
+    (name, law), *_ = problem.rubbing.items()
+    contact = found.contact(name)
+    weights = law.by_point(law.weights)[:, None]
+    if curve.of == "pressure":
+        assert_near(curve.of, curve.up, contact.normal_force / weights)
+    elif curve.of == "friction" and contact.normal_force is not None:
+        missing = np.cumsum(curve.up * weights - contact.tangential_force, axis=0)
+        largest = settings.friction * contact.normal_force.sum(axis=0).max()
+        assert np.abs(missing).max() <= PRESSED * largest
+    else:
+        assert_near(curve.of, curve.up, contact.tangential_force / weights)
 
 
 def test_traction_of_a_shear_that_turns_begins_as_cattaneos_and_carries_the_force():

@@ -108,7 +108,7 @@ class _Piece(NamedTuple):
         }
 
     def _is_held(self, node: int, end: End) -> bool:
-        """Check whether an end of the rod, at a node, is in the piece and on a spring."""
+        """Check whether an end of the rod is at a node of the piece, on a spring."""
         return end.is_on_spring and self.first <= node <= self.first + self.size
 
 

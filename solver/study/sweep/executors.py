@@ -19,6 +19,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from multiprocessing import forkserver, resource_tracker
 from multiprocessing.context import BaseContext
+from multiprocessing.synchronize import RLock
 from typing import Any
 
 import numpy as np
@@ -88,8 +89,9 @@ class Processes(Executor):
     ) -> None:
         self._limit = limit
         self._is_shut_down = False
+        self._context = _LastingLocks(_context())
         self._started = partial(
-            ProcessPool, count, n_calls, initializer=_begin, context=_context()
+            ProcessPool, count, n_calls, initializer=_begin, context=self._context
         )
         self._pool = self._started()
 
@@ -100,7 +102,7 @@ class Processes(Executor):
         if not (self._pool.active or self._is_shut_down):
             # A pool is broken once a process is killed while none does a call.
             self._pool.stop()
-            self._pool.join()
+            self._join()
             self._pool = self._started()
         return self._pool.schedule(fn, args, kwargs, timeout=self._limit)
 
@@ -112,7 +114,39 @@ class Processes(Executor):
         else:
             self._pool.close()
         if wait:
-            self._pool.join()
+            self._join()
+
+    def _join(self) -> None:
+        """Wait until all processes have ended, and unlink their locks."""
+        self._pool.join()
+        self._context.let_go()
+
+
+class _LastingLocks:
+    """Context of processes whose locks last until these have ended.
+
+    A pool drops its locks, which unlinks them, before it ends its processes. One that
+    has just been started, as in the place of one that was ended, would look for a lock
+    that is gone, and print a traceback.
+    """
+
+    def __init__(self, context: Any) -> None:
+        self.Pipe = context.Pipe
+        self.Process = context.Process
+        self.get_start_method = context.get_start_method
+        self.RLock = self._lasting_lock
+        self._make_lock = context.RLock
+        self._locks: list[RLock] = []
+
+    def _lasting_lock(self) -> RLock:
+        """Make a lock, and keep it."""
+        lock: RLock = self._make_lock()
+        self._locks.append(lock)
+        return lock
+
+    def let_go(self) -> None:
+        """Let go of all locks: those that nobody else has are unlinked."""
+        self._locks.clear()
 
 
 def _context() -> BaseContext:

@@ -8,7 +8,6 @@ import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -24,10 +23,8 @@ from solver.study.page import (
     PanelCurve,
     PlotSection,
     Runs,
-    Section,
-    bullets,
-    html_table,
     text_of,
+    write_page,
 )
 from solver.study.quantities.quantity import Quantity
 from solver.study.sweep.plan import Plan, Row, Varied
@@ -45,14 +42,6 @@ Text = Callable[[float, str], str]
 AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
 OWN = "own"
 NEIGHBOURS = "neighbour's"
-CAPTION = (
-    "Hollow points and hatched cells are of runs that have not converged, "
-    "crosses of runs without a value."
-)
-GROWTH = (
-    "Powers by least squares of the logarithms; small sizes, at which other things "
-    "cost, make them lower."
-)
 
 
 def plainly(value: float, unit: str) -> str:
@@ -315,24 +304,23 @@ def _uncapitalised(title: str) -> str:
     return title[0].lower() + title[1:]
 
 
-def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
-    """Sections of the page of a sweep, of rows in the order of their points."""
+def write_sweep(plan: Plan, rows: Sequence[Row], file: Path) -> None:
+    """Write the page of a sweep, of rows in the order of their points."""
     charts = [chart_of(plan, rows, index) for index in range(len(plan.of))]
-    report: list[Section] = [
-        f"<p><b>{escape(counts(plan, rows))}</b></p>",
-        PlotSection(f"Charts of {len(rows)} runs", charts),
-    ]
-    if not all(row.holds for row in rows):
-        report.append(f'<p class="caption">{CAPTION}</p>')
-    laws = growth(plan, rows)
-    if laws:
-        report.append(f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}")
     table = [heads(plan)]
     for row in rows:
         table.append([text_of(cell, 6) for cell in cells(plan, row)])
-    report.append(f"<h2>Every run</h2>\n{html_table(table)}")
-    report.append(f"<h2>Settings</h2>\n{bullets(head(plan))}")
-    return report
+    write_page(
+        file,
+        "sweep.html",
+        [PlotSection(f"Charts of {len(rows)} runs", charts)],
+        title=title_of(plan),
+        counts=counts(plan, rows),
+        all_hold=all(row.holds for row in rows),
+        growth=growth(plan, rows),
+        rows=table,
+        settings=head(plan),
+    )
 
 
 def heads(plan: Plan) -> list[str]:
