@@ -155,6 +155,10 @@ def test_imports_inside_the_page_go_one_way():
             assert floor(name) >= floor(module), f"{module} imports {name}"
 
 
+def test_the_list_of_the_engine_has_all_its_rooms_and_no_other():
+    assert set(LAYERS) == {name.split(".")[1] for name in SOLVER.keys() - {"solver"}}
+
+
 def test_the_list_of_the_page_names_files_that_exist():
     assert FLOORS
     for name in chain.from_iterable(FLOORS):

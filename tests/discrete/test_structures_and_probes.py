@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import islice
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -176,3 +176,20 @@ def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
     still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
     force = BEAMS.loop(problem).force(still)
     assert force == pytest.approx(-3.0 * 6e5 * T * 0.1**2 / 6.0)
+
+
+class Framed(NamedTuple):
+    """A structure of one's own."""
+
+    body: Stack
+
+
+def test_a_structure_has_a_mesher_that_its_data_does_not_know() -> None:
+    framed = Framed(BODY)
+    with pytest.raises(RefusedError, match=r"of type Framed.*discretise\.register"):
+        discrete.discretise(framed)
+    discrete.discretise.register(
+        Framed, lambda structure: discrete.discretise(structure.body)
+    )
+    found = discrete.discretise(framed)
+    assert fingerprint(found) == fingerprint(discrete.discretise(BODY))
