@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import singledispatch
 
 from solver.discrete.plane import stack_problem
-from solver.discrete.plane.stack import Given, Side, Spring, Stack, Support
+from solver.discrete.plane.sides import Given, Side, Spring, Support
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods import cut_rods
 from solver.discrete.rods.rods import End, Rods

@@ -13,12 +13,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices, as_slice
 from solver.checks import (
@@ -31,14 +29,14 @@ from solver.checks import (
     check,
 )
 from solver.discrete.contacts import Contacts
-from solver.discrete.driven_friction import DrivenFriction, driven_friction
+from solver.discrete.driven_friction import DrivenFriction, driven_contacts
 from solver.discrete.drives import Drive
 from solver.discrete.inside import Inside
+from solver.discrete.no_reference import Numbering, reason_against_reference
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
-from solver.laws import Contact, Interface, Strength
+from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
-from solver.laws.play import PLAIN
 from solver.refusal import RefusedError, Words
 
 
@@ -287,88 +285,12 @@ class Problem:
 
     @cached_property
     def no_reference(self) -> str:
-        """Reason that the problem has no incremental reference, with a remedy, or "".
-
-        The incremental solvers read the incremental forms of all laws, one degree of
-        freedom where rows are glued, and the mean of the pairs of a point: they would
-        leave out anything else.
-        """
-        for name, law in self.own_laws.items():
-            return (
-                f'The law {type(law).__name__} of the interface "{name}" does not say '
-                "how it enters the incremental problem, so that there is no reference: "
-                f"{_OF_ONES_OWN}."
-            )
-        for name, form in self.incremental_forms.items():
-            if form.contact is not None and form.contact is not self.interfaces[name]:
-                return (
-                    f'The interface "{name}" enters as a contact that it is not: '
-                    f"{_OF_ONES_OWN}."
-                )
-        if not self.rubbing:
-            return (
-                "No interface is one of contact, so that there is nothing to solve "
-                f"instant by instant: add a contact, or {_BY_ESTIMATE}."
-            )
-        if not self._is_glued_as_numbered:
-            return (
-                "Rows of one degree of freedom are not glued, or glued rows have two, "
-                "so that no matrix of the whole structure says what holds: number them "
-                f"alike, or {_BY_ESTIMATE}."
-            )
-        for name, contact in self.rubbing.laws.items():
-            if not self._has_points(contact):
-                return (
-                    f'Pairs of one point of the interface "{name}" differ in their '
-                    "degrees of freedom, gap or friction: give each a point of its "
-                    f"own, or {_BY_ESTIMATE}."
-                )
-        if len(self._strengths) > 1:
-            return (
-                "Slip changes friction otherwise on one interface than on another: "
-                f"give all of them the same strength, or {_BY_ESTIMATE}."
-            )
-        return ""
-
-    @property
-    def _is_glued_as_numbered(self) -> bool:
-        """Check whether just those rows share a degree of freedom that laws glue."""
-        owner = np.empty(self.n_rows, dtype=np.intp)
+        """Reason that the problem has no incremental reference, with a remedy, or ""."""
+        owners = np.empty(self.n_rows, dtype=np.intp)
         for number, part in enumerate(self.substructures):
-            owner[part.rows] = number
-        # All rows of one substructure at one degree of freedom are one node.
-        keys = owner * self.n_dofs + self.row_dofs
-        nodes, node_of_row = np.unique(keys, return_inverse=True)
-        sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *self.cuts], axis=1)
-        first, second = node_of_row[sides]
-        ones = np.ones(len(first))
-        links = sparse.coo_array((ones, (first, second)), shape=(len(nodes),) * 2)
-        n_glued, glued = connected_components(links, directed=False)
-        # Each group of glued nodes has one degree of freedom, and no other group has
-        # it.
-        dofs = nodes % self.n_dofs
-        n_pairs = len(np.unique(glued * self.n_dofs + dofs))
-        return bool(n_pairs == n_glued == len(np.unique(dofs)))
-
-    def _has_points(self, law: Contact) -> bool:
-        """Check whether pairs of one point agree in degrees of freedom, gap and mu."""
-        if len(law.points) == len(law.positions):
-            return True
-        fields: list[NDArray[Any]] = [law.tangential.friction]
-        for component in law.components:
-            fields.extend([self.row_dofs[rows] for rows in component.sides])
-        if law.normal is not None:
-            fields.append(law.normal.gap)
-        _, first = np.unique(law.points, return_index=True)
-        same = first[law.points]
-        return all(np.array_equal(field, field[same]) for field in fields)
-
-    @property
-    def _strengths(self) -> set[Strength]:
-        """Slip-dependent factors of all interfaces on which there is any friction."""
-        laws = [law.tangential for law in self.rubbing.laws.values()]
-        rubs = [law for law in laws if law.bound.any() or law.friction.any()]
-        return {law.strength or PLAIN for law in rubs}
+            owners[part.rows] = number
+        numbering = Numbering(self.row_dofs, owners)
+        return reason_against_reference(self.interfaces, self.rubbing, numbering)
 
     @cached_property
     def friction(self) -> Contact:
@@ -456,29 +378,7 @@ class Problem:
         largest = float(np.abs(self.prescribed[1]).max(initial=0.0))
         if self.carried is not None:
             largest = max(largest, float(np.abs(self.carried).max(initial=0.0)))
-        found = list[DrivenFriction]()
-        for name in self._names_of_driven():
-            driven = driven_friction(
-                self.rubbing[name],
-                self.rubbing.forces[name],
-                self.row_dofs,
-                self.prescribed,
-                largest,
-            )
-            if driven is not None:
-                found.append(driven)
-        return found
-
-    def _names_of_driven(self) -> list[str]:
-        """Names of the interfaces with a pair whose sides are both prescribed."""
-        names = list[str]()
-        for stacked in self.rubbing.stacks:
-            law = stacked.law
-            sides = [self.is_held[rows] for rows in law.tangent.sides]
-            pairs = np.logical_and.reduce(sides)
-            driven = np.unique(law.interface_of_pairs[pairs])
-            names += [self.rubbing.names[number] for number in stacked.numbers[driven]]
-        return sorted(names, key=self.rubbing.number_of.__getitem__)
+        return driven_contacts(self.rubbing, self.row_dofs, self.prescribed, largest)
 
     def with_driven_friction(self, forces: Array, displacement: Array) -> Array:
         """Contact forces in which the friction of driven points is that of the law.
@@ -590,7 +490,3 @@ def nothing_acts(problem: Problem) -> bool:
     acts_on_rows = any(each.values.any() for each in given)
     acts_inside = any(force.any() for force in forces if force is not None)
     return not acts_on_rows and not acts_inside
-
-
-_BY_ESTIMATE = "judge the run by its estimate alone"
-_OF_ONES_OWN = f"define its incremental_form, or {_BY_ESTIMATE}"

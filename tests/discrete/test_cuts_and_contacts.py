@@ -20,7 +20,8 @@ from solver.discrete.drives import Drive, beyond, loads_at
 from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.bricks import Brick
 from solver.discrete.plane.cut_stack import CutStack, ends_along
-from solver.discrete.plane.stack import Given, Side, Stack
+from solver.discrete.plane.sides import Given, Side
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.rods import End, Rods

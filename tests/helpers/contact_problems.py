@@ -3,7 +3,8 @@
 import numpy as np
 
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.stack import Given, Side, Stack, Support
+from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure

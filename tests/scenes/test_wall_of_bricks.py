@@ -12,7 +12,8 @@ import pytest
 
 from solver import discrete
 from solver.discrete.plane.bricks import bonded, grouped, with_opening
-from solver.discrete.plane.stack import Given, Side, Stack, Support
+from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.stack import Stack
 from solver.latin import Ending, Latin, iterations, solve
 from solver.latin.end.status import collapses
 from solver.laws import OPEN, FrictionLaw, Strength

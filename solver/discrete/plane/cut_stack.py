@@ -23,7 +23,8 @@ from solver.discrete.elements import (
 )
 from solver.discrete.inside import RectangularSubstructure
 from solver.discrete.plane.bricks import Brick, Joint, joints_of
-from solver.discrete.plane.stack import Given, Stack
+from solver.discrete.plane.sides import Given
+from solver.discrete.plane.stack import Stack
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
 
 SIDES = "left", "right", "bottom", "top"

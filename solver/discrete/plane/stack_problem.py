@@ -18,7 +18,8 @@ from solver.discrete.inside import Inside, RectangularSubstructure
 from solver.discrete.plane.bricks import Joint
 from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
-from solver.discrete.plane.stack import Side, Spring, Stack, Support
+from solver.discrete.plane.sides import Side, Spring, Support
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
