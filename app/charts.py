@@ -196,7 +196,7 @@ def overlay(chart: Chart) -> hv.Overlay:
         y_limits = edges(ys, chart.y)[[0, -1]]
     else:
         elements = _of_panel(chart)
-        # Without curves there is nothing else to join.
+        # The empty list is joined, too, as there may be no curves.
         xs = np.concatenate([[], *[curve.x for curve in chart.curves]])
         ys = np.concatenate([[], *[curve.y for curve in chart.curves]])
         x_limits = chart.x.limits or (None, None)

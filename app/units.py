@@ -93,7 +93,7 @@ def units_of_points(scene: str, name: str, units: tuple[str, ...]) -> tuple[Unit
     default = CATALOGUE[scene].checked({})
     columns = zip(*default.points(name), strict=True)
     sizes = [max(map(abs, column)) for column in columns]
-    # A default load in m, say, tells nothing of a load in Pa.
+    # Sizes of a displacement, say, tell nothing of those of a pressure.
     if default.curve_units(name) != units:
         sizes[1] = OTHER_SIZES.get(units[1], 1.0)
     return tuple(unit_for(size, unit) for size, unit in zip(sizes, units, strict=True))

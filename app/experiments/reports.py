@@ -185,6 +185,6 @@ def shown(files: Files) -> str:
     path = "app"
     if pn.state.location is not None and pn.state.location.pathname:
         path = pn.state.location.pathname
-    # The path is the browser's word.
+    # The browser says what the path is: it must not become markup.
     page = files[name].decode().replace(PAGE, escape(path))
     return html("experiments/reports.html", title=name, page=page)

@@ -70,7 +70,7 @@ class Timeline(View):
         unit = unit_for(float(run.instants[-1]), "s")
         times = run.instants / np.float32(unit.factor)
         ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
-        # In one step with the bounds: the browser moves ends that lie outside of them.
+        # The bounds first: the browser moves ends that lie outside of them.
         self.figure.x_range.update(bounds=ends, start=ends[0], end=ends[1])
         paths = paths_of(run)[: len(PATHS)]
         heights = []

@@ -12,6 +12,7 @@ from typing import Any
 
 from app.messages import Order, Report
 from app.worker.loop import main
+from solver.study.sweep.executors import start_fork_server
 
 PROCESSES = get_context("forkserver")
 # Workers share the memory of these modules. The script that serves imports the last
@@ -40,6 +41,7 @@ class Worker:
         self._process: Any = PROCESSES.Process(
             target=main, args=(theirs, others), daemon=True
         )
+        start_fork_server()
         self._process.start()
         # Else the pipe would outlive the process, as the server holds this end, too.
         theirs.close()

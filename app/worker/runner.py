@@ -165,7 +165,7 @@ class Runner:
         self.status = decision.status
         self.has_news = True
         if self.status is not None and self.status.ending is Ending.DIVERGED:
-            # The iterate before has numbers that can be drawn.
+            # The iterate before stays, whose numbers can be drawn.
             return
         self.iterate = iterate
         self.history.append(record(iterate, decision, self._distance))

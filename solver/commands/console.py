@@ -79,10 +79,11 @@ def warn(*messages: str) -> None:
 
 @contextlib.contextmanager
 def postponed_interrupt() -> Iterator[Callable[[], bool]]:
-    """Postpone a first Ctrl-C to the end of the body, which asks whether one came.
+    """Postpone Ctrl-C to the end of the body, which asks whether it was pressed.
 
     `KeyboardInterrupt` may come between any two steps of the main thread, and leave a
-    lock of a library taken, or a process half started. A second Ctrl-C is not postponed.
+    lock of a library taken, or a process half started. Who presses twice, since a
+    process takes a second to start, presses once.
 
     Yields
     ------
@@ -97,7 +98,6 @@ def postponed_interrupt() -> Iterator[Callable[[], bool]]:
         return
 
     def press(*_signal: object) -> None:
-        signal.signal(signal.SIGINT, before)
         pressed.set()
 
     signal.signal(signal.SIGINT, press)

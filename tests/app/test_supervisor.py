@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -70,3 +74,40 @@ def test_a_worker_is_stuck_only_once_its_page_has_loaded(
     document.look()
     assert len(made) == 2
     assert any(isinstance(order, Start) for order in made[1].orders)
+
+
+PRESSES = """
+import os, signal
+
+# As a terminal does, to all processes of the session.
+os.killpg(0, signal.SIGINT)
+"""
+"""Module that presses Ctrl-C while a fork server imports it."""
+
+STARTS_A_WORKER = """
+import signal, threading
+from app.worker.process import PROCESSES, Worker
+
+signal.signal(signal.SIGINT, lambda *_: print("pressed", flush=True))
+PROCESSES.set_forkserver_preload(["presses"])
+reports = threading.Event()
+worker = Worker(lambda worker, report: reports.set())
+reports.wait(60.0)
+worker.end()
+"""
+
+
+def test_an_interrupt_while_workers_are_prepared_is_for_the_server_alone(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "presses.py").write_text(PRESSES, encoding="utf-8")
+    root = Path(__file__).resolve().parents[2]
+    done = subprocess.run(
+        [sys.executable, "-c", STARTS_A_WORKER],
+        cwd=root,
+        env=dict(os.environ, PYTHONPATH=str(tmp_path)),
+        start_new_session=True,
+        capture_output=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"pressed\n", b"")

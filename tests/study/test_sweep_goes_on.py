@@ -406,12 +406,13 @@ def press() -> None:
     os.kill(os.getpid(), signal.SIGINT)
 
 
-def test_a_first_interrupt_waits_for_the_end_of_the_body() -> None:
+def test_interrupts_wait_for_the_end_of_the_body_and_are_one() -> None:
     steps = []
 
     def body() -> None:
         with postponed_interrupt() as is_interrupted:
             steps.append(is_interrupted())
+            press()
             press()
             steps.append(is_interrupted())
 
@@ -419,21 +420,6 @@ def test_a_first_interrupt_waits_for_the_end_of_the_body() -> None:
         body()
     assert steps == [False, True]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-
-
-def test_a_second_interrupt_does_not_wait() -> None:
-    steps = []
-
-    def body() -> None:
-        with postponed_interrupt():
-            press()
-            steps.append("goes on")
-            press()
-            steps.append("is not reached")
-
-    with pytest.raises(KeyboardInterrupt):
-        body()
-    assert steps == ["goes on"]
 
 
 def test_an_interrupt_that_is_ignored_stays_so() -> None:

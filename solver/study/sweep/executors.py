@@ -155,16 +155,24 @@ def _context() -> BaseContext:
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([PRELOADED])
-    # Ctrl-C reaches all processes of a terminal. The server and its processes inherit
-    # that they ignore it: the process that submits the calls ends them. The tracker
-    # runs before, since starting it later would unblock the signal in this thread.
+    start_fork_server()
+    return context
+
+
+def start_fork_server() -> None:
+    """Start the fork server of this process, unless it runs: it never hears Ctrl-C.
+
+    Ctrl-C reaches all processes of a terminal. The server and its processes inherit
+    that they ignore it, also while they import: the process that asks for them ends
+    them.
+    """
+    # The tracker runs before, since starting it later would unblock the signal here.
     resource_tracker.ensure_running()
     unblocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         forkserver.ensure_running()
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, unblocked)
-    return context
 
 
 def _begin() -> None:
