@@ -79,7 +79,7 @@ EVERY = SOLVER | PAGE
 
 @cache
 def imports(module):
-    """The names of all that a module imports, anywhere in it and for types alone, too."""
+    """The names of all that a module imports, anywhere in it, also for types."""
     path = EVERY[module]
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

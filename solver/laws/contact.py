@@ -67,7 +67,7 @@ class Violation:
 
     @cached_property
     def dissipated(self) -> Array:
-        """Dissipation of this slip under the largest friction force."""
+        """Dissipation of this slip under the bound, (n_pairs, n_instants), scaled."""
         return self.bound * np.abs(self.slip)
 
     def energy(self, mean_slip: float, mean_force: Array | float) -> Array:
@@ -78,6 +78,7 @@ class Violation:
         mean slip; and for the normal law of N g where both are positive, of tension
         times the mean slip, and of overlap times the mean force.
         """
+        # Without the cut, a force beyond its bound would make the sum negative.
         held = np.clip(self.friction, -self.bound, self.bound)
         violation = self.dissipated + held * self.slip
         violation += np.abs(self.friction - held) * mean_slip
@@ -133,8 +134,10 @@ class Contact(Pairs):
             normal=Part(Unilateral),
             stiffness_beside=Part(RodStiffness, BodyStiffness),
         )
+        # The parts are known to be laws now, so that their sizes may be read.
         size = len(self.tangential.component.above)
         check(self, points=Numbers(((size,),), whole=True))
+        # Friction of a pressing force that no law provides would silently be zero.
         if self.normal is None and self.tangential.friction.any():
             raise RefusedError(
                 "Contact.tangential.friction",
@@ -156,6 +159,7 @@ class Contact(Pairs):
         a subclass changes.
         """
         friction = self.tangential
+        # Exact types: an instance of a subclass may follow another law.
         is_friction = type(friction) is Friction
         is_strength = type(friction.strength) in (Strength, NoneType)
         is_normal = type(self.normal) in (Unilateral, NoneType)
@@ -278,25 +282,24 @@ class Contact(Pairs):
     def shares(self) -> Array:
         """Share of each pair in the force of its point, (n_pairs,).
 
-        By the pairs' stiffnesses or bounds, or else, on an interface with a point that
-        has none, by their areas.
+        By the stiffnesses of the point's pairs, or their bounds, or else, where they
+        have none, by their areas.
         """
         compliance = self.tangential.compliance
         if compliance is None:
             along = self.tangential.highest.max(axis=1)
         else:
             along = 1.0 / compliance
-        by_area = self.weights / self.by_point(self.weights)[self.points]
         whole = self.by_point(along)[self.points]
-        numbers = self.interface_of_pairs
-        lacks = np.bincount(numbers, whole <= 0.0, len(self.sizes))[numbers] > 0
-        np.divide(along, whole, by_area, where=~lacks)
-        return np.asarray(by_area)
+        known = whole > 0.0
+        weights = np.where(known, along, self.weights)
+        return np.asarray(weights / self.by_point(weights)[self.points])
 
     def macro_parts(self) -> Iterator[MacroPart]:
         """Macro forces of both sides, in equilibrium, interface by interface."""
         if self.macro is None:
             return
+        # The same basis on both sides, whose macro forces add up to zero.
         basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
         numbers, columns = basis.coords
         # Of every interface the columns of one component follow those of the other.
@@ -348,6 +351,7 @@ class Contact(Pairs):
         if start is not None:
             before = start[:, None]
         slider = self.tangential.slider(displacement, force)
+        # Differences of two values have the noise of both.
         slip = beyond(np.diff(slider, axis=1, prepend=before), 2.0 * noise)
         return Violation(
             slip=slip,

@@ -127,7 +127,7 @@ class Pairs(Interface):
         return list(zip(points, pairs_of, strict=True))
 
     def holds_on(self, points: Flags) -> Flags:
-        """Mask of the points of interfaces of which any point counts, (n_points,) both."""
+        """Points of interfaces of which any point counts; masks, (n_points,)."""
         counts = [points[some].any() for some, _ in self.ranges]
         return np.repeat(counts, self.sizes)
 
@@ -155,6 +155,7 @@ class Pairs(Interface):
 
     def mean_by_point(self, values: Array) -> Array:
         """Mean over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
+        # Pairs of a point share its force, but each has its displacement and gap.
         counts = np.bincount(self.points, minlength=len(self.positions))
         trailing = [1] * (values.ndim - 1)
         return np.asarray(self.by_point(values) / counts.reshape(-1, *trailing))

@@ -123,6 +123,8 @@ class BodyStiffness:
         pairs = law.interface_of_pairs
         length = law.sums(law.weights)[pairs]
         if law.is_on_support:
+            # A support sees the depth of a thin body, or the local stiffness of a deep
+            # one.
             finer = [
                 max((size - 1) / RESOLVED, 1.0) ** FINER for size in law.sizes.tolist()
             ]
@@ -153,6 +155,7 @@ class BodyStiffness:
         squeezed = np.minimum(self.above, self.below) * law.weights / self.depth
         for component in law.components:
             for rows in component.sides:
+                # Only ever stiffer: where the k of `choose` is larger it stays.
                 k[rows] = np.maximum(k[rows], squeezed)
 
     def _slender(self, law: Pairs, length: Array) -> Array:

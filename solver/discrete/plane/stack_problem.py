@@ -16,7 +16,7 @@ from scipy import sparse
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.inside import Inside, RectangularSubstructure
 from solver.discrete.plane.bricks import Joint
-from solver.discrete.plane.cut_stack import CutStack
+from solver.discrete.plane.cut_stack import CutStack, Span
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
 from solver.discrete.plane.stack import Stack
@@ -35,13 +35,20 @@ from solver.laws import (
     Unilateral,
 )
 from solver.laws.friction import compliance_of
+from solver.refusal import RefusedError, Words
 
 NO_BODY = -1
 """In place of the number of a body: the support."""
 
 
 def problem_of(stack: Stack) -> Problem:
-    """Discrete problem of a stack: its substructures, interfaces and inside."""
+    """Discrete problem of a stack: its substructures, interfaces and inside.
+
+    Raises
+    ------
+    RefusedError
+        If bodies can move though all contacts are closed and stick.
+    """
     cut = CutStack(stack)
     contacts = _contacts_of(cut)
     order = [*contacts]
@@ -52,7 +59,7 @@ def problem_of(stack: Stack) -> Problem:
     has_short_joints = any(
         joint.is_upright and not cut.is_within_body(joint) for joint in cut.pairs
     )
-    return Problem(
+    problem = Problem(
         substructures=tuple(
             _substructure(part, dofs)
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
@@ -66,6 +73,22 @@ def problem_of(stack: Stack) -> Problem:
         has_short_joints=has_short_joints,
         order=tuple(order),
     )
+    if problem.is_loose:
+        held = [name for name, side in stack.sides.items() if _is_moved(side)]
+        raise RefusedError(
+            "Stack.sides",
+            Words(f"with displacements of {' and '.join(held) or 'no side'}"),
+            "sides and supports that leave no body free to move or to turn, where all "
+            "contacts are closed and stick",
+            "prescribe the displacement of one more side, or along both axes, or add a "
+            "support",
+        )
+    return problem
+
+
+def _is_moved(side: Side) -> bool:
+    """Check whether a displacement of a side is prescribed."""
+    return any(component.prescribed for component in side)
 
 
 def _substructure(part: RectangularSubstructure, dofs: Indices) -> Substructure:
@@ -124,7 +147,7 @@ def _interfaces(
     # A corner that two sides prescribe is held by the first: as `_prescribed` moves it.
     for side in ("top", "bottom", "left", "right"):
         given = stack.sides[side]
-        if any(component.prescribed for component in given):
+        if _is_moved(given):
             yield from _prescribed(cut, side, given)
 
 
@@ -273,7 +296,9 @@ def _friction(
     """Friction law along contacts, whose opening is `gap`, (n_pairs,), scaled."""
     scales = (stack.length, stack.young * stack.length)
     law = stack.friction_law
-    support = stack.support if pairs.others[0] == NO_BODY else None
+    support = None
+    if pairs.others[0] == NO_BODY:
+        support = stack.support
     if support is not None and support.is_image:
         law = law.of_one_side()
     if support is not None and support.bound is not None:
@@ -384,14 +409,15 @@ def _prescribed(
     values = list[Array]()
     components = [number for number, each in enumerate(given) if each.prescribed]
     for number, part in enumerate(cut.parts):
-        if side not in part.rows:
-            continue
-        for column, component in enumerate(components):
-            moved = cut.values(number, side, given[component])
-            if side in ("left", "right"):
-                _move_corners(cut, part, side, component, moved)
-            rows.append(part.rows[side][:, column])
-            values.append(moved / cut.stack.length)
+        for span, of_span in part.rows.items():
+            if not isinstance(span, Span) or span.side != side:
+                continue
+            for column, component in enumerate(components):
+                moved = cut.values(number, span, given[component])
+                if side in ("left", "right"):
+                    _move_corners(cut, part, side, component, moved)
+                rows.append(of_span[:, column])
+                values.append(moved / cut.stack.length)
     if rows:
         yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
 
@@ -409,7 +435,14 @@ def _move_corners(
     side's nodes, (n_nodes, n_instants), m.
     """
     sign = 1.0 if side == "right" else -1.0
+    spans = [name for name in part.rows if isinstance(name, Span)]
     for level, corner in (("bottom", 0), ("top", -1)):
         given = cut.stack.sides[level][component]
-        if level in part.rows and given.prescribed:
+        on_level = [span for span in spans if span.side == level]
+        if side == "right":
+            columns = part.rectangle.columns
+            is_prescribed = any(span.last == columns for span in on_level)
+        else:
+            is_prescribed = any(span.first == 0 for span in on_level)
+        if given.prescribed and is_prescribed:
             moved[corner] = given.mean + sign * given.slope

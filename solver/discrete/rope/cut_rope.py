@@ -28,6 +28,7 @@ def problem_of(rope: Rope) -> Problem:
         return problem
     interfaces = dict(problem.interfaces)
     for wire in rope.wires:
+        # The drawn strand has several half turns of each wire, which all count.
         copies = wire.stands_for * rope.seen_length / float(wire.along[-1])
         interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
     return replace(problem, interfaces=interfaces)
