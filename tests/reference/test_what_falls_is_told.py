@@ -1,4 +1,4 @@
-"""Where no equilibrium is found a run says when, under which loads, and what to try."""
+"""A run without equilibrium says when, under which loads, and what to try."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def pulled_rod(bound: float) -> Problem:
 
 
 def test_columns_that_lean_are_given_up_without_trying_the_same_states_again() -> None:
-    """They fall with the same states under softer and softer springs."""
+    """Columns fall with the same states under softer and softer springs."""
     problem = discretise(stacked())
     found = reference_of(problem)
     assert found.is_lost
