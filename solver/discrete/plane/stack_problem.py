@@ -15,6 +15,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.inside import Inside, RectangularSubstructure
+from solver.discrete.loose import is_loose
 from solver.discrete.plane.bricks import Joint
 from solver.discrete.plane.cut_stack import CutStack, Span
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
@@ -73,7 +74,7 @@ def problem_of(stack: Stack) -> Problem:
         has_short_joints=has_short_joints,
         order=tuple(order),
     )
-    if problem.is_loose:
+    if is_loose(problem):
         held = [name for name, side in stack.sides.items() if _is_moved(side)]
         raise RefusedError(
             "Stack.sides",
