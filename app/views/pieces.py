@@ -115,8 +115,7 @@ class PiecesView(ExtraView):
         self._placed = placed
         self._scale(extra, frame, placed)
         placed.move(stage, column, self._scales)
-        x, y = placed.outlines.T.astype(np.float32)
-        self.fill("pieces", x=x, y=y)
+        self._line("pieces", placed.outlines)
         self._show_forces(extra, stage, column)
         self._show_selected(extra, frame, selection)
         self._figure.title.text = _sentence(
@@ -128,22 +127,20 @@ class PiecesView(ExtraView):
         placed = self._placed
         factor = placed.arrow / self._scales["force"]
         tails, forces, sides = placed.arrows(stage.forces[..., column])
-        roots = placed.on_pieces(extra.points, extra.owners[extra.sides])
-        hairs = factor * stage.micro[..., column]
-        # The traction is large at corners.
-        longest = np.hypot(*hairs.T) / (HAIR * placed.arrow)
-        hairs = hairs / np.maximum(longest, 1.0)[:, None]
+        hairs = placed.hairs(factor * stage.micro[..., column])
         for index, side in enumerate(SIDES):
-            chosen = extra.is_above[sides] == index
-            lines, heads = _arrows(tails[chosen], factor * forces[chosen], placed.arrow)
-            x, y = lines.T.astype(np.float32)
-            self.fill(f"macro {side}", x=x, y=y)
+            is_own = extra.is_above[sides] == index
+            lines, heads = _arrows(tails[is_own], factor * forces[is_own], placed.arrow)
+            self._line(f"macro {side}", lines)
             xs, ys = np.moveaxis(np.round(heads, 1), -1, 0)
             self.fill(f"heads {side}", xs=xs.tolist(), ys=ys.tolist())
-            chosen = extra.is_above[extra.sides] == index
-            ends = np.stack([roots, roots + hairs], axis=1)[chosen]
-            x, y = gapped(ends).T.astype(np.float32)
-            self.fill(f"micro {side}", x=x, y=y)
+            is_own = extra.is_above[extra.sides] == index
+            self._line(f"micro {side}", gapped(hairs[is_own]))
+
+    def _line(self, name: str, points: Array) -> None:
+        """Fill a line of points, (n, 2), px."""
+        x, y = points.T.astype(np.float32)
+        self.fill(name, x=x, y=y)
 
     def _show_selected(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
         """Mark the selected joint, or all of the selected interface of several."""
@@ -156,8 +153,7 @@ class PiecesView(ExtraView):
         quarters = self._placed.quarters[chosen[extra.joints]]
         middle = quarters.mean(axis=1, keepdims=True)
         ends = middle + 2.0 * (quarters - middle)
-        x, y = gapped(ends).T.astype(np.float32)
-        self.fill("selected", x=x, y=y)
+        self._line("selected", gapped(ends))
 
     def _scale(self, extra: Pieces, frame: Frame, placed: _Placed) -> None:
         """Choose scales anew where those of the run's other frames do not do."""
@@ -284,26 +280,31 @@ class _Placed:
             nearest[chosen] = own[(away**2).sum(axis=-1).argmin(axis=1)]
         return self._placed(positions, parts) + self._moved[nearest]
 
+    def hairs(self, spans: Array) -> Array:
+        """Lines of micro forces, (n_points, 2, 2), px, from their spans, (n_points, 2).
+
+        The longest are cut, as the traction is large at corners.
+        """
+        extra = self._extra
+        longest = np.hypot(*spans.T) / (HAIR * self.arrow)
+        spans = spans / np.maximum(longest, 1.0)[:, None]
+        roots = self.on_pieces(extra.points, extra.owners[extra.sides])
+        return np.stack([roots, roots + spans], axis=1)
+
     def arrows(self, forces: Array) -> tuple[Array, Array, Indices]:
         """Tails, (n, 2), px, and forces, (n, 2), N, of arrows, and their sides, (n,).
 
         Long sides have an arrow at both quarter points, others one for both.
         """
-        steps = self.quarters[:, 1] - self.quarters[:, 0]
-        lengths = np.hypot(*steps.T)
-        is_long = lengths >= PAIRED
-        numbers = np.arange(len(lengths))
-        sides = np.concatenate([numbers[~is_long], *[numbers[is_long]] * 2])
-        tails = np.concatenate(
-            [
-                self.quarters[~is_long].mean(axis=1),
-                *np.moveaxis(self.quarters[is_long], 1, 0),
-            ]
-        )
-        shown = np.concatenate(
-            [forces[~is_long].sum(axis=1), *np.moveaxis(forces[is_long], 1, 0)]
-        )
-        return tails + self._aside()[sides], shown, sides
+        lengths = np.hypot(*(self.quarters[:, 1] - self.quarters[:, 0]).T)
+        is_short = lengths < PAIRED
+        tails = self.quarters + self._aside()[:, None]
+        tails[is_short] = tails[is_short].mean(axis=1, keepdims=True)
+        shown = forces.copy()
+        shown[is_short, 0] = forces[is_short].sum(axis=1)
+        shown[is_short, 1] = 0.0
+        sides = np.repeat(np.arange(len(lengths)), 2)
+        return tails.reshape(-1, 2), shown.reshape(-1, 2), sides
 
     def _aside(self) -> Array:
         """Shift of arrows along joints, (n_sides, 2), px."""
