@@ -11,11 +11,12 @@ from app.views.rope import AxialForces, WireSection
 from app.views.scene import Stress, Thrust
 from app.views.status_map import StatusMap
 from app.views.view import View
+from app.views.zigzag import Zigzag
 
 CARDS: tuple[tuple[type[View], ...], ...] = (
     (Thrust, ContactForce, AxialForces, HysteresisLoop, Stress),
     (StatusMap, WireSection, SlipPlane, Cycles, CycleEnergy),
-    (Convergence, ErrorTime, PiecesView),
+    (Convergence, ErrorTime, PiecesView, Zigzag),
     (Spectra, SpaceModes, TimeFunctions, ClipErrors),
 )
 """The views of each card; the first that applies is shown first."""

@@ -7,6 +7,8 @@ from bokeh.palettes import interp_palette
 LATIN = "#0072B2"
 PRESSURE = "#B0609A"
 REFERENCE = "#7A7A7A"
+STAGES = {"local": "#D55E00", "linear": LATIN}
+"""Colours of the stages of an iteration."""
 ERROR = "#D55E00"
 DISPLACEMENT = "#009E73"
 EXACT = "#56B48C"

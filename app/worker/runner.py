@@ -168,6 +168,7 @@ class Runner:
             # The iterate before stays, whose numbers can be drawn.
             return
         self.iterate = iterate
+        self.sampler.keep(iterate)
         self.history.append(record(iterate, decision, self._distance))
 
     def _compare(self) -> None:

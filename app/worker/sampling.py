@@ -77,8 +77,13 @@ class Sampler:
             is_idle=nothing_acts(problem),
         )
 
+    def keep(self, iterate: Iterate) -> None:
+        """Keep an iterate for extras that show past ones."""
+        self._sampled.trail.keep(iterate)
+
     def complete(self, reference: Reference | None) -> None:
         """Add the reference and the closed forms to the run."""
+        self._sampled.trail.reference = reference
         curves = self.settings.exact(self.problem, reference)
         exact = tuple(self._at_columns(curve) for curve in curves)
         known: dict[str, Any] = {"exact": exact, "is_compared": True}

@@ -30,7 +30,7 @@ def answer() -> Frame:
     return runner.frame(Needs())
 
 
-def test_one_steps_from_each_kept_iterate_to_the_next_and_at_last_to_the_answer(
+def test_one_steps_by_stages_of_kept_iterates_and_at_last_to_the_answer(
     answer: Frame,
 ) -> None:
     last = answer.iteration
@@ -46,9 +46,15 @@ def test_one_steps_from_each_kept_iterate_to_the_next_and_at_last_to_the_answer(
     seen = []
     state.seek(1)
     while state.frame is not answer:
-        seen.append(state.frame)
+        seen.append((state.frame.iteration, state.selection.stage))
         state.step()
-    assert [frame.iteration for frame in seen] == [1, 4, last - 2]
+    assert seen == [
+        (1, "linear"),
+        (4, "local"),
+        (4, "linear"),
+        (last - 2, "local"),
+        (last - 2, "linear"),
+    ]
     state.seek(3)
     assert state.frame is kept[0]
 
