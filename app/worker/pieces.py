@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from app.frame import Floats
+from app.frame import LINEAR, LOCAL, Floats
 from app.messages import Needs
 from app.worker.geometry import NONE, PITCH, THICKNESS, floats, thinned
 from solver.arrays import Array, Indices
@@ -91,7 +91,7 @@ class Pieces:
     columns: Indices
     """Indices of the instants among those of a frame, (n_instants,)."""
     stages: Mapping[str, StageFields]
-    """Fields by stage, "local" and "linear"."""
+    """Fields by stage, `LOCAL` and `LINEAR`."""
 
     @property
     def nbytes(self) -> int:
@@ -440,7 +440,7 @@ class _Apart:
             iterate.boundary_displacement[:, columns],
             iterate.boundary_force[:, columns],
         )
-        return replace(self._pieces, stages={"local": local, "linear": linear})
+        return replace(self._pieces, stages={LOCAL: local, LINEAR: linear})
 
     def _stage(self, displacement: Array, force: Array) -> StageFields:
         """Fields of a stage from W and F of all rows, (n_rows, n_instants), scaled."""
