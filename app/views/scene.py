@@ -159,7 +159,7 @@ class Scene(View):
             self._scale_arrows(frame)
 
     def _show_keys(self, frame: Frame, layout: Layout, stage: str) -> None:
-        """Show keys of the status, in rows or a column, with magnification and stage."""
+        """Show the keys of the status, with the magnification and the stage."""
         run = frame.run
         can_open = any(each.bound is None for each in run.interfaces.values())
         self.show("open", can_open)

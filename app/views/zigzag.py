@@ -112,6 +112,8 @@ class Zigzag(ExtraView):
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         column = frame.run.column(selection.phase)
         way = _Way(extra, column, selection.stage)
+        if frame.residual is not None:
+            way.newest = way.star
         self._scale(frame, extra, way, column)
         self._show_law(extra, way, column)
         self._show_way(way)

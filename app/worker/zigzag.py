@@ -14,7 +14,7 @@ from app.messages import Needs
 from app.worker.geometry import MOST_POINTS, floats, thinned
 from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete import Problem
-from solver.latin import Iterate
+from solver.latin import Answer, Iterate
 from solver.laws import Contact
 from solver.reference.assembly import assembled_stiffness, jumps
 from solver.reference.solution import Reference
@@ -49,11 +49,11 @@ class Trail:
     def __init__(self) -> None:
         self.iterates: list[Iterate] = []
         self.reference: Reference | None = None
-        self.answer: Iterate | None = None
+        self.answer: Answer | None = None
 
     def keep(self, iterate: Iterate) -> None:
         """Keep an iterate, without what was computed from it."""
-        if iterate.residual is not None:
+        if isinstance(iterate, Answer):
             self.answer = iterate
             return
         self.iterates.append(replace(iterate, bases=(), k_update=None))
@@ -164,7 +164,7 @@ def zigzag(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     a start from nothing; "local" and "linear", slip, m, and friction force on the body
     above per length or area, of each stage, (n_iterates, 2, n_instants); "straight",
     whether the way to either stage goes along k, same shape; "k", the slope of this
-    line. Of the newest iterate: the law (`ContactPoint.law_at`), and "fields", friction
+    line. Of the iterate itself: the law (`ContactPoint.law_at`), and "fields", friction
     in both stages at points "x", (2, n_points, n_instants).
 
     "position" is that of the point, m; "star", slip and
@@ -191,12 +191,12 @@ def zigzag(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     kept = thinned(len(law.positions), MOST_POINTS)
     return {
         **_way(point, past, columns),
-        **point.law_at(past[-1], columns),
+        **point.law_at(iterate, columns),
         "position": float(law.positions[point.number]),
         "star": star,
         "balance": balance,
         "x": floats(law.positions[kept]),
-        "fields": _fields(problem, law, past[-1], columns)[:, kept],
+        "fields": _fields(problem, law, iterate, columns)[:, kept],
     }
 
 
