@@ -211,7 +211,7 @@ def _outlines_of_rods(
             given = np.zeros((10, problem.n_instants))
             given[::2] = problem.carried[part.dofs[ends]]
         outlines.append(_Outline(corners, motion, given))
-    for law in problem.rubbing.values():
+    for law in problem.rubbing.laws.values():
         positions[law.tangent.above, 1] -= 0.5 * thickness
         if law.tangent.below is not None:
             positions[law.tangent.below, 1] += 0.5 * thickness
@@ -358,12 +358,13 @@ def _pairs_of(problem: Problem) -> _Pairs:
         above.append(cut.second)
         below.append(cut.first)
         numbers.append(np.full(len(cut.first), NONE))
-    for number, law in enumerate(problem.rubbing.values()):
+    for stacked in problem.rubbing.stacks:
+        law = stacked.law
+        support = np.full(len(law.points), NONE)
         for component in law.components:
-            support = np.full(len(component.above), NONE)
             above.append(component.above)
             below.append(support if component.below is None else component.below)
-            numbers.append(np.full(len(component.above), number))
+            numbers.append(stacked.numbers[law.interface_of_pairs])
     return _Pairs(np.concatenate(above), np.concatenate(below), np.concatenate(numbers))
 
 
