@@ -217,14 +217,12 @@ class Frame:
 
 
 def _size(extra: Any) -> int:
-    """Memory of the arrays in an extra, bytes."""
-    if isinstance(extra, np.ndarray):
-        return extra.nbytes
+    """Memory of an extra and its parts that say theirs, bytes."""
     if isinstance(extra, Mapping):
         return sum(_size(part) for part in extra.values())
     if isinstance(extra, list | tuple):
         return sum(_size(part) for part in extra)
-    return 0
+    return int(getattr(extra, "nbytes", 0))
 
 
 @dataclass(frozen=True)

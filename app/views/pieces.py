@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import numpy as np
 import panel as pn
+from bokeh.core.properties import value
 from bokeh.events import Tap
-from bokeh.models import Title
 
-from app.frame import Frame, Selection
+from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.units import number, unit_for
 from app.views.acts import gapped
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO, UNSEEN
+from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
+from app.views.layout import LETTER
 from app.views.view import ExtraView, bare
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
@@ -22,10 +24,10 @@ WIDTH = 600.0
 HEIGHT = 260.0
 """Size of the figure until the browser reports its own, px."""
 ROOM = 24.0
-FOOT = 18.0
-"""Room round the pieces, and for a line of the legend below them, px."""
-NARROW = 700.0
-"""Width below which the legend takes two lines, px."""
+"""Room round the pieces, px."""
+FOOT = 1.5
+LINES = 2
+"""Height of a line over its type size, and lines of text above the pieces, about."""
 THICK = 56.0
 """Largest thickness of a rod, px."""
 APART = 12.0
@@ -69,7 +71,6 @@ class PiecesView(ExtraView):
     def make(self) -> None:
         """Draw pieces, forces and the selected joint; the legend is below."""
         plot = bare(120, (0, WIDTH), (0, HEIGHT), x_axis_type=None)
-        plot.title = Title(align="left", standoff=2, text_font_style="normal")
         self._figure = plot
         look = {"fill_color": BODY, "fill_alpha": 0.4, "line_color": EDGE}
         self.add("pieces", "Patch", **look)
@@ -79,11 +80,18 @@ class PiecesView(ExtraView):
         for side in SIDES:
             self.add(f"macro {side}", color=MACRO[side], width=2.2)
             self.add(f"heads {side}", "Patches", "xs ys", color=MACRO[side])
+        self.add(
+            "words",
+            "Text",
+            "x y text",
+            text_color=EDGE,
+            text_font=value("Roboto, sans-serif"),
+            text_baseline="top",
+        )
         marks = {
             "force on left, lower piece": MACRO["below"],
             "on right, upper piece": MACRO["above"],
             "pale: micro part": MICRO["above"],
-            "note": UNSEEN,
         }
         self.mark(marks)
         self._keys = self.legend(*marks, place="center")
@@ -101,49 +109,58 @@ class PiecesView(ExtraView):
 
     def _show(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
         self._last = extra, frame, selection
-        name = getattr(selection, "stage", "linear")
-        stage = extra.stages[name]
+        stage = extra.stages[selection.stage]
         shown = frame.run.column(selection.phase)
         column = int(np.abs(extra.columns - shown).argmin())
+        placed = _Placed(extra, self._box(), frame.run.settings.kind == "plane")
+        self._placed = placed
+        self._scale(extra, frame)
+        placed.move(stage, column, self._scales)
+        self._line("pieces", placed.outlines)
+        self._show_forces(extra, stage, column)
+        self._show_selected(extra, frame, selection)
+        sentence = _sentence(extra, stage, column, selection.stage)
+        self._write(f"{sentence}. {self._note(extra)}.")
+
+    def _box(self) -> Array:
+        """Corners of the room between text and legend, (2, 2), px."""
         width, height = self._size.values()
         self._figure.x_range.end = width
         self._figure.y_range.end = height
-        self._keys.nrows = 2 if width < NARROW else 1
-        low = FOOT * self._keys.nrows
-        is_plane = frame.run.settings.kind == "plane"
-        placed = _Placed(extra, np.array([[0.0, low], [width, height]]), is_plane)
-        self._placed = placed
-        self._scale(extra, frame, placed)
-        placed.move(stage, column, self._scales)
-        x, y = placed.outlines.T.astype(np.float32)
-        self.fill("pieces", x=x, y=y)
-        self._show_forces(extra, stage, column)
-        self._show_selected(extra, frame, selection)
-        self._figure.title.text = _sentence(
-            extra, stage, column, getattr(selection, "stage", "linear")
-        )
-        self.show("note", self._note(extra))
+        size = float(self._type.removesuffix("px"))
+        keys = sum(len(key) for key in self._items)
+        if LETTER * size * keys + 90.0 < width:
+            self._keys.nrows = 1
+        else:
+            self._keys.nrows = 2
+        low = FOOT * size * self._keys.nrows
+        return np.array([[0.0, low], [width, height - LINES * FOOT * size]])
+
+    def _write(self, text: str) -> None:
+        """Write a text into the lines above the pieces."""
+        width, height = self._size.values()
+        size = float(self.words.removesuffix("px"))
+        lines = textwrap.wrap(text, max(int(width / (LETTER * size)), 20))
+        self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
 
     def _show_forces(self, extra: Pieces, stage: StageFields, column: int) -> None:
         placed = self._placed
         factor = placed.arrow / self._scales["force"]
         tails, forces, sides = placed.arrows(stage.forces[..., column])
-        roots = placed.on_pieces(extra.points, extra.owners[extra.sides])
-        hairs = factor * stage.micro[..., column]
-        # The traction is large at corners.
-        longest = np.hypot(*hairs.T) / (HAIR * placed.arrow)
-        hairs = hairs / np.maximum(longest, 1.0)[:, None]
+        hairs = placed.hairs(factor * stage.micro[..., column])
         for index, side in enumerate(SIDES):
-            chosen = extra.is_above[sides] == index
-            lines, heads = _arrows(tails[chosen], factor * forces[chosen], placed.arrow)
-            x, y = lines.T.astype(np.float32)
-            self.fill(f"macro {side}", x=x, y=y)
+            is_own = extra.is_above[sides] == index
+            lines, heads = _arrows(tails[is_own], factor * forces[is_own], placed.arrow)
+            self._line(f"macro {side}", lines)
             xs, ys = np.moveaxis(np.round(heads, 1), -1, 0)
             self.fill(f"heads {side}", xs=xs.tolist(), ys=ys.tolist())
-            chosen = extra.is_above[extra.sides] == index
-            ends = np.stack([roots, roots + hairs], axis=1)[chosen]
-            x, y = gapped(ends).T.astype(np.float32)
-            self.fill(f"micro {side}", x=x, y=y)
+            is_own = extra.is_above[extra.sides] == index
+            self._line(f"micro {side}", gapped(hairs[is_own]))
+
+    def _line(self, name: str, points: Array) -> None:
+        """Fill a line of points, (n, 2), px."""
+        x, y = points.T.astype(np.float32)
+        self.fill(name, x=x, y=y)
 
     def _show_selected(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
         """Mark the selected joint, or all of the selected interface of several."""
@@ -156,37 +173,36 @@ class PiecesView(ExtraView):
         quarters = self._placed.quarters[chosen[extra.joints]]
         middle = quarters.mean(axis=1, keepdims=True)
         ends = middle + 2.0 * (quarters - middle)
-        x, y = gapped(ends).T.astype(np.float32)
-        self.fill("selected", x=x, y=y)
+        self._line("selected", gapped(ends))
 
-    def _scale(self, extra: Pieces, frame: Frame, placed: _Placed) -> None:
+    def _scale(self, extra: Pieces, frame: Frame) -> None:
         """Choose scales anew where those of the run's other frames do not do."""
         if self._scene != frame.run.settings.scene:
             self._scales = {}
             self._chosen = set[str]()
             self._scene = frame.run.settings.scene
-        linear = extra.stages["linear"]
+        linear = extra.stages[LINEAR]
         totals = linear.forces.sum(axis=1)
         largest = {
             "force": np.hypot(totals[:, 0], totals[:, 1]).max(initial=0.0),
             "moved": np.nanmax(np.abs(linear.joined), initial=0.0),
             "gap": linear.gap.max(initial=0.0),
         }
-        for name, value in largest.items():
+        for name, size in largest.items():
             kept = self._scales.setdefault(name, 1.0)
-            share = float(value) / kept
+            share = float(size) / kept
             # That gaps close is to be seen.
             is_closing = name == "gap" and share < 1.0 and name in self._chosen
             if share > 0.0 and not is_closing and not KEPT[0] <= share <= KEPT[1]:
-                self._scales[name] = rounded_up(float(value))
+                self._scales[name] = rounded_up(float(size))
                 self._chosen.add(name)
 
     def _note(self, extra: Pieces) -> str:
         """Scales of displacements, gaps and arrows, and a word on what is left out."""
         placed = self._placed
         force = self._scales["force"]
-        texts = [f"motion × {number(placed.factor(self._scales), 2)}"]
-        if extra.stages["linear"].gap.any():
+        texts = [f"Displacement × {number(placed.factor(self._scales), 2)}"]
+        if extra.stages[LINEAR].gap.any():
             texts.append(f"gaps × {number(placed.jump_factor(self._scales), 2)}")
         texts.append(f"longest arrow {unit_for(force, 'N')(force)}")
         if extra.left_out:
@@ -284,26 +300,31 @@ class _Placed:
             nearest[chosen] = own[(away**2).sum(axis=-1).argmin(axis=1)]
         return self._placed(positions, parts) + self._moved[nearest]
 
+    def hairs(self, spans: Array) -> Array:
+        """Lines of micro forces, (n_points, 2, 2), px, from their spans, (n_points, 2).
+
+        The longest are cut, as the traction is large at corners.
+        """
+        extra = self._extra
+        longest = np.hypot(*spans.T) / (HAIR * self.arrow)
+        spans = spans / np.maximum(longest, 1.0)[:, None]
+        roots = self.on_pieces(extra.points, extra.owners[extra.sides])
+        return np.stack([roots, roots + spans], axis=1)
+
     def arrows(self, forces: Array) -> tuple[Array, Array, Indices]:
         """Tails, (n, 2), px, and forces, (n, 2), N, of arrows, and their sides, (n,).
 
         Long sides have an arrow at both quarter points, others one for both.
         """
-        steps = self.quarters[:, 1] - self.quarters[:, 0]
-        lengths = np.hypot(*steps.T)
-        is_long = lengths >= PAIRED
-        numbers = np.arange(len(lengths))
-        sides = np.concatenate([numbers[~is_long], *[numbers[is_long]] * 2])
-        tails = np.concatenate(
-            [
-                self.quarters[~is_long].mean(axis=1),
-                *np.moveaxis(self.quarters[is_long], 1, 0),
-            ]
-        )
-        shown = np.concatenate(
-            [forces[~is_long].sum(axis=1), *np.moveaxis(forces[is_long], 1, 0)]
-        )
-        return tails + self._aside()[sides], shown, sides
+        lengths = np.hypot(*(self.quarters[:, 1] - self.quarters[:, 0]).T)
+        is_short = lengths < PAIRED
+        tails = self.quarters + self._aside()[:, None]
+        tails[is_short] = tails[is_short].mean(axis=1, keepdims=True)
+        shown = forces.copy()
+        shown[is_short, 0] = forces[is_short].sum(axis=1)
+        shown[is_short, 1] = 0.0
+        sides = np.repeat(np.arange(len(lengths)), 2)
+        return tails.reshape(-1, 2), shown.reshape(-1, 2), sides
 
     def _aside(self) -> Array:
         """Shift of arrows along joints, (n_sides, 2), px."""
@@ -352,9 +373,9 @@ def _sentence(extra: Pieces, stage: StageFields, column: int, name: str) -> str:
     has_two = np.bincount(extra.joints, minlength=len(size)) == 2
     missing = np.hypot(*size[has_two].T) > BALANCED * largest
     count = len(missing)
-    if name == "local":
+    if name == LOCAL:
         return "Local stage: joints obey their laws, but pieces are not in balance"
-    text = "Linear stage: pieces in balance"
+    text = "Linear stage: pieces are in balance"
     if missing.any():
         text += f", macro forces differ at {missing.sum()} of {count} joints"
     elif count:

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 
-from app.frame import Floats
+from app.frame import LINEAR, LOCAL, Floats
 from app.messages import Needs
 from app.worker.geometry import NONE, PITCH, THICKNESS, floats, thinned
 from solver.arrays import Array, Indices
@@ -55,6 +56,11 @@ class StageFields:
     """Rest of the force at points, as what it would be if the whole side had it,
     (n_points, 2, n_instants), N."""
 
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays, bytes."""
+        return sum(array.nbytes for array in vars(self).values())
+
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
@@ -85,13 +91,12 @@ class Pieces:
     columns: Indices
     """Indices of the instants among those of a frame, (n_instants,)."""
     stages: Mapping[str, StageFields]
-    """Fields by stage, "local" and "linear"."""
+    """Fields by stage, `LOCAL` and `LINEAR`."""
 
     @property
     def nbytes(self) -> int:
         """Memory of the fields, bytes."""
-        fields = [vars(stage).values() for stage in self.stages.values()]
-        return sum(array.nbytes for arrays in fields for array in arrays)
+        return sum(stage.nbytes for stage in self.stages.values())
 
 
 class Cutter:
@@ -166,7 +171,8 @@ def _outlines_of_bodies(problem: Problem) -> list[_Outline]:
     outlines = []
     for number, grid in enumerate(inside.grids):
         numbers = np.arange(grid.size).reshape(grid.shape)
-        kept = numbers[np.ix_(*[thinned(size, limit) for size in grid.shape])]
+        up, across = [thinned(size, limit) for size in grid.shape]
+        kept = numbers[np.ix_(up, across)]
         sides = (kept[0], kept[1:, -1], kept[-1, -2::-1], kept[-2::-1, 0])
         ring = np.concatenate(sides)
         matrix, given = inside.of_part(number, ring)
@@ -205,52 +211,61 @@ def _outlines_of_rods(
             given = np.zeros((10, problem.n_instants))
             given[::2] = problem.carried[part.dofs[ends]]
         outlines.append(_Outline(corners, motion, given))
-    for law in problem.rubbing.values():
+    for law in problem.rubbing.laws.values():
         positions[law.tangent.above, 1] -= 0.5 * thickness
         if law.tangent.below is not None:
             positions[law.tangent.below, 1] += 0.5 * thickness
     return outlines, positions
 
 
+class _Pairs(NamedTuple):
+    """Rows that face each other, and the number of their interface, (n_pairs,) each.
+
+    The number is `NONE` at cuts, and so is the row below on a support.
+    """
+
+    above: Indices
+    below: Indices
+    numbers: Indices
+
+    def joints(self, owners: Indices) -> tuple[_Pairs, Indices, Indices]:
+        """Pairs at shown joints; what tells these apart, (n_joints, 3); joint of each.
+
+        `owners` are the pieces of all rows, `NONE` where they are not shown, and `NONE`
+        behind the last, (n_rows + 1,).
+        """
+        keys = np.stack([self.numbers, owners[self.above], owners[self.below]], axis=1)
+        is_shown = (keys[:, 1] != NONE) & ((keys[:, 2] != NONE) | (self.below == NONE))
+        keys, of_pairs = np.unique(keys[is_shown], axis=0, return_inverse=True)
+        shown = _Pairs(
+            self.above[is_shown], self.below[is_shown], self.numbers[is_shown]
+        )
+        return shown, keys, of_pairs.ravel()
+
+
 class _Joints:
     """Sides of the joints between some pieces, and forces on them.
 
-    `rows`, `sides` and `components`, (n,), are the boundary rows, the side that each is
-    of, and its component. Of each side there are the joint, (n_sides,), whether it is
-    above, its owner among the pieces, and quarter points, (n_sides, 2, 2), m. `macro`
-    and `micro` are maps from the forces on all rows.
+    `joints`, `is_above`, `owners`, `quarters`, `points` and `sides` are as in `Pieces`.
+    `macro`, (4 n_sides, n_rows), and `micro`, (2 n_points, n_rows), are maps from the
+    forces on all rows, whose `positions` are (n_rows, 2), m. With many joints there are
+    micro forces on the interface of a name alone.
     """
 
     def __init__(
         self, problem: Problem, numbers: Indices, positions: Array, name: str
     ) -> None:
         self._n_rows = problem.n_rows
-        above, below, chains = _pairs_of(problem)
         owners = np.full(problem.n_rows + 1, NONE)
         for piece, number in enumerate(numbers):
             owners[problem.substructures[number].rows] = piece
-        # A support has no rows, and the last owner, which is no piece.
-        keys = np.stack([chains, owners[above], owners[below]], axis=1)
-        is_shown = (keys[:, 1] != NONE) & ((keys[:, 2] != NONE) | (below == NONE))
-        joints, of_pairs = np.unique(keys[is_shown], axis=0, return_inverse=True)
-        kept = thinned(len(joints), MOST_JOINTS)
-        self.left_out = len(joints) - len(kept)
-        chains = joints[kept, 0]
-        names = list(problem.rubbing)
-        self.names = [names[chain] if chain >= 0 else "" for chain in chains]
-        # All rows with the joint that they are of, among those that are kept.
-        rows = np.concatenate([below[is_shown], above[is_shown]])
-        of_rows = np.tile(of_pairs.ravel(), 2)
-        is_above = np.repeat([0, 1], len(rows) // 2)
-        has_side = (rows != NONE) & np.isin(of_rows, kept)
-        self._rows = rows[has_side]
-        sides = 2 * np.searchsorted(kept, of_rows[has_side]) + is_above[has_side]
-        each, first, self._sides = np.unique(
-            sides, return_index=True, return_inverse=True
-        )
-        self.joints = each // 2
-        self.is_above = each % 2
-        self.owners = owners[self._rows[first]]
+        pairs, keys, of_pairs = _pairs_of(problem).joints(owners)
+        kept = thinned(len(keys), MOST_JOINTS)
+        self.left_out = len(keys) - len(kept)
+        names = [*problem.rubbing, ""]
+        self.names = [names[number] for number in keys[kept, 0]]
+        self._gather(pairs, of_pairs, kept)
+        self.owners = owners[self._rows[np.unique(self._sides, return_index=True)[1]]]
         self._components = np.zeros(len(self._rows), dtype=np.intp)
         if problem.inside is not None:
             dofs = problem.row_dofs[self._rows]
@@ -259,6 +274,21 @@ class _Joints:
         self._measure()
         self.macro = self._macro()
         self.points, self.sides, self.micro = self._micro(name)
+
+    def _gather(self, pairs: _Pairs, of_pairs: Indices, kept: Indices) -> None:
+        """Number the sides of the joints that are kept, and collect their rows.
+
+        `of_pairs` are the joints of the pairs, (n_pairs,).
+        """
+        rows = np.concatenate([pairs.below, pairs.above])
+        joints = np.tile(of_pairs, 2)
+        is_above = np.repeat([0, 1], len(of_pairs))
+        has_side = (rows != NONE) & np.isin(joints, kept)
+        self._rows = rows[has_side]
+        sides = 2 * np.searchsorted(kept, joints[has_side]) + is_above[has_side]
+        each, self._sides = np.unique(sides, return_inverse=True)
+        self.joints = each // 2
+        self.is_above = each % 2
 
     def _measure(self) -> None:
         """Find quarter points, and the place of each row along its side, -1 to 1."""
@@ -288,44 +318,39 @@ class _Joints:
     def _micro(self, name: str) -> tuple[Array, Indices, sparse.csr_array]:
         """Points with micro forces, (n_points, 2), m, their sides, and a map to these.
 
-        The map has shape (2 n_points, n_rows). The macro force is spread as a traction
-        that is linear along the side.
+        The macro force is spread as a traction that is linear along the side.
         """
-        chosen = np.ones(len(self.names), dtype=bool)
-        if len(self.names) > MOST_DETAILED:
-            chosen = np.array(self.names) == name
-        order = np.lexsort((self._along, self._components, self._sides))
-        order = order[chosen[self.joints[self._sides[order]]]]
-        numbers = 2 * self._sides[order] + self._components[order]
-        ends = np.flatnonzero(np.diff(numbers)) + 1
-        # Of two points the macro force is all.
-        groups = [group for group in np.split(order, ends) if len(group) > 2]
+        groups = self._groups(name)
         members = np.concatenate([np.zeros(0, dtype=np.intp), *groups])
         places = np.round(self._along[members], 9)
         keys = np.stack([self._sides[members], places], axis=1)
         keys, first, of_members = np.unique(
             keys, axis=0, return_index=True, return_inverse=True
         )
-        ones = np.ones(len(members))
-        each = np.arange(len(members))
-        targets = 2 * of_members.ravel() + self._components[members]
-        spread = sparse.csr_array(
-            (ones, (targets, each)), shape=(2 * len(keys), len(members))
-        )
-        gathered = sparse.csr_array(
-            (ones, (each, self._rows[members])), shape=(len(members), self._n_rows)
-        )
         blocks = [_without_macro(self._along[group]) for group in groups]
-        within = sparse.block_diag([np.zeros((0, 0)), *blocks], format="csr")
+        within = sparse.block_diag([np.zeros((0, 0)), *blocks], format="coo")
+        targets = 2 * of_members.ravel() + self._components[members]
+        places = targets[within.coords[0]], self._rows[members][within.coords[1]]
+        shape = 2 * len(keys), self._n_rows
+        micro = sparse.csr_array((within.data, places), shape=shape)
         points = self._positions[members[first]]
-        return points, keys[:, 0].astype(np.intp), spread @ within @ gathered
+        return points, keys[:, 0].astype(np.intp), micro
+
+    def _groups(self, name: str) -> list[Indices]:
+        """Rows of each side and component with micro forces, in order along it."""
+        is_chosen = np.ones(len(self.names), dtype=bool)
+        if len(self.names) > MOST_DETAILED:
+            is_chosen = np.array(self.names) == name
+        order = np.lexsort((self._along, self._components, self._sides))
+        order = order[is_chosen[self.joints[self._sides[order]]]]
+        numbers = 2 * self._sides[order] + self._components[order]
+        ends = np.flatnonzero(np.diff(numbers)) + 1
+        # Of two points the macro force is all.
+        return [group for group in np.split(order, ends) if len(group) > 2]
 
 
-def _pairs_of(problem: Problem) -> tuple[Indices, Indices, Indices]:
-    """Rows of both sides of all joints, and numbers of interfaces, (n_pairs,) each.
-
-    The number is `NONE` at cuts, and so is the row below on a support.
-    """
+def _pairs_of(problem: Problem) -> _Pairs:
+    """Rows of both sides of all cuts and interfaces with friction."""
     above = []
     below = []
     numbers = []
@@ -333,13 +358,14 @@ def _pairs_of(problem: Problem) -> tuple[Indices, Indices, Indices]:
         above.append(cut.second)
         below.append(cut.first)
         numbers.append(np.full(len(cut.first), NONE))
-    for number, law in enumerate(problem.rubbing.values()):
+    for stacked in problem.rubbing.stacks:
+        law = stacked.law
+        support = np.full(len(law.points), NONE)
         for component in law.components:
             above.append(component.above)
-            support = np.full(len(component.above), NONE)
             below.append(support if component.below is None else component.below)
-            numbers.append(np.full(len(component.above), number))
-    return np.concatenate(above), np.concatenate(below), np.concatenate(numbers)
+            numbers.append(stacked.numbers[law.interface_of_pairs])
+    return _Pairs(np.concatenate(above), np.concatenate(below), np.concatenate(numbers))
 
 
 def _without_macro(along: Array) -> Array:
@@ -400,9 +426,9 @@ class _Apart:
             columns=shown,
             stages={},
         )
-        above, below, chains = _pairs_of(problem)
-        is_cut = (chains == NONE) & np.isin(above, rows)
-        self._cuts = above[is_cut], below[is_cut]
+        pairs = _pairs_of(problem)
+        is_cut = (pairs.numbers == NONE) & np.isin(pairs.above, rows)
+        self._cuts = pairs.above[is_cut], pairs.below[is_cut]
 
     def of(self, iterate: Iterate) -> Pieces:
         """The pieces with the fields of both stages of an iterate."""
@@ -415,7 +441,7 @@ class _Apart:
             iterate.boundary_displacement[:, columns],
             iterate.boundary_force[:, columns],
         )
-        return replace(self._pieces, stages={"local": local, "linear": linear})
+        return replace(self._pieces, stages={LOCAL: local, LINEAR: linear})
 
     def _stage(self, displacement: Array, force: Array) -> StageFields:
         """Fields of a stage from W and F of all rows, (n_rows, n_instants), scaled."""
