@@ -122,6 +122,7 @@ class Runner:
         self.history: list[Record] = []
         self.status: Status | None = None
         self.answer: LastAnswer | None = None
+        self._certificate: Certificate | None = None
         self.has_news = False
         self.pacing = Pacing(start.pace, start.steps)
         self._before = before
@@ -206,35 +207,30 @@ class Runner:
         self.iterate = iterate
         self.history.append(record(iterate, decision, self._distance))
         if self.status is not None and decision.certificate is not None:
-            self._answered(decision.certificate)
-
-    def _answered(self, certificate: Certificate) -> None:
-        """Keep the states of a certified answer.
-
-        The solution is what a run that follows a slider is compared with: the
-        incremental solver would find it once more, while the slider moves on.
-        """
-        solution = certificate.solution
-        self.answer = LastAnswer.of(self._order, solution)
-        if self.is_dragged and not self._is_compared:
-            # The time of a status step is not that of the incremental solver.
-            timeless = replace(solution, seconds=math.nan)
-            self._complete(timeless, certificate.distance)
+            self.answer = LastAnswer.of(self._order, decision.certificate.solution)
+            if self.is_dragged:
+                self._certificate = decision.certificate
 
     def _compare(self) -> None:
         """Find the reference, and the errors of the iterate recorded before it."""
         problem = self.sampler.problem
+        # The certified solution of a run that follows a slider is its reference: the
+        # incremental solver would find it once more, while the slider moves on.
+        if self._certificate is not None:
+            # It does not tell how long the incremental solver takes from nothing.
+            timeless = replace(self._certificate.solution, seconds=math.nan)
+            self._complete(timeless, self._certificate.distance)
+            return
         try:
             reference = self._references.of(self.settings, problem, self._interrupted)
         except Interrupted:
             return
-        self.has_news = True
         if reference is None:
             self._complete(None, None)
         elif reference.collapse is None:
             self._complete(reference, distance_to(reference, problem))
         else:
-            self._is_compared = True
+            self._is_compared = self.has_news = True
             self.sampler.collapse(reference.collapse)
             # The answer of a run that has ended before its reference is there stands.
             if self.status is None or self.status.ending is not Ending.CONVERGED:
@@ -242,7 +238,7 @@ class Runner:
 
     def _complete(self, reference: Reference | None, distance: Distance | None) -> None:
         """Compare the run with a reference, by the distance to it, or with none."""
-        self._is_compared = True
+        self._is_compared = self.has_news = True
         self.sampler.complete(reference)
         self._distance = distance
         if distance is not None:
