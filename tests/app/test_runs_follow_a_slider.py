@@ -94,6 +94,8 @@ def test_a_small_move_is_answered_without_an_iteration(scene: str) -> None:
     runner = dragged(moved, states_after(dragged(begin), moved))
     assert len(runner.history) == 1
     assert runner.history[0].iteration == 1
+    assert runner.status is not None
+    assert "without an iteration" in runner.status.advice
 
 
 @pytest.mark.parametrize("scene", list(MOVED))
