@@ -76,13 +76,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Together:
 
 
 def pytest_collection_finish() -> None:
-    """Have no collection of garbage look through all that was imported again."""
+    """Keep the garbage collector from searching the imported modules again."""
     gc.collect()
     gc.freeze()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Say in the last line how many tests of the page were skipped, and why."""
+    """Print the number of skipped tests of the page, and the reason."""
     reporter = config.pluginmanager.get_plugin("terminalreporter")
     if reporter:
         reports = reporter.stats.get("skipped", [])

@@ -63,7 +63,7 @@ print(table.numbers.tolist())
 
 
 def dockerfile() -> list[tuple[str, str]]:
-    """Give the instructions, continuation lines joined and comments dropped."""
+    """Instructions of the Dockerfile, with joined lines and without comments."""
     text = (ROOT / "Dockerfile").read_text()
     lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
     joined = "\n".join(lines).replace("\\\n", " ")
@@ -161,7 +161,7 @@ def test_the_image_is_slim_not_root_and_has_one_blas_thread():
 
 
 def handshake(port, origin):
-    """Give the answer to a page of some origin that asks for a websocket."""
+    """Answer to a page of some origin that asks for a websocket."""
     asked = http.client.HTTPConnection("127.0.0.1", int(port), timeout=PATIENCE)
     with closing(asked):
         asked.request(

@@ -126,7 +126,9 @@ def link_of(state: PageState) -> tuple[str, str]:
     # The leader of a class has its key there, too, which is not handed on.
     shown["room"] = state.room.partition(".")[0]
     shown["instant"] = round(state.selection.phase, 4)
-    shown["iteration"] = frame.iteration if is_waiting else 0
+    shown["iteration"] = 0
+    if is_waiting:
+        shown["iteration"] = frame.iteration
     root = ""
     if pn.state.location is not None:
         root = pn.state.location.href.partition("?")[0]

@@ -307,7 +307,7 @@ class DrawnMesh(Drawn):
         return middles
 
     def nodes_of(self, displacement: Array) -> Floats:
-        """Displacement of nodes, (n_nodes, 2), m, from all displacements, (n_dofs,), m."""
+        """Displacement of nodes, (n_nodes, 2), m, from that of all, (n_dofs,), m."""
         moved = self._inside.displacement(displacement[:, None], [0])
         # Given displacements are added to all, and are no part of a motion.
         still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])

@@ -18,7 +18,7 @@ from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
 from solver.discrete.structure import LoopFields
-from solver.latin import Iterate, Record, Solution, Status
+from solver.latin import Answer, Iterate, Record, Solution, Status
 from solver.latin.end.status import CANCELLED
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.limit_analysis import Collapse
@@ -107,20 +107,25 @@ class Sampler:
         # Quantities are those of a run that ended here.
         solution = Solution(iterate, list(history), status or CANCELLED)
         run = FinishedRun(self.settings, solution, made_loop=self.loop)
+        residual = None
+        is_beside = False
+        if isinstance(iterate, Answer):
+            residual = iterate.residual
+            is_beside = iterate.is_beside
         remarks: tuple[str, ...] = ()
         if status:
             remarks = tuple(remarks_on(self.settings, iterate))
         return Frame(
             run=self.run,
             iteration=iterate.iterations,
-            is_answer=iterate.is_answer,
+            is_answer=is_beside,
             contact=self._contact(iterate, self._names(needs)),
             deformed=self.drawn.deformed(iterate),
             loop=self._loop(iterate),
             history=_scalars(history),
             status=status,
             energy=float(run.dissipated.sum()),
-            residual=iterate.residual,
+            residual=residual,
             remarks=remarks,
             extras=self._extras(iterate, needs),
             readings={name: reading(name)(run) for name in needs.readings},

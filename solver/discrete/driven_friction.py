@@ -75,6 +75,7 @@ class DrivenFriction:
             return self._on_springs(pressing, opening)
         slip = self._slip
         bound = self.along.allowed(pressing, slip, opening)
+        # A clamped point has what its neighbour has per area, within its own bound.
         even = np.clip(self.share[:, None] * forces[self.beside], -bound, bound)
         return np.where(slip == 0.0, even, -bound * np.sign(slip))
 

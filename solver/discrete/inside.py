@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -31,8 +32,8 @@ class RectangularSubstructure:
     body
         Number of its body.
     rows
-        Boundary rows by joint or by the name of a side, shape (n_nodes, n_components)
-        each.
+        Boundary rows by joint or by the span of an outer side, shape (n_nodes,
+        n_components) each.
     force
         Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
     """
@@ -61,7 +62,7 @@ class Inside:
         each.
     dofs
         Degrees of freedom of the problem that each substructure keeps, (n_kept,) each.
-    places, components
+    positions, components
         Position of every degree of freedom of the problem, (n_dofs, 2), scaled, and its
         component: 0 along x and 1 along y, (n_dofs,).
     """
@@ -124,6 +125,7 @@ class Inside:
                 continue
             np.add.at(total, dofs, part.condensed.condense(share)[:, 0])
             if part.force is not None:
+                # With the boundary held, only loads inside move the inner nodes.
                 held = np.zeros((len(dofs), self._size[1]))
                 constant += share[:, 0] @ part.condensed.recover(held, part.force)
         return total, constant * self._length
@@ -139,6 +141,14 @@ class Inside:
         ]
         return self._young * np.concatenate(parts)
 
+    @cached_property
+    def body_of_dofs(self) -> Indices:
+        """Number of the body of every degree of freedom of the problem, (n_dofs,)."""
+        bodies = np.empty(len(self.components), dtype=np.intp)
+        for part, dofs in zip(self._parts, self.dofs, strict=True):
+            bodies[dofs] = part.body
+        return bodies
+
     def rigid_motions(self, fixed: Indices) -> Array | None:
         """Independent rigid motions of bodies, (n_dofs, n_motions), or None.
 
@@ -146,12 +156,12 @@ class Inside:
         `fixed`, (n,).
         """
         motions = []
-        bodies = np.empty(len(self.components), dtype=np.intp)
-        for part, dofs in zip(self._parts, self.dofs, strict=True):
-            bodies[dofs] = part.body
+        bodies = self.body_of_dofs
         for body in np.unique(bodies):
             dofs = np.flatnonzero(bodies == body)
             modes = self._rigid_modes(dofs)
+            # Motions that vanish where displacements are prescribed are those that stay
+            # free.
             at_fixed = modes[np.isin(dofs, fixed)]
             _, sizes, combinations = np.linalg.svd(at_fixed, full_matrices=True)
             hindered = np.count_nonzero(sizes > HELD)
@@ -161,10 +171,38 @@ class Inside:
         together = np.concatenate(motions, axis=1)
         return together if together.size else None
 
+    def hold_still(
+        self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
+    ) -> bool:
+        """Check whether groups of bodies cannot move where some displacements vanish.
+
+        Parameters
+        ----------
+        groups
+            Number of the group of every degree of freedom, all bodies of which move as
+            one, shape (n_dofs,); -1 where it stands still.
+        fixed
+            Degrees of freedom that are held, shape (n,).
+        jumps
+            Degrees of freedom that move alike, shape (n,) each; -1 is one that stands
+            still.
+        """
+        moving = np.unique(groups[groups >= 0])
+        # The row beyond the last is what stands still.
+        motions = np.zeros((len(groups) + 1, 3 * len(moving)))
+        for number, group in enumerate(moving):
+            dofs = np.flatnonzero(groups == group)
+            motions[dofs, 3 * number : 3 * number + 3] = self._rigid_modes(dofs)
+        hindered = [motions[fixed]]
+        hindered += [motions[above] - motions[below] for above, below in jumps]
+        sizes = np.linalg.svd(np.concatenate(hindered), compute_uv=False)
+        return int(np.count_nonzero(sizes > HELD)) == motions.shape[1]
+
     def _rigid_modes(self, dofs: Indices) -> Array:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
         is_along_x = self.components[dofs] == 0
         x, y = (self.positions[dofs] - self.positions[dofs].mean(axis=0)).T
+        # About the mean position, where translations and rotation are independent.
         rotation = np.where(is_along_x, -y, x)
         modes = np.stack([is_along_x, ~is_along_x, rotation], axis=1)
         return np.asarray(modes.astype(float))

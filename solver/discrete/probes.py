@@ -184,6 +184,7 @@ def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
         loads += held[problem.row_dofs[given.rows]] @ given.values
     scales = problem.scales
     dofs = np.flatnonzero(weights)
+    # The weights of a force by displacements are a stiffness.
     elastic = weights[dofs] * scales.force / scales.displacement
     elements = Probe(dofs, elastic, -loads * scales.force)
     return Reaction(elements, _contacts_at(problem, held))
@@ -199,6 +200,7 @@ def _contacts_at(
     """
     contacts: dict[str, tuple[Array | None, Array]] = {}
     for name, law in problem.rubbing.items():
+        # All pairs of a point are at one node, so one of them tells its weight.
         _, pairs = np.unique(law.points, return_index=True)
         weights = []
         for component in law.components:
@@ -238,6 +240,7 @@ class AxialForce:
         if free:
             self._free = problem.scales.force * np.concatenate(free)[:, instants]
         self.positions: Array = 0.5 * (places[self._first] + places[self._second])
+        # A rod begins where its first substructure stands at the first position.
         begins = [places[part.dofs[0]] == places[0] for part in parts]
         sizes = [len(part.dofs) - 1 for part in parts]
         self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
@@ -272,6 +275,7 @@ def _integral(inside: Inside, ends: Indices, component: int, density: Array) -> 
     `ends` are the nodes at both ends of n edges, `density` the values there, (2, n).
     """
     length = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1)
+    # Simpson's rule, exact for the product of two linear functions.
     shares = length / 6.0 * (density + density.sum(axis=0))
     weights = np.zeros_like(inside.nodes)
     np.add.at(weights[:, component], ends, shares)

@@ -558,6 +558,53 @@ class Problem:
             return None
         return self.inside.rigid_motions(self.prescribed[0])
 
+    @property
+    def is_loose(self) -> bool:
+        """Check whether bodies can move though all contacts are closed and stick.
+
+        False along rods, and beside a user's law, which may hold what it likes.
+        """
+        if self.inside is None or self.own_laws:
+            return False
+        bodies = self.inside.body_of_dofs
+        ground = int(bodies.max()) + 1
+        joined = [np.zeros((2, 0), dtype=np.intp)]
+        jumps = list[tuple[Indices, Indices]]()
+        for law in self.rubbing.values():
+            pairs = self._pairs_that_hold(law)
+            # Two points in contact leave no motion of one body beside the other.
+            if law.opens and len(law.positions) > 1:
+                with_ground = np.append(bodies, ground)
+                joined += [with_ground[np.stack(pair)] for pair in pairs]
+            else:
+                jumps += pairs
+        first, second = np.concatenate(joined, axis=1)
+        size = ground + 1
+        links = sparse.coo_array((np.ones(len(first)), (first, second)), (size, size))
+        _, groups = connected_components(links, directed=False)
+        group_of_dofs = groups[bodies]
+        group_of_dofs[group_of_dofs == groups[ground]] = -1
+        fixed, _ = self.prescribed
+        return not self.inside.hold_still(group_of_dofs, fixed, jumps)
+
+    def _pairs_that_hold(self, law: Contact) -> list[tuple[Indices, Indices]]:
+        """Degrees of freedom above and below that a closed contact that sticks ties.
+
+        Shape (n_pairs,) each, by components; -1 is a support. A spring ties one
+        component.
+        """
+        components = law.components
+        if law.is_spring:
+            components = law.components[:1]
+        pairs = list[tuple[Indices, Indices]]()
+        for component in components:
+            above = self.row_dofs[component.above]
+            below = np.full_like(above, -1)
+            if component.below is not None:
+                below = self.row_dofs[component.below]
+            pairs.append((above, below))
+        return pairs
+
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
         """Degrees of freedom of prescribed displacement, (n,), ascending, and values.

@@ -21,7 +21,7 @@ OUTWARD = {
     "top": (0.0, 1.0),
 }
 """Sides of all bodies together, and the outward normal of each."""
-Way = tuple[float, float]
+Direction = tuple[float, float]
 
 
 def on_side(side: str, shares: ArrayLike) -> Array:
@@ -31,6 +31,7 @@ def on_side(side: str, shares: ArrayLike) -> Array:
     shape (n,). On the side "body" the points lie along the middle.
     """
     along = np.asarray(shares, dtype=float)
+    # A side fixes one coordinate, and the shares run along the other.
     x = {"left": 0.0, "right": 1.0}.get(side, along)
     y = {"bottom": 0.0, "top": 1.0, "body": 0.5}.get(side, along)
     columns = [np.broadcast_to(x, along.shape), np.broadcast_to(y, along.shape)]
@@ -60,12 +61,12 @@ class Act:
     where: str
     symbol: str
     points: Array
-    towards: Way | Array
+    towards: Direction | Array
     values: Array
     unit: str
 
     @property
-    def away(self) -> Way:
+    def away(self) -> Direction:
         """Direction out of the body, a unit vector: there is room for an arrow."""
         return OUTWARD.get(self.where.partition(" ")[0], OUTWARD["right"])
 
@@ -141,7 +142,7 @@ class LoopFields(Protocol):
 
     @property
     def displacement(self) -> Array:
-        """Displacement of the problem's degrees of freedom, m."""
+        """Displacement of the problem's dofs, shape (n_dofs, n_instants), m."""
 
     def contact(self, name: str) -> ContactFields:
         """Fields of one interface with friction."""

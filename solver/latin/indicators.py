@@ -28,6 +28,7 @@ def latin_indicator(iterate: Iterate) -> float:
         return float(iterate.k @ (field * field @ weights))
 
     weights = iterate.problem.time_weights
+    # W + F/k and W - F/k are at hand, so no force is computed for the norm.
     local_outgoing = 2.0 * iterate.local_displacement - iterate.local_incoming
     distance = weighted(iterate.outgoing - local_outgoing)
     distance += weighted(iterate.incoming - iterate.local_incoming)
@@ -72,6 +73,8 @@ def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np
             touches = group.law.by_point(force[normal.component.above]) > 0.0
             size = np.where(touches, size, 0.0)
             distance = np.where(touches, distance, 0.0)
+        # The smaller one: an early iterate has distant stages, a late one little slip
+        # left.
         still = np.minimum(
             creep[group.numbers] * group.largest(size), group.largest(distance)
         )
@@ -111,6 +114,7 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
     energy = _elastic_energy(problem, displacement, beyond(force, noise))
     energy += sum(float(violation.dissipated.sum()) for violation in violations)
     largest_friction = sum(float(violation.bound.sum()) for violation in violations)
+    # Where nothing can dissipate any force sets the scale.
     if largest_friction == 0.0:
         largest_friction = float(np.abs(force).sum())
     mean_slip = ratio(energy, largest_friction)
@@ -138,6 +142,7 @@ def _worst(group: ContactGroup, violation: Violation, mean_slip: float) -> float
     if violation.pressing is not None:
         pressed = np.maximum(violation.pressing, 0.0).mean(axis=1)
         pairs = group.interfaces[group.law.points]
+        # Interfaces of a group lie in one array, and each has its own mean.
         means = group.sums(pressed) / group.sums(np.ones_like(pressed))
         mean_force = means[pairs, None]
     energy = violation.energy(mean_slip, mean_force)
@@ -162,6 +167,7 @@ def _rounding(displacement: Array, force: Array) -> float:
     """
     moved = float(np.abs(displacement).max())
     pulled = float(np.abs(force).max())
+    # A structure that sticks everywhere hardly moves, and its slips are rounding.
     if moved <= STILL * pulled / len(force):
         return max(moved, ROUNDING * pulled)
     return ROUNDING * (moved + pulled)

@@ -18,6 +18,7 @@ from solver.laws import Contact
 from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
+from solver.refusal import RefusedError, Words
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Nested:
     ----------
     coarser
         Function that makes the problems on coarser meshes, uncut, the finest first,
-        when a run begins.
+        when a run begins; of rods, as the problem itself.
     """
 
     coarser: Callable[[], Iterable[Problem]]
@@ -52,6 +53,7 @@ class Nested:
         """
         deadline = time.perf_counter() + seconds
         for coarse in self.coarser():
+            _check_meshes(coarse, problem)
             try:
                 solution = reference_of(coarse, lambda: time.perf_counter() > deadline)
             except NoReferenceError:
@@ -82,8 +84,14 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     Returns
     -------
     W + F/k of its rows, shape (n_rows, n_instants), scaled.
+
+    Raises
+    ------
+    RefusedError
+        If bodies lie in the plane, or the meshes are not of one structure.
     """
     coarse = solution.problem
+    _check_meshes(coarse, fine)
     displacement = solution.displacement / coarse.scales.displacement
     inside = _interpolated(_apart(fine), _apart(coarse), displacement)
     force, is_open = _carried(solution, fine)
@@ -92,6 +100,27 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     rest = balance.T @ (needed - balance @ force)
     force[is_open] = rest[is_open]
     return np.asfortranarray(inside[fine.row_dofs] + force / k[:, None])
+
+
+def _check_meshes(coarse: Problem, fine: Problem) -> None:
+    """Refuse problems in the plane, and two that are not of one structure."""
+    remedy = "start without one"
+    for problem in (coarse, fine):
+        if problem.positions.ndim > 1:
+            shown = Words("a problem of bodies in the plane")
+            raise RefusedError("Nested.coarser", shown, "problems of rods", remedy)
+    for kind, are_alike in (
+        ("interfaces", list(coarse.rubbing) == list(fine.rubbing)),
+        ("bodies", _bodies(coarse)[-1] == _bodies(fine)[-1]),
+        ("instants", np.array_equal(coarse.instants, fine.instants)),
+    ):
+        if not are_alike:
+            raise RefusedError(
+                "Nested.coarser",
+                Words(f"a problem of other {kind}"),
+                "the same structure and instants on another mesh",
+                remedy,
+            )
 
 
 def _carried(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
@@ -109,6 +138,7 @@ def _carried(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
         friction = law.by_point(known[law.tangent.above])
+        # Per length, as nodal forces depend on the mesh.
         density = friction / law.by_point(law.weights)[:, None]
         spread = _interpolated(
             _points_apart(fine, target), _points_apart(coarse, law), density
@@ -157,6 +187,7 @@ def _interpolated(fine: Array, coarse: Array, values: Array) -> Array:
     `fine` and `coarse` are positions, shapes (n_fine,) and (n_coarse,), m, `values`
     have shape (n_coarse, n_instants); the result has shape (n_fine, n_instants).
     """
+    # Beyond the coarse ends the value at the end holds.
     right = np.clip(np.searchsorted(coarse, fine), 1, len(coarse) - 1)
     share = (fine - coarse[right - 1]) / (coarse[right] - coarse[right - 1])
     share = np.clip(share, 0.0, 1.0)[:, None]

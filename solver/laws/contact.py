@@ -66,7 +66,7 @@ class Violation:
 
     @cached_property
     def dissipated(self) -> Array:
-        """Dissipation of this slip under the largest friction force."""
+        """Dissipation of this slip under the bound, (n_pairs, n_instants), scaled."""
         return self.bound * np.abs(self.slip)
 
     def energy(self, mean_slip: float, mean_force: Array | float) -> Array:
@@ -77,6 +77,7 @@ class Violation:
         mean slip; and for the normal law of N g where both are positive, of tension
         times the mean slip, and of overlap times the mean force.
         """
+        # Without the cut, a force beyond its bound would make the sum negative.
         held = np.clip(self.friction, -self.bound, self.bound)
         violation = self.dissipated + held * self.slip
         violation += np.abs(self.friction - held) * mean_slip
@@ -145,6 +146,7 @@ class Contact(Interface):
             stiffness_beside=Part(RodStiffness, BodyStiffness),
             positions=Numbers(((None,),)),
         )
+        # The parts are known to be laws now, so that their sizes may be read.
         size = len(self.tangential.component.above)
         last = len(self.positions) - 1
         check(
@@ -152,6 +154,7 @@ class Contact(Interface):
             points=Numbers(((size,),), low=0, high=last, whole=True),
             weights=Numbers(((size,),), low=0.0, above=True),
         )
+        # Friction of a pressing force that no law provides would silently be zero.
         if self.normal is None and self.tangential.friction.any():
             raise RefusedError(
                 "Contact.tangential.friction",
@@ -173,6 +176,7 @@ class Contact(Interface):
         a subclass changes.
         """
         friction = self.tangential
+        # Exact types: an instance of a subclass may follow another law.
         is_friction = type(friction) is Friction
         is_strength = type(friction.strength) in (Strength, NoneType)
         is_normal = type(self.normal) in (Unilateral, NoneType)
@@ -279,13 +283,14 @@ class Contact(Interface):
     def _pairs_of_points(self) -> sparse.csr_array:
         """Matrix with 1 where a pair belongs to a point, shape (n_points, n_pairs)."""
         size = len(self.points)
-        places = self.points, np.arange(size)
+        entries = self.points, np.arange(size)
         return sparse.csr_array(
-            (np.ones(size), places), shape=(len(self.positions), size)
+            (np.ones(size), entries), shape=(len(self.positions), size)
         )
 
     def mean_by_point(self, values: Array) -> Array:
         """Mean over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
+        # Pairs of a point share its force, but each has its displacement and gap.
         counts = np.bincount(self.points, minlength=len(self.positions))
         trailing = [1] * (values.ndim - 1)
         return np.asarray(self.by_point(values) / counts.reshape(-1, *trailing))
@@ -303,23 +308,24 @@ class Contact(Interface):
     def shares(self) -> Array:
         """Share of each pair in the force of its point, (n_pairs,).
 
-        By the pairs' stiffnesses or bounds, or else by their areas.
+        By the stiffnesses of the point's pairs, or their bounds, or else, where they
+        have none, by their areas.
         """
         compliance = self.tangential.compliance
         if compliance is None:
             along = self.tangential.highest.max(axis=1)
         else:
             along = 1.0 / compliance
-        for weights in (along, self.weights):
-            whole = self.by_point(weights)[self.points]
-            if np.all(whole > 0.0):
-                return np.asarray(weights / whole)
-        return 1.0 / np.bincount(self.points)[self.points]
+        whole = self.by_point(along)[self.points]
+        known = whole > 0.0
+        weights = np.where(known, along, self.weights)
+        return np.asarray(weights / self.by_point(weights)[self.points])
 
     def macro_parts(self) -> Iterator[MacroPart]:
         """Macro forces of both sides, in equilibrium, component by component."""
         if self.macro is None:
             return
+        # The same basis on both sides, whose macro forces add up to zero.
         basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
         for component in self.components:
             yield MacroPart(np.concatenate(component.sides), basis)
@@ -352,6 +358,7 @@ class Contact(Interface):
         if start is not None:
             before = start[:, None]
         slider = self.tangential.slider(displacement, force)
+        # Differences of two values have the noise of both.
         slip = beyond(np.diff(slider, axis=1, prepend=before), 2.0 * noise)
         return Violation(
             slip=slip,

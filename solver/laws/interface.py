@@ -77,6 +77,7 @@ class Springs:
         if self._share_below is None:
             displacement[self._above] = held
             return
+        # Both sides carry the same force, so each takes the share of its compliance.
         moved = held - jump
         under = self._share_below * moved
         displacement[self._below] = incoming[self._below] - under
@@ -171,6 +172,7 @@ class Interface(ABC):
     def __init_subclass__(cls, **options: Any) -> None:
         """Reset methods `OF_ONE_LAW` of a class without its own incremental form."""
         super().__init_subclass__(**options)
+        # A class that says its incremental form knows what it inherits.
         if "incremental_form" in vars(cls):
             return
         for name in OF_ONE_LAW:
@@ -231,6 +233,7 @@ def gaps_of_rule(
     law: Interface, displacement: Array, force: Array, noise: float, k: Array
 ) -> Gaps:
     """Violations of a law by W and F, from its local stage; as `Interface.gaps`."""
+    # W - F/k is z, from which the local stage starts (paper, problem 2.1).
     incoming = displacement - force / k[:, None]
     local = displacement.copy(order="F")
     law.rule(k, displacement.shape[1])(incoming, local, slice(None))

@@ -120,6 +120,8 @@ class BodyStiffness:
             return
         length = law.weights.sum()
         if law.is_on_support:
+            # A support sees the depth of a thin body, or the local stiffness of a deep
+            # one.
             finer = max((len(law.positions) - 1) / RESOLVED, 1.0) ** FINER
             pressing = sliding = max(CONTACT_STIFFNESS * finer, length / self.depth)
         else:
@@ -144,6 +146,7 @@ class BodyStiffness:
         squeezed = min(self.moduli) * law.weights / self.depth
         for component in law.components:
             for rows in component.sides:
+                # Only ever stiffer: where the k of `choose` is larger it stays.
                 k[rows] = np.maximum(k[rows], squeezed)
 
     def _slender(self, law: Contact) -> float:

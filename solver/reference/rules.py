@@ -98,6 +98,7 @@ class Rules:
 
         Friction whose normal force is not among theirs has no coefficient.
         """
+        # Numbers among the unknown jumps, by numbers among all.
         places = np.full(len(self.gap), -1)
         places[moving] = np.arange(len(moving))
         partner = places[self.partner[moving]]
@@ -160,6 +161,7 @@ class Rules:
             Opening of every jump, same shape, where contact that opens breaks bonds.
         """
         bound = self.bound
+        # Most structures have no bonds: then the bound is not copied.
         if opening is not None and self.bonds.size:
             bound = np.broadcast_to(bound, force.shape).copy()
             under = self.partner[self.bonds]
@@ -185,12 +187,13 @@ def rules_of(problem: Problem) -> Rules:
         parts += _components(law, first)
         first += len(law.components) * len(law.positions)
         if not parts[-1].is_frictionless.all():
+            # Without friction it does not matter how slip would change it.
             strengths.add(law.tangential.strength or PLAIN)
     if len(strengths) > 1:
         raise NoReferenceError(problem.no_reference)
-    stacked = {
-        name: in_rows([getattr(part, name) for part in parts]) for name in OF_JUMPS
-    }
+    stacked = {}
+    for name in OF_JUMPS:
+        stacked[name] = in_rows([getattr(part, name) for part in parts])
     return Rules(**stacked, strength=next(iter(strengths), PLAIN))
 
 

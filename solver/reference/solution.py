@@ -108,9 +108,13 @@ def fingerprint(problem: Problem) -> bytes:
     scales = problem.scales
     rules = rules_of(problem)
     laws = problem.rubbing
-    matrices = assembled_stiffness(problem), jumps(problem)
-    for matrix in matrices:
+    entries: list[ArrayLike] = []
+    for matrix in (assembled_stiffness(problem), jumps(problem)):
+        # Equal matrices may store their entries in another order.
         matrix.sort_indices()
+        entries += [matrix.indptr, matrix.indices, matrix.data]
+    of_jumps = [getattr(rules, name) for name in OF_JUMPS]
+    positions = [law.positions for law in laws.values()]
     parts: list[ArrayLike] = [
         [f"{name} {law.opens} {law.is_on_support}" for name, law in laws.items()],
         [scales.displacement, scales.force, scales.time],
@@ -118,18 +122,15 @@ def fingerprint(problem: Problem) -> bytes:
         problem.positions,
         force,
         *problem.prescribed,
-        *(getattr(rules, name) for name in OF_JUMPS),
+        *of_jumps,
         [rules.strength.slips, rules.strength.factors],
-        *(
-            part
-            for matrix in matrices
-            for part in (matrix.indptr, matrix.indices, matrix.data)
-        ),
-        *(law.positions for law in laws.values()),
+        *entries,
+        *positions,
         [] if problem.rest is None else problem.rest,
     ]
     digest = blake2b(digest_size=16)
     for part in map(np.asarray, parts):
+        # Type and shape, too: equal bytes may be other numbers.
         digest.update(f"{part.dtype.str} {part.shape}".encode())
         digest.update(part.tobytes())
     return digest.digest()

@@ -402,7 +402,7 @@ class BlockSettings(SideSettings):
             raise self.refusal(
                 "top",
                 "sides and loads that leave the body in equilibrium",
-                f"nothing but contact holds it, and {when} {reason}: lower that load, "
+                f"contact does not hold it, as {when} {reason}: lower that load, "
                 "press more, raise friction where it slides, take a longer or lower "
                 "body where it tips, or hold a side",
             )

@@ -34,8 +34,7 @@ from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import f as f_distribution
-from scipy.stats import norm
+from scipy.special import fdtri, ndtr
 
 from solver.arrays import Array
 from solver.study.compared_runs import ComparedRuns
@@ -46,7 +45,7 @@ LIMIT = math.log(FACTOR)
 """The same distance in z."""
 WALK = math.log(3.0)
 """Distance in z along the floor of a valley that is searched for a lower place."""
-TWO = float(2.0 * norm.cdf(2.0) - 1.0)
+TWO = float(2.0 * ndtr(2.0) - 1.0)
 """Probability of a normal value within two standard errors."""
 BROAD = 1e-2
 """Step, in z, of the finite differences that tell the direction of a valley."""
@@ -99,6 +98,7 @@ class ProfileSide:
 
         Between two places the root of the rise is taken as straight.
         """
+        # The last place below the level: a dent before it does not end the margin.
         inside = int(np.flatnonzero(self.rises <= level)[-1])
         if inside == len(self.rises) - 1:
             if self.is_at_bound:
@@ -199,7 +199,7 @@ class Valley:
         rows = len(runs.first.differences)
         free = rows - len(z)
         self.deviation = max(math.sqrt(self.minimum / free), SILENT)
-        quantile = float(f_distribution.ppf(TWO, 1, free))
+        quantile = float(fdtri(1, free, TWO))
         change = runs.of_mesh(z)
         self.mesh = change / math.sqrt(rows)
         self.noise = quantile * self.deviation**2
@@ -288,6 +288,7 @@ class Valley:
             ahead = places[-1] + course * (distance - last)
             place = self._place(along, distance, ahead, places[-1])
             rise = self._rise(place)
+            # The floor bends: the next place is sought along the last step.
             course = (place - places[-1]) / (distance - last)
             step = distance * self._growth(rise)
             distances.append(distance)

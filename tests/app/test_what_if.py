@@ -87,7 +87,7 @@ def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
     first.values.value = "500 mm, 1, 2"
     assert made.question.vary[0] == "length=0.5,1,2"
     first.values.value = "1, long"
-    refusal = "Values, m cannot be “1, long”: write a number in m."
+    refusal = "Values, m cannot be “1, long”: write a number."
     assert made.message.object == refusal
     for wrong in ("-1, 2", "1:2", "1:2:x"):
         first.values.value = wrong

@@ -4,11 +4,13 @@ zero at every instant, moments too.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
+from contact_problems import block
 from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
@@ -474,7 +476,7 @@ def test_friction_fitted_to_the_closed_form_of_a_moved_end_is_that_of_the_form()
 
 
 def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> None:
-    """Their ends move alike in the end: what rounding leaves of that is no slip."""
+    """The ends' last moves are alike: their difference is rounding, and no slip."""
     times = np.linspace(0.0, 1.0, 9)
     free = Given(False, 0.0 * times)
     turned = Given(
@@ -510,3 +512,66 @@ def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> N
         beside = np.clip(0.5 * between.tangential_force[1], -bound, bound)
         np.testing.assert_allclose(friction[5:], beside[5:], rtol=1e-6)
     assert_bodies_balance(problem, reference)
+
+
+LYING: dict[str, tuple[list[Brick], int]] = {
+    "beside its left end": ([Brick(0, 0, 6, 4), Brick(2, 4, 4, 4)], 6),
+    "in the middle": ([Brick(0, 0, 6, 4), Brick(1, 4, 3, 4)], 6),
+    "at both ends": (
+        [Brick(0, 0, 6, 4), Brick(0, 4, 2, 4), Brick(4, 4, 2, 4)],
+        6,
+    ),
+    "beyond it": ([Brick(0, 0, 5, 4), Brick(2, 4, 4, 4)], 6),
+    "below a third": (
+        [Brick(0, 0, 6, 4), Brick(2, 4, 2, 2), Brick(0, 6, 6, 2)],
+        10,
+    ),
+}
+"""Where a body lies on another, and the elements of all tops that lie open."""
+
+
+@pytest.mark.parametrize("cuts", [1, 2])
+@pytest.mark.parametrize("name", LYING)
+def test_what_presses_a_partly_covered_body_stands_on_its_support(
+    name: str, cuts: int
+) -> None:
+    """The top is all that lies open above: the load presses any piece it lies on."""
+    bricks, open_tops = LYING[name]
+    stack = block(elements=(6, 4), cuts=(cuts, 1), bodies=2, shear=0.05)
+    stack = replace(stack, bricks=bricks)
+    problem = stack.discretise()
+    reference = reference_of(problem)
+    assert reference.converged.all()
+    assert_bodies_balance(problem, reference)
+    on_support = [
+        reference.contact(contact).normal_force.sum(axis=0)
+        for contact, law in problem.rubbing.items()
+        if law.is_on_support
+    ]
+    element = stack.length / stack.elements[0]
+    pressure = -stack.sides["top"].y.mean
+    pressed = open_tops * element * pressure
+    np.testing.assert_allclose(np.sum(on_support, axis=0), pressed, rtol=1e-9)
+
+
+def test_a_press_moves_what_lies_farthest_up_however_bodies_are_cut() -> None:
+    """A displacement of the top is that of a press, which touches no lower body."""
+    stack = block(elements=(6, 4), cuts=(1, 1), bodies=2)
+    still = Given(True, 0.0 * stack.instants)
+    pushed = Given(True, -1e-4 * np.minimum(4.0 * stack.instants, 1.0))
+    bricks, _ = LYING["in the middle"]
+    stack = replace(stack, bricks=bricks, sides={"top": Side(still, pushed)})
+    forces = []
+    for cuts in ((1, 1), (6, 2)):
+        problem = replace(stack, substructures=cuts).discretise()
+        reference = reference_of(problem)
+        assert reference.converged.all()
+        assert_bodies_balance(problem, reference)
+        inside = problem.inside
+        assert inside is not None
+        moved = inside.displacement(reference.displacement, [16])[:, 1, 0]
+        x, y = (inside.nodes / (stack.length / 6, stack.height / 4)).T.round(6)
+        np.testing.assert_allclose(moved[y == 8.0], -1e-4, rtol=1e-12)
+        assert np.abs(moved[(y == 4.0) & (x == 6.0)]).max() < 1e-5
+        forces.append(reaction(problem, "top", 1).of(reference))
+    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-9, atol=1e-6)

@@ -4,15 +4,22 @@ and any decomposition: exact on every mesh.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from contact_problems import block
 from plane import lengths, reaction, solved, stress
 
+from solver.discrete import Given, Side, Spring, Support
 from solver.discrete.plane.rigid_stack import rigid_rest
 from solver.latin import Ending, solve
+from solver.reference.incremental import reference_of
+from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
+from solver.settings.definitions import SettingError
 
 PRESSURE = 1e6
 SHEAR = 4e5
@@ -231,3 +238,78 @@ def test_a_corner_that_two_sides_prescribe_follows_the_top(left):
     corner = top & (inside.nodes[:, 0] < 1e-9)
     assert corner.sum() == 1
     np.testing.assert_allclose(moved[corner][0], moved[top][-1], atol=1e-12)
+
+
+HINGE = {
+    "gap": "flat",
+    "top": "dragged",
+    "elements": 8,
+    "elements_up": 4,
+    "instants": 5,
+    "top_tangential_displacement": 0.0,
+}
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_hinge_is_refused_where_its_load_turns_it_off_the_support(side):
+    """Its top holds x and one side y: all that is left is to turn about that corner."""
+    hinge = {**HINGE, side: "dragged", "friction": 0.0}
+    pressed = BlockSettings.checked({**hinge, "top_normal_traction": -1e4})
+    problem = discretise(pressed)
+    found = reference_of(problem)
+    assert found.converged.all()
+    corner = 0.0 if side == "left" else pressed.length
+    lever = np.abs(problem.rubbing["support"].positions - corner)
+    moment = lever @ found.contact("support").normal_force[:, -1]
+    assert moment == pytest.approx(0.5 * 1e4 * pressed.length**2, rel=1e-9)
+    with pytest.raises(SettingError, match="turns about the side that holds it up"):
+        BlockSettings.checked({**hinge, "top_normal_traction": 1e4})
+    # Friction may wedge the body between its side and the support.
+    BlockSettings.checked({**hinge, "friction": 0.3, "top_normal_traction": 1e4})
+
+
+def test_both_sides_that_hold_a_body_up_keep_it_from_turning():
+    held = {**HINGE, "left": "dragged", "right": "dragged", "friction": 0.0}
+    values = BlockSettings.checked({**held, "top_normal_traction": 1e4})
+    found = reference_of(discretise(values))
+    assert found.converged.all()
+    assert not found.contact("support").normal_force.any()
+
+
+STILL = Given(True, np.zeros(17))
+FREE = Given(False, np.zeros(17))
+KNOWN = Support(np.zeros(7), 0.3, bound=np.full((7, 17), 1e5))
+LOOSE = {
+    "a hinge": (1, None, {"top": Side(STILL, FREE), "left": Side(FREE, STILL)}),
+    "two bodies on a hinge": (
+        2,
+        None,
+        {"top": Side(STILL, FREE), "left": Side(FREE, STILL)},
+    ),
+    "nothing held": (1, None, {}),
+    "on a support that presses as much as is known": (
+        1,
+        KNOWN,
+        {"left": Side(STILL, FREE)},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LOOSE)
+def test_bodies_that_no_side_and_no_contact_can_hold_are_refused(name):
+    bodies, support, sides = LOOSE[name]
+    stack = block(elements=(6, 4), cuts=(2, 1), bodies=bodies)
+    stack = replace(stack, support=support, sides=sides)
+    with pytest.raises(RefusedError, match=r"Stack\.sides.*free to move or to turn"):
+        stack.discretise()
+    # One side more, and nothing moves.
+    more = replace(stack, sides={**sides, "right": Side(STILL, STILL)})
+    assert not more.discretise().is_loose
+
+
+def test_a_spring_and_a_hinge_together_hold_a_body_that_a_hinge_alone_does_not():
+    """The spring's foot moves along x as the body turns about its upper corner."""
+    sides = {"top": Side(STILL, FREE), "left": Side(FREE, STILL)}
+    stack = block(elements=(6, 4), cuts=(2, 1))
+    stack = replace(stack, support=None, sides=sides, spring=Spring(0.0, 1e6))
+    assert not stack.discretise().is_loose

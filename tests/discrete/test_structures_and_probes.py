@@ -166,9 +166,7 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 
 def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
-    """Of an extreme s over three heights h each:
-    3 s h^2 / 6, against the clock where s is up.
-    """
+    """Three heights h with an extreme s carry 3 s h^2 / 6, clockwise where s is up."""
     problem = BEAMS.discretise()
     still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
     force = BEAMS.loop(problem).force(still)

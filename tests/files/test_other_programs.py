@@ -56,9 +56,7 @@ def table(quantity: str, x: Any, t: Any, values: Any) -> str:
 
 
 def own_friction(scene: str) -> tuple[Any, Any, Any]:
-    """Give our force per length or area where it is determinate,
-    with its points and instants.
-    """
+    """Determinate friction per length or area, with its points and instants."""
     _, problem, reference = solved(scene)
     (name, *_) = problem.rubbing
     law = next(iter(problem.rubbing.values()))

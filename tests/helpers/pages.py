@@ -53,7 +53,7 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
 
     def hear(message: ConsoleMessage) -> None:
         if message.type in ("error", "warning") and not IGNORED.search(message.text):
-            complaints.append(message.text)
+            complaints.append(f"{message.text} {message.location['url']}")
 
     def stumble(error: Error) -> None:
         complaints.append(error.stack or str(error))

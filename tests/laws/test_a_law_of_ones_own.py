@@ -191,7 +191,7 @@ def test_a_damper_is_solved_and_ends_by_estimate(
 
 @pytest.mark.parametrize("damping", [0.2, 2.0, 50.0])
 def test_an_estimate_is_no_smaller_than_the_error(damping: float) -> None:
-    """Of friction and of the damper's force, at the default accuracy."""
+    """For friction and for the damper's force, at the default accuracy."""
     of = damped(Dashpot, damping)
     rough = solve(of).iterate
     exact = solve(of, EXACT).iterate

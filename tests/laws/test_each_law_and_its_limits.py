@@ -425,6 +425,17 @@ def whole_contact(normal: bool = False, **rest) -> Contact:
     )
 
 
+def test_a_point_without_friction_changes_nothing_of_how_others_share() -> None:
+    """Pairs share by their bounds wherever these are, and by their areas elsewhere."""
+    law = cut_contact()
+    bound = np.array([0.0, 0.3, 0.5, 0.1])
+    rows = np.arange(4)
+    some = replace(law, tangential=friction_of(Component(rows), bound=bound))
+    assert some.shares == pytest.approx([1.0, 0.3 / 0.8, 0.5 / 0.8, 1.0])
+    none = replace(law, tangential=friction_of(Component(rows), bound=0.0 * bound))
+    assert none.shares == pytest.approx([1.0, 0.5, 0.5, 1.0])
+
+
 def test_pairs_of_a_point_share_its_force_and_are_springs_in_parallel() -> None:
     law = cut_contact()
     assert law.by_point(law.shares) == pytest.approx(np.ones(3))

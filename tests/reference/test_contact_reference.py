@@ -30,9 +30,7 @@ SMALL = 1e-10
 
 
 def components(of, found):
-    """Give opening or None, slip, normal force or bound,
-    friction force of every interface.
-    """
+    """Opening or None, slip, normal force or bound, friction of every interface."""
     displacement = found.displacement
     for name, law in of.rubbing.items():
         fields = found.contact(name)

@@ -27,9 +27,7 @@ CHANGING = {"friction_law": "slip-dependent"}
 
 
 def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
-    """Give a clamped pulled_bar of 1 m whose end is pulled,
-    or displaced by force L / ES.
-    """
+    """A clamped bar of 1 m whose end is pulled, or displaced by force L / ES."""
     force = np.asarray(force, dtype=float)
     return (
         Rods(
@@ -241,8 +239,7 @@ STRIP = {
 
 
 def pull_out(length):
-    """Give displacement and force of the strip's end, up to where the other begins to
-    slip.
+    """Displacement and force of the strip's end, up to first slip of the other end.
 
     Behind the front friction softens over the same distance as long as it goes on, and
     beyond is its last value.

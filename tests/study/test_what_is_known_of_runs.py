@@ -33,7 +33,7 @@ def read(folder: Path) -> list[dict[str, str]]:
 
 
 def wrong(case: KnownCase) -> KnownCase:
-    """Give a case that claims one more in a hundred than is true."""
+    """A case whose known number is one per cent too large."""
 
     def numbers(answer: Answer) -> Iterator[Number]:
         for quantity, unit, exact, found in case.numbers(answer):

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import chain, pairwise
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.elements import (
     EDGE_MASS,
     Rectangle,
@@ -75,6 +75,17 @@ def _ends_across(stack: Stack, brick: Brick) -> list[int]:
         spans = [each.columns for each in stack.rectangles]
     ends = ends_along(max(spans), stack.substructures[0], spans)
     return [0, *ends[ends <= brick.columns].tolist()]
+
+
+class Span(NamedTuple):
+    """Part of a side of a substructure on which no other body lies.
+
+    `first` and `last` are its ends, in elements from the beginning of the side.
+    """
+
+    side: str
+    first: int
+    last: int
 
 
 class _Trace(NamedTuple):
@@ -154,7 +165,7 @@ class CutStack:
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
         self._pieces = list(_pieces(stack))
         joints = self._joints()
-        self._touched = set(chain.from_iterable(joint.sides for joint in joints))
+        self._covered = self._covered_by(joints)
         self.pairs = self._paired(joints)
         # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)
@@ -182,8 +193,26 @@ class CutStack:
             return joints
         return [joint for joint in joints if joint.below is not None]
 
+    def _covered_by(self, joints: Sequence[Joint]) -> dict[tuple[int, str], Flags]:
+        """Elements of each side of a substructure that joints cover, (elements,)."""
+        covered = dict[tuple[int, str], Flags]()
+        for joint in joints:
+            for number, side in joint.sides:
+                count, corner = self._extent(number, side)
+                none = np.zeros(count, dtype=bool)
+                elements = covered.setdefault((number, side), none)
+                elements[joint.first - corner : joint.last - corner] = True
+        return covered
+
+    def _extent(self, number: int, side: str) -> tuple[int, int]:
+        """Elements along a side of a substructure, and where it begins on the grid."""
+        rectangle = self._pieces[number].rectangle
+        if side in ("left", "right"):
+            return rectangle.rows, rectangle.y
+        return rectangle.columns, rectangle.x
+
     def _paired(self, joints: Sequence[Joint]) -> dict[Joint, tuple[Indices, Array]]:
-        """Pairs of nodes of those joints that have any, as `pairs`."""
+        """Pairs of nodes of those joints that have any, (n_pairs,) each, as `pairs`."""
         pairs = {joint: self._pairs_of(joint) for joint in joints}
         return {joint: found for joint, found in pairs.items() if len(found[0])}
 
@@ -238,10 +267,13 @@ class CutStack:
             direction=density * weights,
         )
 
-    def _outer(self, number: int) -> Iterator[str]:
+    def _outer(self, number: int) -> Iterator[Span]:
         """Outer sides of a substructure: free, loaded or prescribed.
 
-        On the left and right only those of bodies that reach farthest.
+        Of the top and the bottom those parts that no body covers. On the left and right
+        only those of bodies that reach farthest. A traction acts on all of them, as a
+        fluid would; a displacement is that of what lies farthest out, as a press or the
+        ground would touch.
         """
         rectangle = self._pieces[number].rectangle
         columns, _ = self.stack.grid
@@ -250,8 +282,15 @@ class CutStack:
             "right": rectangle.x + rectangle.columns == columns,
         }
         for side in SIDES:
-            if (number, side) not in self._touched and is_end.get(side, True):
-                yield side
+            if not is_end.get(side, True):
+                continue
+            count, _ = self._extent(number, side)
+            covered = self._covered.get((number, side), np.zeros(count, dtype=bool))
+            # Where it begins and ends to be covered; outside it counts as covered.
+            changes = np.diff(covered, prepend=True, append=True)
+            ends = np.flatnonzero(changes).reshape(-1, 2)
+            for first, last in ends.tolist():
+                yield Span(side, first, last)
 
     def bodies(self, joint: Joint) -> tuple[int, int | None]:
         """Body above or to the right of a joint, and the other one (None: support)."""
@@ -347,7 +386,7 @@ class CutStack:
         )
 
     def _traces(self) -> Iterator[dict[Hashable, _Trace]]:
-        """Traces of every substructure, by joint or by the name of a side.
+        """Traces of every substructure, by joint or by the span of an outer side.
 
         A joint has both components, or with a support of known bound the one along it;
         an outer side those that are prescribed; the foot under a spring ("spring")
@@ -384,17 +423,26 @@ class CutStack:
         rectangle, body, _ = self._pieces[number]
         is_foot = (rectangle.y, body) == (0, 0)
         traces = dict[Hashable, _Trace]()
-        for side in self._outer(number):
+        for span in self._outer(number):
             components = tuple(
                 component
-                for component, given in enumerate(stack.sides[side])
+                for component, given in enumerate(stack.sides[span.side])
                 if given.prescribed
             )
-            if components:
-                traces[side] = _Trace(side, components)
-            elif side == "right" and stack.spring is not None and is_foot:
-                traces["spring"] = _Trace(side, (0, 1), 0, 1)
+            if components and self._is_outermost(number, span):
+                traces[span] = _Trace(span.side, components, span.first, span.last + 1)
+            elif span.side == "right" and stack.spring is not None and is_foot:
+                traces["spring"] = _Trace(span.side, (0, 1), 0, 1)
         return traces
+
+    def _is_outermost(self, number: int, span: Span) -> bool:
+        """Check whether a span of an outer side lies as far out as any of that side."""
+        rectangle = self._pieces[number].rectangle
+        if span.side == "bottom":
+            return rectangle.y == 0
+        if span.side == "top":
+            return rectangle.y + rectangle.rows == self.stack.grid[1]
+        return True
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
         """Nodal forces of tractions and weight, scaled, or None.
@@ -403,12 +451,12 @@ class CutStack:
         """
         stack = self.stack
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
-        for side in self._outer(number):
-            for component, given in enumerate(stack.sides[side]):
+        for span in self._outer(number):
+            for component, given in enumerate(stack.sides[span.side]):
                 if given.prescribed or given.is_zero:
                     continue
-                traction = self.values(number, side, given) / stack.young
-                _add_traction(total[:, component], mesh, side, traction)
+                traction = self.values(number, span, given) / stack.young
+                _add_traction(total[:, component], mesh, span, traction)
         if stack.body_force is not None:
             areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
             density = stack.body_force * stack.length / stack.young
@@ -417,33 +465,31 @@ class CutStack:
             return total.reshape(-1, len(stack.instants))
         return None
 
-    def values(self, number: int, side: str, given: Given) -> Array:
-        """Given displacement or traction at a substructure's nodes on a side.
+    def values(self, number: int, span: Span, given: Given) -> Array:
+        """Given displacement or traction at the nodes of a span of an outer side.
 
         Shape (n_nodes, n_instants), m or Pa.
         """
         rectangle, body, _ = self._pieces[number]
-        if side in ("left", "right"):
+        if span.side in ("left", "right"):
             brick = self.stack.rectangles[body]
-            first = rectangle.y - brick.y
-            count = rectangle.rows
+            corner = rectangle.y - brick.y
             whole = brick.rows
         else:
-            first = rectangle.x
-            count = rectangle.columns
+            corner = rectangle.x
             whole = self.stack.grid[0]
-        nodes = np.arange(first, first + count + 1)[:, None]
+        nodes = corner + np.arange(span.first, span.last + 1)[:, None]
         return np.asarray(given.mean + (2.0 * nodes / whole - 1.0) * given.slope)
 
 
-def _add_traction(force: Array, mesh: Rectangle, side: str, traction: Array) -> None:
-    """Add nodal forces of a traction on a side to those of all nodes.
+def _add_traction(force: Array, mesh: Rectangle, span: Span, traction: Array) -> None:
+    """Add nodal forces of a traction on a span of a side to those of all nodes.
 
-    `force` is (n_nodes, n_instants), `traction` that of the nodes on the side, (nodes
+    `force` is (n_nodes, n_instants), `traction` that of the nodes of the span, (nodes
     along, n_instants); both scaled, of one component.
     """
-    nodes = mesh.edge(side)
-    size = mesh.height if side in ("left", "right") else mesh.width
+    nodes = mesh.edge(span.side)[span.first : span.last + 1]
+    size = mesh.height if span.side in ("left", "right") else mesh.width
     ends = np.arange(len(nodes) - 1)[:, None] + np.arange(2)
     of_edges = size * np.matmul(EDGE_MASS, traction[ends])
     np.add.at(force, nodes[ends], of_edges)

@@ -39,20 +39,19 @@ def wrench(stack: Stack) -> tuple[Array, Array, Array]:
     moment = np.zeros(len(stack.instants))
     for name, side in stack.sides.items():
         size = height if name in ("left", "right") else length
-        x = {"left": 0.0, "right": length}.get(name)
-        y = {"bottom": 0.0, "top": height}.get(name)
-        loads = [_resultant(given, size) for given in side]
-        force += [total for total, _ in loads]
-        (along_x, first_x), (along_y, first_y) = loads
-        # Along a side the moment is that about its first end.
-        if x is None:
-            moment += first_y
-        else:
-            moment += x * along_y
-        if y is None:
+        along_x, first_x = _resultant(side.x, size)
+        along_y, first_y = _resultant(side.y, size)
+        force += [along_x, along_y]
+        # Along a side the moment is that about its first end, across it the force has
+        # the distance of the side as its arm.
+        if name in ("left", "right"):
+            arm = length if name == "right" else 0.0
+            moment += arm * along_y
             moment -= first_x
         else:
-            moment -= y * along_x
+            arm = height if name == "top" else 0.0
+            moment += first_y
+            moment -= arm * along_x
     if stack.body_force is not None:
         weight = stack.body_force * length * height
         force += weight
@@ -85,6 +84,7 @@ def is_upright(stack: Stack) -> bool:
         sides["top"].y.prescribed
         or sides["left"].x.prescribed
         or sides["right"].x.prescribed
+        or (sides["left"].y.prescribed and sides["right"].y.prescribed)
     )
 
 
@@ -112,17 +112,20 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
     if not held_y and not is_upright(stack):
         tips = _tipping(stack, friction) > slack * stack.length
         losses.append((tips, "it tips over an end of its base"))
+    if held_y and not is_upright(stack):
+        turns = _turning(stack, friction) > slack * stack.length
+        reason = "it turns about the side that holds it up, away from its support"
+        losses.append((turns, reason))
     if not any(side.x.prescribed for side in stack.sides.values()):
         if stack.spring is not None:
             pushed = x
         else:
             pushed = np.abs(x)
         losses.append((pushed > friction + slack, "friction cannot hold it"))
-    first = [
-        (float(stack.instants[np.argmax(is_lost)]), reason)
-        for is_lost, reason in losses
-        if is_lost.any()
-    ]
+    first = list[tuple[float, str]]()
+    for is_lost, reason in losses:
+        if is_lost.any():
+            first.append((float(stack.instants[np.argmax(is_lost)]), reason))
     return min(first, key=itemgetter(0), default=None)
 
 
@@ -142,6 +145,24 @@ def _tipping(stack: Stack, friction: Array) -> Array:
     return np.asarray(
         np.maximum(middle - answered, stack.length * y - middle - answered)
     )
+
+
+def _turning(stack: Stack, friction: Array) -> Array:
+    """Moment that turns the body off its support about a side, (n_instants,), N m.
+
+    The left or the right side alone holds the body up; where its top is held along x,
+    too, the body is a hinge at that corner. Below 0 the support balances the moment by
+    pressing. `friction` is the largest friction force, (n_instants,), N; where it grows
+    with the pressing, the body may be wedged between side and support.
+    """
+    x, y, moment = wrench(stack)
+    answered = np.zeros_like(moment)
+    if stack.sides["top"].x.prescribed:
+        moment = moment + stack.height * x
+        answered = stack.height * friction
+    if stack.sides["left"].y.prescribed:
+        return np.asarray(moment - answered)
+    return np.asarray(stack.length * y - moment - answered)
 
 
 def _without_slip(stack: Stack, pressing: Array) -> Array:

@@ -158,7 +158,8 @@ class Stack:
     bricks
         Positions and sizes of the bodies, on the grid of the elements of one; None is a
         single body. Sides "left" and "right" are those of the bodies that reach
-        farthest, "top" and "bottom" all that lies open there.
+        farthest. "top" and "bottom" are all that lies open there to a traction, and
+        what lies farthest up, or down, to a displacement.
     groups
         Number of the group of each body, shape (bodies,), or None: bodies of one group
         pass no macro forces to each other.
@@ -473,7 +474,9 @@ class Stack:
             symbol = "τ"
             unit = "Pa"
         # Arrows along a side stand beside those across it.
-        shares = [0.7] if is_normal else [0.15]
+        shares = [0.15]
+        if is_normal:
+            shares = [0.7]
         values = given.mean
         if np.any(given.slope):
             shares = [0.0, 1.0]

@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 from solver.arrays import Array, Indices
 from solver.discrete.inside import Inside, RectangularSubstructure
 from solver.discrete.plane.bricks import Joint
-from solver.discrete.plane.cut_stack import CutStack
+from solver.discrete.plane.cut_stack import CutStack, Span
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.substructure import Substructure
@@ -33,20 +33,27 @@ from solver.laws import (
     Unilateral,
 )
 from solver.laws.friction import compliance_of
+from solver.refusal import RefusedError, Words
 
 if TYPE_CHECKING:
     from solver.discrete.plane.stack import Side, Spring, Stack
 
 
 def problem_of(stack: Stack) -> Problem:
-    """Discrete problem of a stack: its substructures, interfaces and inside."""
+    """Discrete problem of a stack: its substructures, interfaces and inside.
+
+    Raises
+    ------
+    RefusedError
+        If bodies can move though all contacts are closed and stick.
+    """
     cut = CutStack(stack)
     scales = Scales(stack.length, stack.young * stack.length, stack.duration)
     inside = Inside(cut.parts, cut.positions, scales, len(stack.instants))
     has_short_joints = any(
         joint.is_upright and not cut.is_within_body(joint) for joint in cut.pairs
     )
-    return Problem(
+    problem = Problem(
         substructures=tuple(
             _substructure(part, dofs)
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
@@ -59,6 +66,22 @@ def problem_of(stack: Stack) -> Problem:
         rest=_rest(stack, inside),
         has_short_joints=has_short_joints,
     )
+    if problem.is_loose:
+        held = [name for name, side in stack.sides.items() if _is_moved(side)]
+        raise RefusedError(
+            "Stack.sides",
+            Words(f"with displacements of {' and '.join(held) or 'no side'}"),
+            "sides and supports that leave no body free to move or to turn, where all "
+            "contacts are closed and stick",
+            "prescribe the displacement of one more side, or along both axes, or add a "
+            "support",
+        )
+    return problem
+
+
+def _is_moved(side: Side) -> bool:
+    """Check whether a displacement of a side is prescribed."""
+    return any(component.prescribed for component in side)
 
 
 def _substructure(part: RectangularSubstructure, dofs: Indices) -> Substructure:
@@ -113,7 +136,7 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
     # A corner that two sides prescribe is held by the first: as `_prescribed` moves it.
     for side in ("top", "bottom", "left", "right"):
         given = stack.sides[side]
-        if any(component.prescribed for component in given):
+        if _is_moved(given):
             yield from _prescribed(cut, side, given)
 
 
@@ -159,7 +182,9 @@ def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
         nodes=np.concatenate(grid_nodes),
         areas=stack.length * np.concatenate(lengths),
     )
-    support = stack.support if under is None else None
+    support = None
+    if under is None:
+        support = stack.support
     gap = np.zeros(len(pairs.nodes))
     if support is not None:
         gap = support.gap[pairs.nodes] / stack.length
@@ -191,11 +216,13 @@ def _components(
     """Tangential and normal component of a contact; no normal one at a known bound."""
     rows = _rows_of(cut, joints)
     tangential = int(joints[0].is_upright)
-    tangent = Component(*[rows_of_side[:, tangential] for rows_of_side in rows])
+    along = [rows_of_side[:, tangential] for rows_of_side in rows]
+    tangent = Component(*along)
     has_normal = rows[0].shape[1] > 1
     if not has_normal:
         return tangent, None
-    return tangent, Component(*[side[:, 1 - tangential] for side in rows])
+    across = [rows_of_side[:, 1 - tangential] for rows_of_side in rows]
+    return tangent, Component(*across)
 
 
 def _normal_law(
@@ -215,7 +242,9 @@ def _friction(
     """Friction law along a contact, whose opening is `gap`, (n_pairs,), scaled."""
     scales = (stack.length, stack.young * stack.length)
     law = stack.friction_law
-    support = stack.support if pairs.under is None else None
+    support = None
+    if pairs.under is None:
+        support = stack.support
     if support is not None and support.is_image:
         law = law.of_one_side()
     if support is not None and support.bound is not None:
@@ -310,14 +339,15 @@ def _prescribed(
     values = list[Array]()
     components = [number for number, each in enumerate(given) if each.prescribed]
     for number, part in enumerate(cut.parts):
-        if side not in part.rows:
-            continue
-        for column, component in enumerate(components):
-            moved = cut.values(number, side, given[component])
-            if side in ("left", "right"):
-                _move_corners(cut, part, side, component, moved)
-            rows.append(part.rows[side][:, column])
-            values.append(moved / cut.stack.length)
+        for span, of_span in part.rows.items():
+            if not isinstance(span, Span) or span.side != side:
+                continue
+            for column, component in enumerate(components):
+                moved = cut.values(number, span, given[component])
+                if side in ("left", "right"):
+                    _move_corners(cut, part, side, component, moved)
+                rows.append(of_span[:, column])
+                values.append(moved / cut.stack.length)
     if rows:
         yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
 
@@ -335,7 +365,14 @@ def _move_corners(
     side's nodes, (n_nodes, n_instants), m.
     """
     sign = 1.0 if side == "right" else -1.0
+    spans = [name for name in part.rows if isinstance(name, Span)]
     for level, corner in (("bottom", 0), ("top", -1)):
         given = cut.stack.sides[level][component]
-        if level in part.rows and given.prescribed:
+        on_level = [span for span in spans if span.side == level]
+        if side == "right":
+            columns = part.rectangle.columns
+            is_prescribed = any(span.last == columns for span in on_level)
+        else:
+            is_prescribed = any(span.first == 0 for span in on_level)
+        if given.prescribed and is_prescribed:
             moved[corner] = given.mean + sign * given.slope

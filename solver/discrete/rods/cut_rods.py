@@ -167,10 +167,10 @@ class CutRods:
         carried = None
         if rods.settlement is not None:
             carried = rods.settlement / scales.displacement
-        positions = [
-            np.repeat(positions, dofs)
-            for positions, dofs in zip(self._positions, self._dofs_at, strict=True)
-        ]
+        # Both degrees of freedom of a break stand at its node.
+        positions = []
+        for of_rod, dofs in zip(self._positions, self._dofs_at, strict=True):
+            positions.append(np.repeat(of_rod, dofs))
         # Pieces of equal operators share them, also those of different rods.
         shared: dict[tuple[object, ...], Elasticity] = {}
         substructures = list[Substructure]()
@@ -198,6 +198,7 @@ class CutRods:
         for number, size in enumerate(self._sizes):
             piece = _Piece(number, first, size)
             rows, nodes = self._boundary(rod, piece)
+            # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
             key = (
                 is_row.tobytes(),
@@ -208,12 +209,15 @@ class CutRods:
             if key not in shared:
                 shared[key] = self._operator(rods, piece, stiffness, nodes, is_row)
             first_of_piece = first_dof + first + int(self._beyond[rod, number])
+            pushing = None
+            if free_force is not None:
+                pushing = free_force[piece.elements]
             yield Substructure(
                 elasticity=shared[key],
                 dofs=np.arange(first_of_piece, first_of_piece + size + 1),
                 rows=rows[is_row],
                 body_force=self._body_force(rods, piece, inner_force),
-                free_force=None if free_force is None else free_force[piece.elements],
+                free_force=pushing,
             )
             first += size
 
@@ -301,6 +305,7 @@ class CutRods:
         whole = piece.size * element
         at_ends = 1.0 / whole / float(np.mean(1.0 / own_stiffness))
         direction = np.full(len(nodes), at_ends)
+        # The last two rows are the ends, all others the points that rub.
         direction[:-2] = at_ends * element / whole
         of_springs = own_stiffness * (rods.elements / length)
         at_nodes = np.append(of_springs, 0.0) + np.insert(of_springs, 0, 0.0)
@@ -363,6 +368,7 @@ class CutRods:
             component = Component(self._sides[rod, self._rubs])
         nodes = self._nodes[self._rubs]
         weights = rods.length * (self._shares[self._rubs] / rods.elements)
+        # The bound is per length: a pair has that of its tributary length.
         known = rods.bounds[nodes] * weights[:, None] / units[1]
         known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
         points = self._points(rod)
@@ -379,6 +385,7 @@ class CutRods:
 
     def _macro_basis(self) -> sparse.csr_array:
         """Macro basis of a contact between rods, (n_pairs, n_macro), piece by piece."""
+        # Macro forces balance on each piece, whose operator sees no others.
         counts = np.bincount(self._piece[self._rubs]).tolist()
         bases = list[Array]()
         for count in counts:

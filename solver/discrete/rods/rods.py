@@ -427,6 +427,7 @@ class Rods:
         if self.wires > 1:
             return
         rubs = np.flatnonzero(self.bounds.any(axis=1))
+        # The support is drawn along each stretch that rubs.
         for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements

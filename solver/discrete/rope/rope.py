@@ -150,6 +150,7 @@ class RopeWire:
         """
         stuck = self._stuck_force(slice(None))
         arc = self.arc
+        # Half an element at both ends, where a node has one neighbour.
         force = np.concatenate([stuck[:1], 0.5 * (stuck[1:] + stuck[:-1]), stuck[-1:]])
         length = np.concatenate([arc[:1], 0.5 * (arc[1:] + arc[:-1]), arc[-1:]])
         return np.asarray(np.diff(force, axis=0) / np.diff(length)[:, None])
@@ -260,6 +261,7 @@ class Rope:
             return problem
         interfaces = dict(problem.interfaces)
         for wire in self.wires:
+            # The drawn strand has several half turns of each wire, which all count.
             copies = wire.stands_for * self.seen_length / float(wire.along[-1])
             interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
         return replace(problem, interfaces=interfaces)
@@ -291,6 +293,8 @@ class Rope:
         stuck = self.section.slipping_bending * self.curvature
         for wire in self.wires:
             levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
+            # The force of an element is its elongation by slip, so the moment is a sum
+            # of slips.
             spring = wire.layer_data.stiffness * levers / np.diff(wire.arc)
             weights.append(-np.diff(spring, prepend=0.0, append=0.0))
             stuck = stuck + levers @ wire.stuck_force()

@@ -113,6 +113,7 @@ class Auto(SearchDirection):
             return replace(progress, count=count)
         if _slips_between_bodies(iterate):
             return UpdateProgress("returned", progress.k)
+        # The fields of the first k mislead: the run begins anew, from zero.
         k = read_only(self.scale * automatic(iterate.problem, sticks=True))
         zero = np.zeros_like(iterate.outgoing)
         return UpdateProgress("returned", k, fields=(zero, zero))
@@ -165,6 +166,7 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
         law.stiffness_beside.choose(law, k, parts)
         if sticks and isinstance(law.stiffness_beside, BodyStiffness):
             law.stiffness_beside.stick(law, k)
+        # The spring in series comes last, as it softens any k of the bodies.
         _raise_above_slope(law, k)
         _soften_by_contact(law, k)
     return k
@@ -228,6 +230,7 @@ def sliding_share(problem: Problem) -> float:
     for part in problem.substructures:
         if part.body_force is not None:
             load += part.body_force.sum(axis=0)
+    # Without friction at some instant all of an interface slides.
     if not capacity.all():
         return 1.0
     return float(np.clip((np.abs(load) / capacity).max(), smallest, 1.0))

@@ -88,6 +88,7 @@ class FromStatus:
         if count < CALM:
             return replace(progress, status=status, count=count)
         fields = _fields(iterate)
+        # W and F do not depend on k, so they are what the run goes on from, or back to.
         k = _profile(iterate.problem, status)
         violation = violation_of(iterate.problem, *fields)
         return UpdateProgress("updated", k, fields=fields, violation=violation)
@@ -138,6 +139,7 @@ def _profile(problem: Problem, status: NDArray[np.int8]) -> Array:
 
     `status` has shape (n_points, n_instants).
     """
+    # Stick is 0, so nonzero statuses are slip, or open contact.
     share = np.count_nonzero(status, axis=1) / status.shape[1]
     k = automatic(problem)
     for name, law in problem.rubbing.items():

@@ -81,7 +81,7 @@ def status_step(
     solver: Incremental,
     problem: Problem,
     states: States,
-    max_systems: int,
+    max_systems: int | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> tuple[Reference, Certificate | None]:
     """Correct the states of an iterate to a solution, and certify that if it is one.
@@ -95,7 +95,7 @@ def status_step(
     states
         States to begin with, as of `states_of`, shape (n_forces, n_instants).
     max_systems
-        Largest number of linear systems.
+        Largest number of linear systems; None sets no limit.
     stop
         Called before each system; returns True where the step is to be given up.
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from solver.arrays import Array, Flags
 from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import AxialForce, reaction
+from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.laws import OPEN
+from solver.laws import OPEN, Contact
 from solver.settings.scene import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import (
@@ -55,6 +56,7 @@ def peak_displacement(run: FinishedRun) -> float:
     if inside is None:
         return float(np.abs(absolute).max())
     vectors = inside.displacement(absolute, slice(None))
+    # On its image a body shows half of the slip.
     ratio = max(law.slip_ratio for law in run.problem.rubbing.values())
     if ratio > 1.0:
         return ratio * float(np.abs(vectors[:, 0]).max())
@@ -206,6 +208,7 @@ def _pressing(run: FinishedRun, name: str) -> Array:
 @quantity("Largest pressing force, all points", "N", applies=_opens)
 def peak_pressing(run: FinishedRun) -> float:
     """Largest sum over all points of the pressing force, N."""
+    # Instant by instant over all interfaces: their peaks may come at other times.
     forces = [_pressing(run, name).sum(axis=0) for name in run.problem.surfaces]
     return float(np.sum(forces, axis=0).max())
 
@@ -285,6 +288,7 @@ def end_displacement(run: FinishedRun, instant: int) -> float:
 def residual_displacement(run: FinishedRun) -> float:
     """Displacement of the loop left at an unloaded end, m; NaN if the end is loaded."""
     size = np.abs(run.force)
+    # Under load the displacement is not what is left.
     if size[-1] > UNLOADED * size.max():
         return math.nan
     return float(run.displacement[-1])
@@ -345,6 +349,7 @@ def _slipped_shares(run: FinishedRun) -> Array:
     Only points of surfaces that can slip count.
     """
     problem = run.problem
+    # A point counts from its first slip on.
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
     still = np.concatenate(list(_stand_still(run).values()))
     counted = slipped[problem.on_surfaces & ~still]
@@ -355,13 +360,18 @@ def _slipped_shares(run: FinishedRun) -> Array:
 
 def _stand_still(run: FinishedRun) -> dict[str, Flags]:
     """Points of each interface that are held and never slip, shape (n_points,)."""
-    held = run.problem.is_held
     still = {}
     for name, law in run.problem.rubbing.items():
-        is_held = np.all([held[rows] for rows in law.tangent.sides], axis=0)
+        is_free = ~are_clamped(run.problem, law)
         has_slipped = np.any(np.abs(run.iterate.contact(name).status) == 1, axis=1)
-        still[name] = (law.by_point(1.0 * ~is_held) == 0.0) & ~has_slipped
+        still[name] = (law.by_point(is_free.astype(float)) == 0.0) & ~has_slipped
     return still
+
+
+def are_clamped(problem: Problem, law: Contact) -> Flags:
+    """Pairs whose tangential displacement is prescribed on all sides, (n_pairs,)."""
+    held = [problem.is_held[rows] for rows in law.tangent.sides]
+    return np.asarray(np.all(held, axis=0))
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:

@@ -57,6 +57,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
         # Slip is the motion of the slider, without the elastic part.
         slider = law.tangential.slider(displacement, force)
         slip = np.diff(slider, axis=1, prepend=0.0)
+        # On its image a body moves by half of the slip.
         slip *= law.slip_ratio * scales.displacement
         yield law, slip, force[law.tangent.above] * slip * -scales.force
 
@@ -205,6 +206,7 @@ def _is_repeated(settings: Settings, ends: list[int]) -> bool:
     """Check whether all loads begin, end and peak alike in the last cycles."""
     for path in _paths(settings):
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
+        # Ends and extremes: what happens between them does not change the fate of slip.
         marks = [[part[0], part[-1], part.min(), part.max()] for part in parts]
         if marks and np.ptp(marks, axis=0).max() > REPEATED * np.ptp(path):
             return False
@@ -235,9 +237,11 @@ def fate_of(cycles: LoadCycles) -> Word | None:
         return None
     if not largest[-1]:
         return "elastic shakedown"
+    # The point that is farthest on at the end of the last cycle.
     net = cycles.net[np.abs(cycles.net[:, -1]).argmax()]
     if np.abs(net[-1]) > ONE_WAY * largest[-1] and _settled(net[None]):
         return "ratcheting"
+    # Slip that falls may still tend to a steady size: the limit decides.
     is_falling = largest[-1] <= DIES * largest[-2]
     if is_falling and _limit(largest[-3:]) <= TENDS * largest[-3]:
         return "shakedown with slip that dies"

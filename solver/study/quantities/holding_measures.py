@@ -89,6 +89,7 @@ class _Hold:
         rate = (carried[before] - carried[before - 1]) / steps[before - 1]
         growth = rate * steps[before]
         reserve = friction * self.pressing[before] - carried[before]
+        # Friction grows towards a bound that moves by mu times the pressing force.
         closes = growth - friction * rise
         return np.divide(reserve, closes, np.ones_like(reserve), where=closes > 0.0)
 
@@ -132,6 +133,7 @@ def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
     if contact.normal_force is None:
         bound = law.by_point(law.tangential.bound) * run.problem.scales.force
         return np.broadcast_to(bound / friction, contact.status.shape)
+    # mu is that of the settings, and its profile a factor on the pressing force.
     share = law.mean_by_point(law.tangential.friction) / friction
     return np.asarray(share[:, None] * contact.normal_force)
 

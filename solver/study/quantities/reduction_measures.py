@@ -35,6 +35,7 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
     forces, which a moving support has to overcome.
     """
     problem = iterate.problem
+    # Per length, so that a finer mesh has the same field.
     laws = problem.rubbing.values()
     lengths = np.concatenate([law.by_point(law.weights) for law in laws])
     return clips_of(
@@ -60,6 +61,7 @@ def _friction_bounds(problem: Problem) -> Array:
 def _driving_load(settings: Settings, iterate: Iterate) -> Array:
     """Load at the loaded side, or else the sum of the friction, (n_instants,), N."""
     for act in settings.structure().description().acts:
+        # The force at the end that is pulled drives all slip.
         if act.where == LOADED:
             return act.values
     return np.asarray(iterate.friction_force.sum(axis=0))
