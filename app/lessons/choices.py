@@ -47,8 +47,9 @@ class Choices:
         if not self._is_asked:
             self._buttons[lesson.right].color = "success"
         self._bars = [pn.pane.HTML("", **WIDE) for _ in self._buttons]
-        rows = zip(self._buttons, self._bars, strict=True)
-        self._choices = pn.Column(*[pn.Column(*row, **WIDE) for row in rows], **WIDE)
+        pairs = zip(self._buttons, self._bars, strict=True)
+        rows = [pn.Column(choice, bar, **WIDE) for choice, bar in pairs]
+        self._choices = pn.Column(*rows, **WIDE)
         self._words = pn.pane.HTML("", margin=(6, 0), sizing_mode="stretch_width")
         answer = partial(predict, WITHOUT)
         self._show_me = text_button("Show me", answer, variant="text")
