@@ -83,8 +83,13 @@ class Link:
 
     def _visit(self, query: str) -> None:
         """Have the browser open the page of an address."""
-        self._browser.destination = ""
-        self._browser.destination = query
+
+        def leave() -> None:
+            self._browser.destination = ""
+            self._browser.destination = query
+
+        # A model changes under the document's lock, which a click does not have.
+        pn.state.execute(leave, schedule=True)
 
     def go(self, query: str) -> None:
         """Show the state of an address, or open the page of a class."""
