@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import Rectangle, SchurComplement, dofs_of
-from solver.discrete.problem import Scales
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
 
 HELD = 1e-9

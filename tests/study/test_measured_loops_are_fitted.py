@@ -195,7 +195,7 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
         # Nothing slips at the start.
         (SPRUNG, {"friction": 0.37}, {"friction": 50.0}),
         (
-            {**SPRUNG, **FEW},
+            SPRUNG | FEW,
             {"friction": 0.37, "contact_stiffness": 8.0},
             {"friction": 0.2, "contact_stiffness": 3.0},
         ),
@@ -214,7 +214,7 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
     """At least three in four seeds are; 95 % are expected."""
     true = {"friction": 0.37, "contact_stiffness": 8.0}
     settings = scene_settings("bar").checked(
-        {**SPRUNG, **FEW, "friction": 0.3, "contact_stiffness": 6.0}
+        SPRUNG | FEW | {"friction": 0.3, "contact_stiffness": 6.0}
     )
     within = []
     for seed in range(4):

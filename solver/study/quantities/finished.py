@@ -135,10 +135,11 @@ class FinishedRun:
     @cached_property
     def dissipated(self) -> Array:
         """Energy dissipated since the instant before, shape (n_instants,), J."""
-        energy = np.zeros(self.problem.n_instants)
-        for law, _, work in slips_of(self.iterate):
-            energy = energy + law.copies * work.sum(axis=0)
-        return energy
+        energy = np.zeros((len(self.problem.rubbing), self.problem.n_instants))
+        for stacked, _, work in slips_of(self.iterate):
+            law = stacked.law
+            energy[stacked.numbers] = law.copies * law.sums(work)
+        return np.asarray(energy.sum(axis=0))
 
     @cached_property
     def cycles(self) -> LoadCycles:
