@@ -19,7 +19,7 @@ WIDE = {"margin": 0, "sizing_mode": "stretch_width"}
 
 
 class Choices:
-    """The choices of a lesson's question, or of its answer, in `view`.
+    """The choices of a lesson's question, or a class's counts in its answer, in `view`.
 
     Buttons stay while predictions of others come in: a click on a button that is made
     anew meanwhile is lost. `predict` takes the number of a choice, `open_counts` shows
@@ -33,19 +33,18 @@ class Choices:
         predict: Callable[[int], None],
         open_counts: Callable[[], None],
     ) -> None:
+        self._lesson = lesson
         self._state = state
         self._is_asked = state.is_asked
         self._buttons = [
             text_button(
                 choice,
                 partial(predict, number),
-                disabled=not self._is_asked,
+                visible=self._is_asked,
                 **looks("choice"),
             )
             for number, choice in enumerate(lesson.choices)
         ]
-        if not self._is_asked:
-            self._buttons[lesson.right].color = "success"
         self._bars = [pn.pane.HTML("", **WIDE) for _ in self._buttons]
         pairs = zip(self._buttons, self._bars, strict=True)
         rows = [pn.Column(choice, bar, **WIDE) for choice, bar in pairs]
@@ -86,14 +85,25 @@ class Choices:
                 words += " The answer comes with the class."
         self._words.object = words
         for number, bar in enumerate(self._bars):
-            bar.object = _bar(number, poll)
+            bar.object = self._bar(number, poll)
 
+    def _bar(self, number: int, poll: Poll | None) -> str:
+        """Share of a class that predicted a choice (HTML), empty until all may see it.
 
-def _bar(number: int, poll: Poll | None) -> str:
-    """Share of a class that predicted a choice (HTML), empty until counts are open."""
-    if poll is None:
-        return ""
-    count = None
-    if poll.counts:
-        count = poll.counts[number]
-    return html("lessons/choices.html", count=count, present=poll.present)
+        In the answer the choice is named above, as its button is gone.
+        """
+        if poll is None:
+            return ""
+        count = None
+        if poll.counts:
+            count = poll.counts[number]
+        title = ""
+        if not self._is_asked:
+            title = self._lesson.choices[number]
+        return html(
+            "lessons/choices.html",
+            title=title,
+            is_right=number == self._lesson.right,
+            count=count,
+            present=poll.present,
+        )
