@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -14,7 +14,6 @@ from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
 from app.worker.geometry import MOST_POINTS, floats, thinned
-from app.worker.zigzag import Trail, zigzag
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.structure import Loop
@@ -51,15 +50,13 @@ MOST_MODES = 5
 class Sampled:
     """The problem of a run, with its loop and the instants that frames show.
 
-    `columns` are the indices of these instants among all, shape (n_shown,); `trail` has
-    the past iterates.
+    `columns` are the indices of these instants among all, shape (n_shown,).
     """
 
     problem: Problem
     settings: Settings
     loop: Loop
     columns: Indices
-    trail: Trail = field(default_factory=Trail)
 
 
 def spectra(sampled: Sampled, iterate: Iterate, needs: Needs) -> list[Floats]:
@@ -266,7 +263,6 @@ EXTRAS: dict[str, Callable[[Sampled, Iterate, Needs], Any]] = {
     "modes": modes,
     "clips": clips,
     "beside": beside,
-    "zigzag": zigzag,
 }
 """Extras of all scenes, by the names in `View.needs`; bodies of one kind have more
 (`Drawn.extras`)."""

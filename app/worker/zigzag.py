@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
 from app.frame import LINEAR, LOCAL, OPEN, Floats
 from app.messages import Needs
+from app.worker.extras import Sampled
 from app.worker.geometry import MOST_POINTS, floats, thinned
 from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete import Problem
@@ -18,9 +19,6 @@ from solver.latin import Answer, Iterate
 from solver.laws import Contact
 from solver.reference.assembly import assembled_stiffness, jumps
 from solver.reference.solution import Reference
-
-if TYPE_CHECKING:
-    from app.worker.extras import Sampled
 
 LIMIT = 24_000_000
 """Largest memory of past iterates, bytes."""
@@ -157,7 +155,9 @@ class ContactPoint:
         }
 
 
-def zigzag(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+def zigzag(
+    sampled: Sampled, trail: Trail, iterate: Iterate, needs: Needs
+) -> dict[str, Any]:
     """The way of one point of the selected interface, and the field of all its points.
 
     Of the past iterates, at all shown instants: "iterations", their numbers, from 0 for
@@ -167,14 +167,12 @@ def zigzag(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     line. Of the iterate itself: the law (`ContactPoint.law_at`), and "fields", friction
     in both stages at points "x", (2, n_points, n_instants).
 
-    "position" is that of the point, m; "star", slip and
-    force of the solution, (2, n_instants), None while it is not known; "balance", the
-    stiffness at the point (`stiffness_at`), per length or area, None where it is not
-    found.
+    "position" is that of the point, m; "star", slip and force of the solution, (2,
+    n_instants), None while it is not known; "balance", the stiffness at the point
+    (`stiffness_at`), per length or area, None where it is not found.
     """
     problem = sampled.problem
     columns = sampled.columns
-    trail = sampled.trail
     name = needs.interface
     law = problem.rubbing[name]
     past = trail.iterates or [iterate]
@@ -271,7 +269,7 @@ def stiffness_at(sampled: Sampled, name: str, point: int) -> float | None:
     problem = sampled.problem
     if problem.n_dofs > LARGEST:
         return None
-    place = problem.contact_slices[name][-1].start + point
+    place = problem.rubbing.forces[name][-1].start + point
     pulled = jumps(problem)[[place]].toarray()[0]
     pulled[problem.prescribed[0]] = 0.0
     if not pulled.any():

@@ -193,7 +193,7 @@ def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
 def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(
     visit: Visit,
 ) -> None:
-    page = visit(f"?{ENDLESS}")
+    page = visit(f"?{ENDLESS}&plots=Zigzag")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
     button(page, "Run or pause").click()
     expect(status(page)).to_contain_text("paused")
