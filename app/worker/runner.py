@@ -205,6 +205,7 @@ class Runner:
             # The iterate before stays, whose numbers can be drawn.
             return
         self.iterate = iterate
+        self.sampler.keep(iterate)
         self.history.append(record(iterate, decision, self._distance))
         if self.status is not None and decision.certificate is not None:
             self.answer = LastAnswer.of(self._order, decision.certificate.solution)

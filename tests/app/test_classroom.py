@@ -119,12 +119,13 @@ def test_a_follower_sees_what_the_leader_sees_and_has_no_worker(
 ) -> None:
     follower = Seat("rope", code_of(leader))
     shown = show(leader, frame)
-    leader.state.select(phase=0.3)
+    leader.state.select(phase=0.3, stage="local")
     leader.state.settings = leader.state.settings.replace(peak=600.0)
     tick(leader, follower)
     assert follower.state.frame is shown
     assert follower.state.settings is leader.state.settings
     assert follower.state.selection.phase == 0.3
+    assert follower.state.selection.stage == "local"
     assert not follower.worker.is_there
     assert leader.member.message == f"Class {code_of(leader)}: 1 follows."
 
