@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from typing import Any
 
@@ -15,19 +16,22 @@ from app.units import number, unit_for
 from app.views.acts import gapped
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
-from app.views.layout import LETTER
-from app.views.view import ExtraView, bare
+from app.views.view import TEXT, ExtraView, bare
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
 
 WIDTH = 600.0
 HEIGHT = 260.0
 """Size of the figure until the browser reports its own, px."""
-ROOM = 24.0
+ROOM = 22.0
 """Room round the pieces, px."""
-FOOT = 1.5
-LINES = 2
-"""Height of a line over its type size, and lines of text above the pieces, about."""
+FOOT = 1.4
+LETTER = 0.5
+LETTERS = 115
+"""Height of a line and width of a letter over their type size, and number of letters
+above the pieces, about."""
+KEYS = 78
+"""Number of letters below them, with the room of their marks."""
 THICK = 56.0
 """Largest thickness of a rod, px."""
 APART = 12.0
@@ -85,6 +89,7 @@ class PiecesView(ExtraView):
             "Text",
             "x y text",
             text_color=EDGE,
+            text_font_size=TEXT,
             text_font=value("Roboto, sans-serif"),
             text_baseline="top",
         )
@@ -107,7 +112,17 @@ class PiecesView(ExtraView):
         for size in self._size:
             plot.on_change(size, self._resize)
 
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the pieces of a frame, or nothing if the frame has none."""
+        super().update(frame, selection, ghost)
+        if "pieces" not in frame.extras:
+            self._last = None
+            for name, source in self.sources.items():
+                self.fill(name, **{column: [] for column in source.data})
+
     def _show(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
+        if self._last is None or self._last[0].names != extra.names:
+            self._tapped = None
         self._last = extra, frame, selection
         stage = extra.stages[selection.stage]
         shown = frame.run.column(selection.phase)
@@ -128,19 +143,18 @@ class PiecesView(ExtraView):
         self._figure.x_range.end = width
         self._figure.y_range.end = height
         size = float(self._type.removesuffix("px"))
-        keys = sum(len(key) for key in self._items)
-        if LETTER * size * keys + 90.0 < width:
-            self._keys.nrows = 1
-        else:
-            self._keys.nrows = 2
-        low = FOOT * size * self._keys.nrows
-        return np.array([[0.0, low], [width, height - LINES * FOOT * size]])
+        letter = LETTER * size
+        self._keys.nrows = math.ceil(min(KEYS * letter / width, 2.0))
+        above = math.ceil(LETTERS * letter / width)
+        line = FOOT * size
+        low = self._keys.nrows * line
+        return np.array([[0.0, low], [width, height - above * line]])
 
     def _write(self, text: str) -> None:
         """Write a text into the lines above the pieces."""
         width, height = self._size.values()
-        size = float(self.words.removesuffix("px"))
-        lines = textwrap.wrap(text, max(int(width / (LETTER * size)), 20))
+        letter = LETTER * float(self._type.removesuffix("px"))
+        lines = textwrap.wrap(text, max(int(width / letter), 20))
         self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
 
     def _show_forces(self, extra: Pieces, stage: StageFields, column: int) -> None:
@@ -163,13 +177,13 @@ class PiecesView(ExtraView):
         self.fill(name, x=x, y=y)
 
     def _show_selected(self, extra: Pieces, frame: Frame, selection: Selection) -> None:
-        """Mark the selected joint, or all of the selected interface of several."""
+        """Mark the joint that was tapped, or the one of the selected interface."""
         names = np.array(extra.names)
-        chosen = np.zeros(len(names), dtype=bool)
-        if len(frame.run.interfaces) > 1:
-            chosen = names == selection.interface_of(frame.run)
-        if self._tapped is not None and self._tapped < len(names):
+        chosen = names == selection.interface_of(frame.run)
+        if self._tapped is not None:
             chosen = np.arange(len(names)) == self._tapped
+        elif chosen.sum() > 1:
+            chosen = np.zeros(len(names), dtype=bool)
         quarters = self._placed.quarters[chosen[extra.joints]]
         middle = quarters.mean(axis=1, keepdims=True)
         ends = middle + 2.0 * (quarters - middle)
