@@ -69,6 +69,7 @@ class Live:
         state.param.watch(
             lambda *events: self._write(), ["running", "message", "refusal"]
         )
+        state.param.watch(lambda event: self._fade(), "is_stale")
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
@@ -142,10 +143,17 @@ class Live:
         if not has_text and state.frame is not None:
             if is_high(state.frame.run.geometry):
                 classes.append("high")
+        if state.is_stale:
+            classes.append("stale")
         return classes
 
     def _reshape(self) -> None:
         self.view.css_classes = self._shape
+
+    def _fade(self) -> None:
+        """Fade what is of a run before the present one."""
+        self._reshape()
+        self._write()
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""

@@ -143,6 +143,9 @@ class PageState(param.Parameterized):
         doc="Names of the extras that views in sight need.",
     )
     readings = param.List(default=[], doc="Quantities that a lesson or a case names.")
+    is_stale = param.Boolean(
+        doc="Whether what is shown is of a run before the present."
+    )
     is_dragged = param.Boolean(doc="Whether a slider or an arrow is being dragged.")
     lesson = param.String(doc="Name of the lesson.")
     case = param.String(doc="Name of the case; in a lesson there is none.")
@@ -324,11 +327,14 @@ class PageState(param.Parameterized):
     ) -> None:
         """Order a run with options of `Start`, by default at the page's pace."""
         self.number = next(RUNS)
+        is_dragged = options.get("is_dragged", False)
         self.param.update(
             is_costly=False,
             message="",
             iteration=None,
-            is_dragged=options.get("is_dragged", False),
+            is_dragged=is_dragged,
+            # A slider moves on before each of its runs is shown.
+            is_stale=self.frame is not None and not is_dragged,
         )
         if pace is None:
             pace = PACES[self.pace]
@@ -341,7 +347,10 @@ class PageState(param.Parameterized):
             self.ghost = self._ghost_at(self.frame)
 
     def _ghost_at(self, frame: Frame) -> Frame | None:
-        """The frame to compare a frame with, of the pinned or last run of the scene."""
+        """The frame to compare a frame with, of the pinned or the last run.
+
+        There is none where that run is of another structure.
+        """
         ghost = self._last_run
         pinned = self.pinned
         if pinned is not None and pinned is not self.history:
@@ -349,7 +358,7 @@ class PageState(param.Parameterized):
                 ghost = pinned.newest
             else:
                 ghost = pinned.at(frame.iteration)
-        if ghost is None or ghost.run.settings.scene != frame.run.settings.scene:
+        if ghost is None or ghost.run.structure != frame.run.structure:
             return None
         return ghost
 
@@ -382,6 +391,7 @@ class PageState(param.Parameterized):
             self.history = History()
         self.history.add(frame)
         with param.parameterized.batch_call_watchers(self):
+            self.is_stale = False
             self.newest = frame
             if self.iteration is None:
                 self.ghost = self._ghost_at(frame)

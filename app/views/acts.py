@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from app.units import Unit, unit_for
+from app.units import Unit, settled, unit_for
 from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import BAND, WALL, Layout, beside, is_aside
 from app.worker.geometry import PITCH, THICKNESS
@@ -219,8 +219,7 @@ def text_of(act: Act, column: int) -> str:
     peak = float(np.abs(act.values).max())
     ends = now[[0, -1]][: len(now)]
     # Rounding of a load path leaves a value near zero, as of sin(pi).
-    ends[np.abs(ends) < 1e-6 * peak] = 0.0
-    texts = [unit(float(value)) for value in ends]
+    texts = [unit(settled(float(value), peak)) for value in ends]
     return f"{act.symbol} = {' to '.join(texts)}"
 
 

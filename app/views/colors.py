@@ -13,10 +13,12 @@ EXACT = "#56B48C"
 GHOST = "#9467BD"
 BESIDE = "#B58500"
 FORCE = "#D55E00"
-STICK = "#C9CDD1"
+STICK = "#8E979F70"
 FORWARD = "#E69F00"
 BACKWARD = "#0072B2"
 OPENED = "#4D4D4D"
+HALO = "#D55E0066"
+"""Colour round the selected interface."""
 STATUS = {-1: BACKWARD, 0: STICK, 1: FORWARD, 2: OPENED}
 KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENED}
 """Colours of the status by its names in legends."""

@@ -232,9 +232,9 @@ class Picture:
         # Broad bands of many interfaces, as in a wall, would cover the bodies.
         if chains.max() >= self._description.bodies:
             width = min(width, 5.0)
-        # A dark rim below all colours, but for open stretches.
-        closed = [line for kind, line in lines.items() if kind != OPEN]
-        rims = np.concatenate([np.zeros((0, 2)), *closed])
+        # A dark rim below what slips: what sticks is quiet.
+        slipping = [line for kind, line in lines.items() if kind in (-1, 1)]
+        rims = np.concatenate([np.zeros((0, 2)), *slipping])
         strokes: Strokes = [(rims, EDGE, width + 2.0)]
         for kind, line in lines.items():
             if kind == OPEN:

@@ -134,6 +134,11 @@ class View:
                 model.js_on_change(names[0], keep)
 
     @property
+    def type_size(self) -> float:
+        """Type size of the figure, px."""
+        return float(self._type.removesuffix("px"))
+
+    @property
     def words(self) -> str:
         """Type size of words at arrows, as CSS has it."""
         return WORDS if self._type == TEXT else self._type
