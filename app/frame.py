@@ -140,6 +140,17 @@ class Run:
         size = drawn.bodies, drawn.length, drawn.height, drawn.broken
         return self.settings.scene, *size, held
 
+    @property
+    def surfaces(self) -> list[str]:
+        """Names of the interfaces at which bodies touch, without springs."""
+        return [name for name, each in self.interfaces.items() if not each.is_spring]
+
+    def x_title(self, name: str) -> str:
+        """Title of the positions along an interface, with its name if there are more."""
+        if len(self.surfaces) > 1:
+            return f"{name}: x"
+        return "x"
+
     def interface(self, name: str) -> str:
         """The interface of a name.
 

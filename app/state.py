@@ -417,6 +417,17 @@ class PageState(param.Parameterized):
             self._sent = needs
             self.send(needs)
 
+    def turn(self, step: int) -> None:
+        """Select the interface that is a number of interfaces further."""
+        if self.frame is None:
+            return
+        run = self.frame.run
+        names = run.surfaces
+        shown = self.selection.interface_of(run)
+        if shown in names:
+            shown = names[(names.index(shown) + step) % len(names)]
+            self.select(interface=shown)
+
     def select(self, **values: Any) -> None:
         """Change the selection."""
         self.selection = replace(self.selection, **values)

@@ -20,7 +20,7 @@ from app.worker.references import has_reference
 SEEN = (1e-3, 10.0)
 """Errors that are in sight in any case. Indicators widen the axis downwards alone:
 they are numbers of other sizes."""
-HEIGHT = 160
+HEIGHT = 160.0
 """Height of a plot until the browser reports its own, px."""
 LEAST = 1e-14
 """Least value that is in sight: what is smaller is rounding."""
@@ -104,6 +104,8 @@ class Convergence(ErrorPlot):
         self.legend(ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
+        self._inner_height = HEIGHT
+        plot.on_change("inner_height", self._resize)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
@@ -169,10 +171,9 @@ class Convergence(ErrorPlot):
         """Type size of the names of curves, as CSS has it: that of the axes."""
         return f"{self.type_size:g}px"
 
-    @property
-    def _inner_height(self) -> float:
-        """Height of the axis, px, about as high until the browser reports it."""
-        return float(self.figure.inner_height or HEIGHT)
+    def _resize(self, name: str, old: float, new: float) -> None:
+        # A figure that is out of sight reports a size of zero.
+        self._inner_height = max(float(new), 60.0)
 
     def _go_back(self, event: Any) -> None:
         """Show the iterate nearest to a tap."""

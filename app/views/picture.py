@@ -11,7 +11,7 @@ import numpy as np
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
 from app.views.acts import Arrows, anchor_of, color_of, gapped, strokes_of, text_of
-from app.views.colors import EDGE, ERROR, FORCE, STATUS
+from app.views.colors import EDGE, ERROR, FORCE, HALO, STATUS
 from app.views.layout import BAND, IMAGE, Layout, is_opposite, turned
 from solver.arrays import Array
 from solver.discrete.structure import Act
@@ -29,7 +29,8 @@ Strokes = list[tuple[Array, str, float]]
 class Picture:
     """A frame at the instant of a column, with displacements magnified by a factor.
 
-    `peaks` has the value of an arrow of full length for each load, by where it acts.
+    `peaks` has the value of an arrow of full length for each load, by where it acts. Of
+    several interfaces the `selected` one has a halo.
     """
 
     def __init__(
@@ -39,12 +40,14 @@ class Picture:
         layout: Layout,
         factor: float,
         peaks: Mapping[str, float],
+        selected: str = "",
     ) -> None:
         self.frame = frame
         self.column = column
         self.layout = layout
         self._factor = factor
         self._peaks = peaks
+        self._selected = selected
         self._geometry = frame.run.geometry
         self._description = layout.description
         # Values of a description are not thinned.
@@ -235,13 +238,24 @@ class Picture:
         # A dark rim below what slips: what sticks is quiet.
         slipping = [line for kind, line in lines.items() if kind in (-1, 1)]
         rims = np.concatenate([np.zeros((0, 2)), *slipping])
-        strokes: Strokes = [(rims, EDGE, width + 2.0)]
+        strokes: Strokes = [
+            (self._halo(), HALO, width + 9.0),
+            (rims, EDGE, width + 2.0),
+        ]
         for kind, line in lines.items():
             if kind == OPEN:
                 strokes.append((line, STATUS[kind], 0.5 * width))
             else:
                 strokes.append((line, STATUS[kind], width))
         return strokes
+
+    def _halo(self) -> Array:
+        """Line along the selected interface, (n, 2), px, if there are several."""
+        run = self.frame.run
+        if self._selected not in run.surfaces or len(run.surfaces) == 1:
+            return np.zeros((0, 2))
+        chain = list(run.interfaces).index(self._selected)
+        return self.points[self._geometry.chains == chain]
 
     def _words(self) -> Columns:
         """Symbols and values of the loads, and the slope, inside the figure."""

@@ -118,7 +118,8 @@ class Scene(View):
         plot.x_range.end = layout.width
         plot.y_range.end = layout.height
         column = run.column(selection.phase)
-        picture = Picture(frame, column, layout, self._factor, self._peaks)
+        selected = selection.interface_of(run)
+        picture = Picture(frame, column, layout, self._factor, self._peaks, selected)
         self.picture = picture
         for name, columns in picture.columns().items():
             self.fill(name, **columns)

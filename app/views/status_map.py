@@ -53,6 +53,7 @@ class StatusMap(View):
         if fields is None:
             return
         interface = run.interfaces[name]
+        self.x.rename(run.x_title(name), "m")
         self.x.hold((run.number, name), interface.positions)
         self.y.hold((run.number, name), run.instants)
         self._show_image(run, interface, fields)

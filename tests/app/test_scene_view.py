@@ -13,9 +13,12 @@ from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.status import status_line
 from app.views.catalogue import CARDS
+from app.views.colors import HALO
+from app.views.contact_force import ContactForce
 from app.views.picture import bands
 from app.views.rope import WireSection
 from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
+from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, paths_of
 from app.views.view import TEXT
 from app.worker.references import ReferenceCache
@@ -304,3 +307,35 @@ def test_a_wall_that_collapses_says_its_limit_and_shows_by_which_mechanism() -> 
     assert float(np.abs(frame.run.mechanism).max()) > 0.0
     assert len(shown(frame, 1.0).sources["ghost"].data["x"]) > 10
     assert not len(shown(frame, 0.1).sources["ghost"].data["x"])
+
+
+def test_the_selected_contact_has_a_halo_and_its_name_in_the_titles_of_its_plots() -> (
+    None
+):
+    frame = frame_of(small("layers"))
+    state = PageState(frame.run.settings, frame=frame)
+    views = [Scene(state), ContactForce(state), StatusMap(state)]
+    shown_at = []
+    for _ in range(2):
+        state.turn(1)
+        for view in views:
+            _ = view.figure
+            view.update(frame, state.selection, None)
+        strokes = views[0].sources["strokes"].data
+        halo = strokes["line_color"].index(HALO)
+        shown_at.append(float(np.mean(strokes["ys"][halo])))
+        for view in views[1:]:
+            title = view.figure.title.text
+            assert title.startswith(f"{state.selection.interface}: x, ")
+    assert state.selection.interface == "contact 3-4"
+    assert abs(shown_at[1] - shown_at[0]) > 10.0
+    state.turn(1)
+    assert state.selection.interface == "contact 1-2"
+
+
+def test_a_single_contact_needs_neither_halo_nor_name() -> None:
+    frame = frame_of(small("incline"))
+    strokes = shown(frame).sources["strokes"].data
+    halo = strokes["line_color"].index(HALO)
+    assert not len(strokes["xs"][halo])
+    assert frame.run.x_title("support") == "x"
