@@ -143,6 +143,10 @@ class Live:
         if not has_text and state.frame is not None:
             if is_high(state.frame.run.geometry):
                 classes.append("high")
+        case = state.trade_case
+        if case is not None and case.surroundings is not None:
+            if case.surroundings.is_upright:
+                classes += ["high", "upright"]
         if state.is_stale:
             classes.append("stale")
         return classes
@@ -179,7 +183,10 @@ class Live:
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
-            self._sentence.object = frame.run.sentence
+            sentence = frame.run.sentence
+            if self.state.trade_case is not None:
+                sentence = self.state.trade_case.sentence_on(sentence)
+            self._sentence.object = sentence
             if self._shape != self.view.css_classes:
                 # In one step with new data the browser would paint the old ones in the
                 # new shape.

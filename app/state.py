@@ -20,6 +20,7 @@ from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
+from solver.study.trade_case import Case, cases_by_name
 
 LIMIT = 24_000_000
 """Largest memory of the frames of a run, bytes; beyond, every other frame is
@@ -276,6 +277,16 @@ class PageState(param.Parameterized):
         if self.poll is not None:
             is_answered = self.poll.is_answered
         return bool(self.lesson) and not is_answered
+
+    @property
+    def trade_case(self) -> Case | None:
+        """The case that the page is in, if the frame is of its scene."""
+        case = cases_by_name().get(self.case)
+        if case is None or self.frame is None:
+            return None
+        if case.settings.scene != self.frame.run.settings.scene:
+            return None
+        return case
 
     def pause(self) -> None:
         """Have the run wait."""

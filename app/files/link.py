@@ -11,7 +11,14 @@ import param
 
 from app.browser import Browser
 from app.frame import Selection
-from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
+from app.lessons.catalogue import (
+    CASES,
+    KINDS,
+    KNOWN,
+    LESSONS,
+    plots_of,
+    settings_of,
+)
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from solver.files.saved import dump
@@ -170,6 +177,9 @@ def _beside_settings(shown: Shown) -> dict[str, str]:
     lesson = LESSONS.get(shown.get("lesson", ""))
     if lesson:
         selection = Selection(lesson.instant, lesson.interface)
+    case = CASES.get(shown.get("case", ""))
+    if case:
+        selection = Selection(case.instant)
     first = DEFAULTS | {
         "plots": plots_of(shown.get("case", "")),
         "iteration": 0,
@@ -205,8 +215,8 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     }
     base, opened = _base(pairs, refused)
     shown |= opened
-    if "lesson" in opened:
-        shown["instant"] = LESSONS[opened["lesson"]].instant
+    for kind, name in opened.items():
+        shown["instant"] = KNOWN[kind][name].instant
     shown["plots"] = _plots(pairs, opened.get("case", ""), refused)
     shown |= _checked(pairs, refused)
     if "interface" in pairs:

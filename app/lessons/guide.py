@@ -80,6 +80,8 @@ class Guide:
         self.dialogs[kind].open = False
         opened = {"lesson": "", "case": "", kind: name}
         plots = plots_of(opened["case"])
+        if kind == "case":
+            self._state.select(phase=CASES[name].instant)
         # In one step: else the text would be built once with the scene before.
         with param.parameterized.batch_call_watchers(self._state):
             self._state.param.update(**opened, prediction=None, plots=plots)

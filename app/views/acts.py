@@ -151,6 +151,8 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     """Anchor of the words of a load, (2,), px, and the side of the words it is at."""
     act = arrows.act
     side = act.where.partition(" ")[0]
+    if layout.angle:
+        return _anchor_upright(arrows, layout, side)
     if side in ("top", "bottom"):
         return _anchor_above(arrows, layout, side)
     if side == "body":
@@ -167,6 +169,22 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     else:
         shift = [9.0 * away, 15.0]
     return arrows.points[-1] + shift, "left" if side == "right" else "right"
+
+
+def _anchor_upright(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
+    """Anchor, (2,), px, and side, as in `anchor_of`, of a load on upright bodies.
+
+    Their top is at the right: what acts on it, and at the ends, has its words there.
+    """
+    length, height = layout.size * layout.scale
+    if side in ("left", "right"):
+        return arrows.points[-1] + [14.0 * arrows.act.away[0], 14.0], "left"
+    heights = arrows.lines[:, :, 1].ravel()
+    if side == "bottom":
+        lowest = min([*heights, -layout.arrow])
+        return np.array([-0.2 * length, lowest - 8.0]), "right"
+    share = 0.0 if side == "top" else -0.4
+    return np.array([share * length, max([*heights, height]) + 8.0]), "left"
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
@@ -250,13 +268,23 @@ def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[
                 lines.append(hatched(edge + shift + [-along, along], away))
             case "rollers":
                 lines.append(_rollers(edge, away))
-            case "support":
+            case "support" if layout.surroundings is None or layout.is_bare:
                 lines.append(hatched(_support(layout, factor, edge, hold.gap), away))
             case "spring":
                 wall = edge[0, 0] + WALL * away[0] + shift[0]
                 foot = feet[int(hold.side == "right")]
                 lines.append(_spring(foot, float(wall), away))
     return lines
+
+
+def ground_edge(layout: Layout, factor: float) -> Array:
+    """Line, (n, 2), px, along which bodies touch the ground of a case below them."""
+    gap = None
+    for hold in layout.description.holds:
+        if hold.kind == "support":
+            gap = hold.gap
+    foot = layout.local(on_side("bottom", [0.0, 1.0]) * layout.size)
+    return _support(layout, factor, foot, gap)
 
 
 def hatched(edge: Array, away: Array) -> Array:

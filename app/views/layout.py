@@ -12,6 +12,7 @@ from app.frame import Geometry
 from app.views.axis import rounded_up
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
+from solver.study.trade_case import Surroundings
 
 THICK = 52.0
 """Largest thickness of a rod, px."""
@@ -31,6 +32,8 @@ WALL = 54.0
 DEEPEST = 18.0
 IMAGE = 26.0
 """Largest depth of a gap in a low figure, and depth of the image below bodies, px."""
+GROUND = 26.0
+"""Depth of the ground of a case, px."""
 NARROW = 560.0
 """Width below which keys take two lines, px."""
 
@@ -44,6 +47,10 @@ class Layout:
     `arrow` px long at its largest value, and a letter of its words `letter` px wide;
     the largest displacement takes `motion` px at most. Keys stand below the bodies in
     `key_rows`, or at their left if there are none.
+
+    Bodies that stand upright, by the `surroundings` of a case, are laid out in a figure
+    that is turned by a quarter to the right: their left end is on top. `angle` is that
+    of this turn, rad.
     """
 
     def __init__(
@@ -54,17 +61,24 @@ class Layout:
         width: float,
         height: float,
         key_rows: int,
+        surroundings: Surroundings | None = None,
     ) -> None:
         self.is_bare = is_bare
         self.width = width
         self.height = height
         self.key_rows = key_rows
+        self.surroundings = surroundings
         self.letter = LETTER * type_size
         self.description = geometry.description
         if is_bare:
             self.description = replace(self.description, acts=())
         top = float(geometry.nodes[:, 1].max())
         self.size = np.array([self.description.length, top])
+        self.angle = 0.0
+        # Rods alone are drawn level, whatever they are.
+        is_rod = self.description.height is None
+        if surroundings is not None and surroundings.is_upright and is_rod:
+            self.angle = -0.5 * math.pi
         self.arrow = min(max(0.19 * height, 18.0), 38.0)
         self.deepest = max(DEEPEST, 0.1 * height)
         self._fit()
@@ -74,19 +88,29 @@ class Layout:
         description = self.description
         top = float(self.size[1])
         left, right, below, above = _margins(
-            description, self.arrow, self.letter, self.deepest
+            description, self.arrow, self.letter, self.deepest, self.surroundings
         )
-        if not self.key_rows:
-            left += COLUMN
-        below += FOOT * self.key_rows
-        free = [self.width - left - right, self.height - below - above]
+        # Of the figure along and across upright bodies the keys take the far end, or
+        # the strip below them.
+        along = self.width
+        across = self.height
+        keys = 0.0 if self.key_rows else COLUMN
+        if self.angle:
+            along = self.height
+            across = self.width
+            right += FOOT * self.key_rows
+            below += keys
+        else:
+            left += keys
+            below += FOOT * self.key_rows
+        free = [along - left - right, across - below - above]
         room = np.maximum(free, 24.0)
         low, high = _extent(description.length, top, description.tilt)
         # Displacements get their room first: of long bodies more across, as they bend.
         share = 0.06
         if description.length > LONG * top:
             share = 0.12
-        motion = np.array([0.04 * self.width, share * self.height])
+        motion = np.array([0.04 * along, share * across])
         if description.height is None:
             motion[1] = 0.0
         scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
@@ -100,7 +124,10 @@ class Layout:
         rest = room - (high - low) * scale
         motion[0] = min(motion[0], 0.12 * description.length * scale[0])
         self.scale = scale
-        self.origin = np.array([left, below]) + 0.5 * rest - low * scale
+        x, y = np.array([left, below]) + 0.5 * rest - low * scale
+        self.origin = np.array([x, y])
+        if self.angle:
+            self.origin = np.array([y, self.height - x])
         self.motion = motion
 
     def local(self, positions: Array) -> Array:
@@ -150,14 +177,20 @@ def is_opposite(act: Act, other: Act) -> bool:
 
 @lru_cache(maxsize=16)
 def layout_of(
-    geometry: Geometry, is_bare: bool, type_size: float, width: float, height: float
+    geometry: Geometry,
+    is_bare: bool,
+    type_size: float,
+    width: float,
+    height: float,
+    surroundings: Surroundings | None = None,
 ) -> Layout:
     """The layout with larger bodies in a figure in px: keys below, or at the left."""
     rows = 1
     if width < NARROW:
         rows = 2
-    below = Layout(geometry, is_bare, type_size, width, height, rows)
-    beside = Layout(geometry, is_bare, type_size, width, height, 0)
+    size = type_size, width, height
+    below = Layout(geometry, is_bare, *size, rows, surroundings)
+    beside = Layout(geometry, is_bare, *size, 0, surroundings)
     if beside.scale[0] > below.scale[0]:
         return beside
     return below
@@ -178,7 +211,11 @@ def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array
 
 
 def _margins(
-    description: Description, arrow: float, letter: float, deepest: float
+    description: Description,
+    arrow: float,
+    letter: float,
+    deepest: float,
+    surroundings: Surroundings | None,
 ) -> tuple[float, float, float, float]:
     """Margins for supports and loads on the left, on the right, below and above, px."""
     room = {
@@ -194,17 +231,28 @@ def _margins(
             # An open gap is drawn, too.
             size += deepest
         room[hold.side] = max(room[hold.side], size)
+    is_upright = False
+    if surroundings is not None:
+        is_upright = surroundings.is_upright
+        room["bottom"] = max(room["bottom"], GROUND + 16.0)
+        if surroundings.place == "around":
+            room["top"] = max(room["top"], GROUND + 16.0)
     for act in description.acts:
         side = act.where.partition(" ")[0]
-        if side in ("left", "right"):
-            size = 20.0 + letter * (len(act.symbol) + len(act.unit) + 9)
+        words = letter * (len(act.symbol) + len(act.unit) + 9)
+        if is_upright:
+            size = arrow + 14.0
+            if side in ("top", "bottom"):
+                size += words
+        elif side in ("left", "right"):
+            size = 20.0 + words
         elif side not in ("top", "bottom"):
             continue
         elif is_aside(act):
             size = beside(description, side) + 11.0
         else:
             size = arrow + 10.0
-        room[side] = max(room[side], size)
+        room[side] = max(room.get(side, 0.0), size)
     return room["left"], room["right"], room["bottom"], room["top"]
 
 

@@ -10,9 +10,18 @@ import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrows, anchor_of, color_of, gapped, strokes_of, text_of
+from app.views.acts import (
+    Arrows,
+    anchor_of,
+    color_of,
+    gapped,
+    ground_edge,
+    strokes_of,
+    text_of,
+)
 from app.views.colors import EDGE, ERROR, FORCE, HALO, STATUS
-from app.views.layout import BAND, IMAGE, Layout, is_opposite, turned
+from app.views.colors import GROUND as GROUND_COLOR
+from app.views.layout import BAND, GROUND, IMAGE, Layout, is_opposite, turned
 from solver.arrays import Array
 from solver.discrete.structure import Act
 
@@ -53,7 +62,7 @@ class Picture:
         # Values of a description are not thinned.
         instant = frame.run.instants[column]
         self._now = int(np.argmin(np.abs(self._description.instants - instant)))
-        self.tilt = 0.0
+        self.tilt = layout.angle
         if self._description.tilt is not None:
             self.tilt = float(self._description.tilt[self._now])
 
@@ -101,6 +110,7 @@ class Picture:
         """Columns of all sources, by their names."""
         bodies = _drawn(self._geometry.outlines, self.nodes)
         return {
+            "ground": self._ground(),
             "image": self._line(self._image(bodies)),
             "bodies": self._line(bodies),
             "strokes": self._columns(self._strokes()),
@@ -108,6 +118,26 @@ class Picture:
             "marks": self._marks(),
             "words": self._words(),
         }
+
+    @property
+    def _is_around(self) -> bool:
+        """Check whether the ground of a case is all around the bodies."""
+        surroundings = self.layout.surroundings
+        return surroundings is not None and surroundings.place == "around"
+
+    def _ground(self) -> Columns:
+        """Patches of the ground of a case, below the bodies or on both sides."""
+        if self.layout.surroundings is None or self.layout.is_bare:
+            return {"xs": [], "ys": []}
+        edge = ground_edge(self.layout, self._factor)
+        low = edge[:, 1].min() - GROUND
+        foot = np.array([[edge[-1, 0], low], [edge[0, 0], low]])
+        patch = np.concatenate([edge, foot])
+        patches = [patch]
+        if self._is_around:
+            top = self.layout.size[1] * self.layout.scale[1]
+            patches.append([0.0, top] - [-1.0, 1.0] * patch)
+        return self.many(np.stack(patches))
 
     def _image(self, bodies: Array) -> Array:
         """The bodies turned by half a turn, if a support is such an image.
@@ -230,6 +260,11 @@ class Picture:
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
+        if self._is_around:
+            # The other side of bodies that the ground is all around of.
+            top = self.layout.size[1] * self.layout.scale[1]
+            for kind, line in lines.items():
+                lines[kind] = np.concatenate([line, [0.0, top] - [-1.0, 1.0] * line])
         height = self.layout.size[1] * self.layout.scale[1] / self._description.bodies
         width = min(BAND, 0.35 * height)
         # Broad bands of many interfaces, as in a wall, would cover the bodies.
@@ -274,6 +309,18 @@ class Picture:
             anchors.append(self.page(anchor))
             aligns.append(align)
             colors.append(color_of(act))
+        surroundings = layout.surroundings
+        if surroundings is not None and not layout.is_bare:
+            edge = ground_edge(layout, self._factor)
+            end = edge[0] + [8.0, -0.5 * GROUND]
+            align = "left"
+            if layout.angle:
+                end = edge[-1] - [10.0, 0.5 * GROUND]
+                align = "center"
+            texts.append(surroundings.ground)
+            anchors.append(self.page(end))
+            aligns.append(align)
+            colors.append(GROUND_COLOR)
         if self._description.tilt is not None:
             x = 0.5 * self._description.length * layout.scale[0] + 30.0
             texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")

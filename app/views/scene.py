@@ -16,7 +16,7 @@ from app.frame import Frame, Selection
 from app.units import number, unit_for
 from app.views.acts import Arrows
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
+from app.views.colors import BODY, EDGE, GHOST, GROUND, KEYS, LATIN, UNSEEN
 from app.views.layout import Layout, layout_of
 from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
@@ -66,6 +66,9 @@ class Scene(View):
 
     def _draw(self, plot: figure) -> None:
         """Add all layers from the bottom to the top, and the legend."""
+        look = {"fill_alpha": 0.22, "hatch_alpha": 0.5, "hatch_scale": 8.0}
+        colors = {"fill_color": GROUND, "hatch_color": GROUND, "line_color": GROUND}
+        self.add("ground", "Patches", "xs ys", hatch_pattern=".", **look, **colors)
         self.add("image", "Patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
         self.add(
             "bodies",
@@ -135,7 +138,12 @@ class Scene(View):
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
         width, height = self._size.values()
-        return layout_of(frame.run.geometry, self.is_bare, type_size, width, height)
+        surroundings = None
+        if self.state.trade_case is not None:
+            surroundings = self.state.trade_case.surroundings
+        return layout_of(
+            frame.run.geometry, self.is_bare, type_size, width, height, surroundings
+        )
 
     def _scale(self, frame: Frame, layout: Layout) -> None:
         """Choose the magnification and the scale of arrows for a frame that is new."""

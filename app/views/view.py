@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import zip_longest
@@ -35,7 +36,7 @@ from numpy.typing import ArrayLike
 from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
-from app.views.colors import CUT
+from app.views.colors import CUT, FLAG
 from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
@@ -155,6 +156,45 @@ class View:
     def ghost_name(self) -> str:
         """Name of the run that is drawn beside the present one."""
         return "last run" if self.state.pinned is None else "pinned run"
+
+    def add_flag(self) -> None:
+        """Add the mark of the known number of a case; `show_flag` puts it there."""
+        self.add("level", "HSpan", "y", color=FLAG, line_dash="dashed", line_width=1.5)
+        look = {"marker": "inverted_triangle", "size": 12, "color": FLAG}
+        self.add("flag", "Scatter", "x y", also="text text_align", **look)
+        self.add(
+            "flag text",
+            "Text",
+            "x y text text_align",
+            on="flag",
+            text_color=FLAG,
+            text_font_style="bold",
+            text_font=value("Roboto, sans-serif"),
+            text_font_size=self.words,
+            y_offset=-8,
+        )
+
+    def show_flag(self, frame: Frame) -> None:
+        """Mark the known number of the case if it stands in this plot."""
+        case = self.state.trade_case
+        flag = None
+        if case is not None and case.knows(frame.run.settings):
+            flag = case.flag
+        columns: dict[str, list[Any]] = {"x": [], "y": [], "text": [], "text_align": []}
+        levels = []
+        if flag is not None and flag.plot == self.name:
+            x = float(self.x(flag.x))
+            y = float(self.y(flag.y))
+            ends = self._figure.x_range
+            if math.isnan(x):
+                # Any x: a line, whose name stands at its left end.
+                x = ends.reset_start
+                levels = [y]
+            is_right = x > 0.5 * (ends.reset_start + ends.reset_end)
+            align = "right" if is_right else "left"
+            columns = {"x": [x], "y": [y], "text": [flag.text], "text_align": [align]}
+        self.fill("flag", **columns)
+        self.fill("level", y=levels)
 
     def begin(
         self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any
