@@ -151,15 +151,14 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     """Anchor of the words of a load, (2,), px, and the side of the words it is at."""
     act = arrows.act
     side = act.where.partition(" ")[0]
-    if layout.angle:
-        return _anchor_upright(arrows, layout, side)
     if side in ("top", "bottom"):
         return _anchor_above(arrows, layout, side)
     if side == "body":
         length, height = layout.size * layout.scale
         if length < 0.5 * layout.width:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
-        return np.array([0.0, 0.5 * height + 14.0]), "center"
+        above = height + layout.arrow + 6.0 + layout.letter
+        return np.array([0.0, above]), "center"
     away = act.away[0]
     if is_aside(act):
         shift = [22.0 * away, -16.0]
@@ -169,22 +168,6 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     else:
         shift = [9.0 * away, 15.0]
     return arrows.points[-1] + shift, "left" if side == "right" else "right"
-
-
-def _anchor_upright(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
-    """Anchor, (2,), px, and side, as in `anchor_of`, of a load on upright bodies.
-
-    Their top is at the right: what acts on it, and at the ends, has its words there.
-    """
-    length, height = layout.size * layout.scale
-    if side in ("left", "right"):
-        return arrows.points[-1] + [14.0 * arrows.act.away[0], 14.0], "left"
-    heights = arrows.lines[:, :, 1].ravel()
-    if side == "bottom":
-        lowest = min([*heights, -layout.arrow])
-        return np.array([-0.2 * length, lowest - 8.0]), "right"
-    share = 0.0 if side == "top" else -0.4
-    return np.array([share * length, max([*heights, height]) + 8.0]), "left"
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
@@ -284,7 +267,12 @@ def ground_edge(layout: Layout, factor: float) -> Array:
         if hold.kind == "support":
             gap = hold.gap
     foot = layout.local(on_side("bottom", [0.0, 1.0]) * layout.size)
-    return _support(layout, factor, foot, gap)
+    edge = _support(layout, factor, foot, gap)
+    surroundings = layout.surroundings
+    if surroundings is None or surroundings.place == "around":
+        return edge
+    # Bodies that move stay on what is below them.
+    return edge + np.outer(np.linspace(-1.0, 1.0, len(edge)), [3.0 * BEYOND, 0.0])
 
 
 def hatched(edge: Array, away: Array) -> Array:

@@ -152,18 +152,19 @@ class Convergence(ErrorPlot):
                 height = (np.log10(data["y"][-1]) - low) / (high - low)
                 names.append((height, float(data["x"][-1]), title, color))
         goal = newest.run.settings.accuracy
+        height = (np.log10(goal) - low) / (high - low)
+        names.append((height, float(newest.iteration), f"goal {percent(goal)}", ERROR))
         for iteration in self.sources["answer"].data["x"]:
             names.append((0.04, float(iteration), "exact", ERROR))
         names.sort()
         apart = APART * self.type_size / self._inner_height
         heights = spread([height for height, *_ in names], apart)
-        texts = [title for *_, title, _ in names]
         self.fill(
             "names",
-            x=[0.0, *[x for _, x, *_ in names]],
-            y=[1.4 * goal, *(10.0 ** (low + (high - low) * heights)).tolist()],
-            text=[f"goal {percent(goal)}", *texts],
-            text_color=[ERROR, *[color for *_, color in names]],
+            x=[x for _, x, *_ in names],
+            y=(10.0 ** (low + (high - low) * heights)).tolist(),
+            text=[title for *_, title, _ in names],
+            text_color=[color for *_, color in names],
         )
 
     @property

@@ -32,6 +32,8 @@ WALL = 54.0
 DEEPEST = 18.0
 IMAGE = 26.0
 """Largest depth of a gap in a low figure, and depth of the image below bodies, px."""
+MOST = 1.25
+"""Largest motion over the room for it with which a magnification is kept."""
 GROUND = 26.0
 """Depth of the ground of a case, px."""
 NARROW = 560.0
@@ -44,7 +46,8 @@ class Layout:
     Arrays have shape (2,), along x and y. The bodies have the `size` in m, length and
     height as they are drawn; bare ones show no loads. `scale` is in px/m: only of rods
     it differs along x and y. `origin` is the middle of their foot, px. An arrow is
-    `arrow` px long at its largest value, and a letter of its words `letter` px wide;
+    `arrow` px long at its largest value, a letter of its words `letter` px wide, and a
+    line of them `row` px high;
     the largest displacement takes `motion` px at most. Keys stand below the bodies in
     `key_rows`, or at their left if there are none.
 
@@ -69,6 +72,7 @@ class Layout:
         self.key_rows = key_rows
         self.surroundings = surroundings
         self.letter = LETTER * type_size
+        self.row = 1.3 * type_size
         self.description = geometry.description
         if is_bare:
             self.description = replace(self.description, acts=())
@@ -90,18 +94,17 @@ class Layout:
         left, right, below, above = _margins(
             description, self.arrow, self.letter, self.deepest, self.surroundings
         )
-        # Of the figure along and across upright bodies the keys take the far end, or
-        # the strip below them.
         along = self.width
         across = self.height
-        keys = 0.0 if self.key_rows else COLUMN
+        if not self.key_rows:
+            left += COLUMN
+        # Upright bodies have words in rows above them, and keys below them.
         if self.angle:
             along = self.height
             across = self.width
+            left += self.row * len(description.acts)
             right += FOOT * self.key_rows
-            below += keys
         else:
-            left += keys
             below += FOOT * self.key_rows
         free = [along - left - right, across - below - above]
         room = np.maximum(free, 24.0)
@@ -144,7 +147,7 @@ class Layout:
         if share <= 0.0:
             return factor or 1.0
         # A factor that followed each frame would hide that displacements change.
-        if factor is not None and 0.2 <= factor * share <= 1.8:
+        if factor is not None and 0.2 <= factor * share <= MOST:
             return factor
         return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
 
@@ -189,6 +192,8 @@ def layout_of(
     if width < NARROW:
         rows = 2
     size = type_size, width, height
+    if surroundings is not None and surroundings.is_upright:
+        return Layout(geometry, is_bare, *size, 4, surroundings)
     below = Layout(geometry, is_bare, *size, rows, surroundings)
     beside = Layout(geometry, is_bare, *size, 0, surroundings)
     if beside.scale[0] > below.scale[0]:
@@ -239,13 +244,10 @@ def _margins(
             room["top"] = max(room["top"], GROUND + 16.0)
     for act in description.acts:
         side = act.where.partition(" ")[0]
-        words = letter * (len(act.symbol) + len(act.unit) + 9)
         if is_upright:
-            size = arrow + 14.0
-            if side in ("top", "bottom"):
-                size += words
+            size = arrow + 10.0
         elif side in ("left", "right"):
-            size = 20.0 + words
+            size = 20.0 + letter * (len(act.symbol) + len(act.unit) + 9)
         elif side not in ("top", "bottom"):
             continue
         elif is_aside(act):
@@ -253,6 +255,9 @@ def _margins(
         else:
             size = arrow + 10.0
         room[side] = max(room.get(side, 0.0), size)
+    if any(act.where.startswith("body") for act in description.acts):
+        # Their words stand above the arrows on top.
+        room["top"] = max(room["top"], arrow + 10.0) + 2.2 * letter
     return room["left"], room["right"], room["bottom"], room["top"]
 
 

@@ -305,8 +305,14 @@ class Picture:
             if self._is_repeated(act):
                 continue
             anchor, align = anchor_of(arrows, layout)
+            anchor = self.page(anchor)
+            if layout.angle:
+                # In rows above what stands upright.
+                above = layout.height - (len(texts) + 0.5) * layout.row
+                anchor = np.array([layout.origin[0], above])
+                align = "center"
             texts.append(text_of(act, self._now))
-            anchors.append(self.page(anchor))
+            anchors.append(anchor)
             aligns.append(align)
             colors.append(color_of(act))
         surroundings = layout.surroundings

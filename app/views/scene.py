@@ -168,7 +168,7 @@ class Scene(View):
         if run.geometry.description.height is None:
             note += ", thickness not to scale"
         self.show("note", note)
-        if layout.key_rows:
+        if layout.key_rows and not layout.angle:
             self._keys.update(orientation="horizontal", nrows=layout.key_rows)
         else:
             self._keys.update(orientation="vertical", nrows="auto")

@@ -161,17 +161,15 @@ class View:
         """Add the mark of the known number of a case; `show_flag` puts it there."""
         self.add("level", "HSpan", "y", color=FLAG, line_dash="dashed", line_width=1.5)
         look = {"marker": "inverted_triangle", "size": 12, "color": FLAG}
-        self.add("flag", "Scatter", "x y", also="text text_align", **look)
+        self.add("flag", "Scatter", "x y", **look)
         self.add(
             "flag text",
             "Text",
-            "x y text text_align",
-            on="flag",
+            "x y text text_align text_baseline y_offset",
             text_color=FLAG,
             text_font_style="bold",
             text_font=value("Roboto, sans-serif"),
             text_font_size=self.words,
-            y_offset=-8,
         )
 
     def show_flag(self, frame: Frame) -> None:
@@ -180,21 +178,31 @@ class View:
         flag = None
         if case is not None and case.knows(frame.run.settings):
             flag = case.flag
-        columns: dict[str, list[Any]] = {"x": [], "y": [], "text": [], "text_align": []}
-        levels = []
+        points = np.zeros((2, 0))
+        levels = np.zeros(0)
+        texts = []
         if flag is not None and flag.plot == self.name:
-            x = float(self.x(flag.x))
-            y = float(self.y(flag.y))
-            ends = self._figure.x_range
-            if math.isnan(x):
+            texts = [flag.text]
+            points = np.array([[float(self.x(flag.x))], [float(self.y(flag.y))]])
+            if math.isnan(flag.x):
                 # Any x: a line, whose name stands at its left end.
-                x = ends.reset_start
-                levels = [y]
-            is_right = x > 0.5 * (ends.reset_start + ends.reset_end)
-            align = "right" if is_right else "left"
-            columns = {"x": [x], "y": [y], "text": [flag.text], "text_align": [align]}
-        self.fill("flag", **columns)
+                levels = points[1]
+                points[0] = self._figure.x_range.reset_start
+        x, y = points
         self.fill("level", y=levels)
+        self.fill("flag", x=x[: len(x) - len(levels)], y=y[: len(y) - len(levels)])
+        # The text stands where the plot has room.
+        is_right = x > _middle(self._figure.x_range)
+        is_above = y > _middle(self._figure.y_range)
+        self.fill(
+            "flag text",
+            x=x,
+            y=y,
+            text=texts,
+            text_align=np.where(is_right, "right", "left").tolist(),
+            text_baseline=np.where(is_above, "top", "bottom").tolist(),
+            y_offset=np.where(is_above, 9.0, -9.0),
+        )
 
     def begin(
         self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any
@@ -374,6 +382,11 @@ class ExtraView(View):
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError
+
+
+def _middle(axis: Range1d) -> float:
+    """Value in the middle of an axis."""
+    return 0.5 * float(axis.reset_start + axis.reset_end)
 
 
 def bare(
