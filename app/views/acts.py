@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +20,8 @@ LONGEST = 1.6
 """Largest length over that of the largest value when arrows were scaled."""
 WORD = 12
 """Letters of a value, about."""
+SNAP = 4.0
+"""Distance from zero within which a dragged load is zero, px."""
 HEAD = 9.0
 """Length of the head of an arrow, px."""
 BOW = 0.22
@@ -33,6 +36,24 @@ RADIUS = 4.0
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 13)
 RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 """Points of a circle of radius 1, shape (13, 2)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """A load of a setting that was dragged to zero: a handle without an arrow.
+
+    The handle is in px from the middle of the bodies' foot, (2,); `per_px` is the value
+    of the setting for each px along x and y, (2,).
+    """
+
+    act: Act
+    setting: str
+    handle: Array
+    per_px: Array
+
+    def scaled(self, present: float, pointer: Array) -> float:
+        """Value of the setting with the handle at a pointer, (2,), px."""
+        return float((pointer - self.handle) @ self.per_px)
 
 
 class Arrows:
@@ -75,6 +96,9 @@ class Arrows:
         handles = np.where(pushes, base - span, base + span)
         tails = np.where(pushes, handles, base)
         heads = np.where(pushes, base, handles)
+        self._layout = layout
+        self._places = act.points[is_shown]
+        self._distance = distance
         self.base = base
         self.handles = handles
         self.lines = np.stack([tails, heads], axis=1)
@@ -126,7 +150,20 @@ class Arrows:
         """Value of the setting with the handle at a pointer, (2,), px."""
         base = self.base[self._longest]
         along = self.handle - base
-        return float(present * ((pointer - base) @ along) / (along @ along))
+        share = float((pointer - base) @ along / (along @ along))
+        # Zero is a place that a hand finds.
+        if abs(share) * np.hypot(*along) < SNAP:
+            return 0.0
+        return present * share
+
+    def rest(self, present: float) -> Rest:
+        """The handle that stays once the setting goes from a present value to zero."""
+        place = self._places[self._longest] * self._layout.size
+        away = self._distance * np.array(self.act.away)
+        along = self.handle - self.base[self._longest]
+        per_px = present * along / (along @ along)
+        handle = self._layout.local(place) + away
+        return Rest(self.act, self.setting or "", handle, per_px)
 
 
 def _bows(lines: Array, lengths: Array, away: Array) -> Array:
@@ -272,7 +309,8 @@ def ground_edge(layout: Layout, factor: float) -> Array:
     if surroundings is None or surroundings.place == "around":
         return edge
     # Bodies that move stay on what is below them.
-    return edge + np.outer(np.linspace(-1.0, 1.0, len(edge)), [3.0 * BEYOND, 0.0])
+    beyond = 3.0 * BEYOND + layout.motion[0]
+    return edge + np.outer(np.linspace(-1.0, 1.0, len(edge)), [beyond, 0.0])
 
 
 def hatched(edge: Array, away: Array) -> Array:

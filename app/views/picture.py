@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -12,6 +12,7 @@ from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
 from app.views.acts import (
     Arrows,
+    Rest,
     anchor_of,
     color_of,
     gapped,
@@ -39,7 +40,8 @@ class Picture:
     """A frame at the instant of a column, with displacements magnified by a factor.
 
     `peaks` has the value of an arrow of full length for each load, by where it acts. Of
-    several interfaces the `selected` one has a halo.
+    several interfaces the `selected` one has a halo. `rests` are loads that were
+    dragged to zero.
     """
 
     def __init__(
@@ -50,6 +52,7 @@ class Picture:
         factor: float,
         peaks: Mapping[str, float],
         selected: str = "",
+        rests: Sequence[Rest] = (),
     ) -> None:
         self.frame = frame
         self.column = column
@@ -57,6 +60,7 @@ class Picture:
         self._factor = factor
         self._peaks = peaks
         self._selected = selected
+        self._rests = rests
         self._geometry = frame.run.geometry
         self._description = layout.description
         # Values of a description are not thinned.
@@ -98,9 +102,9 @@ class Picture:
         return arrows
 
     @property
-    def draggable(self) -> list[Arrows]:
-        """The arrows whose load is a setting."""
-        draggable = []
+    def draggable(self) -> list[Arrows | Rest]:
+        """The arrows whose load is a setting, and handles of those that are zero."""
+        draggable: list[Arrows | Rest] = list(self._rests)
         for arrows in self.arrows:
             if arrows.setting and len(arrows.handles):
                 draggable.append(arrows)

@@ -12,14 +12,15 @@ from bokeh.models import LinearColorMapper
 from bokeh.palettes import Cividis256, RdBu11
 from bokeh.plotting import figure
 
-from app.frame import Frame, Selection
+from app.frame import Frame, Run, Selection
 from app.units import number, unit_for
-from app.views.acts import Arrows
+from app.views.acts import Arrows, Rest
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, GROUND, KEYS, LATIN, UNSEEN
 from app.views.layout import Layout, layout_of
 from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
+from solver.settings.scene import Settings
 
 WIDTH = 950.0
 HEIGHT = 190.0
@@ -52,10 +53,11 @@ class Scene(View):
         self._figure = plot
         self._draw(plot)
         self._peaks: dict[str, float] = {}
+        self._dragged: dict[str, tuple[Arrows, Settings]] = {}
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
-        self._held: tuple[Arrows, Picture] | None = None
+        self._held: tuple[Arrows | Rest, Picture] | None = None
         plot.on_event(PanStart, self._hold)
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
@@ -122,8 +124,19 @@ class Scene(View):
         plot.y_range.end = layout.height
         column = run.column(selection.phase)
         selected = selection.interface_of(run)
-        picture = Picture(frame, column, layout, self._factor, self._peaks, selected)
+        picture = Picture(
+            frame,
+            column,
+            layout,
+            self._factor,
+            self._peaks,
+            selected,
+            self._rests(run),
+        )
         self.picture = picture
+        for arrows in picture.arrows:
+            if arrows.setting and len(arrows.handles):
+                self._dragged[arrows.setting] = arrows, run.settings
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
         # In the place of the ghost a structure that collapses shows its mechanism.
@@ -153,11 +166,22 @@ class Scene(View):
         if shown is None or shown.run.settings.scene != frame.run.settings.scene:
             self._factor = None
             self._peaks = {}
+            self._dragged = {}
         # Along the time of a frame the scale stays, so that motions can be compared.
         if self._factor is None or shown is not frame:
             largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
             self._factor = layout.fitting(largest, self._factor)
             self._scale_arrows(frame)
+
+    def _rests(self, run: Run) -> list[Rest]:
+        """Handles of the loads that were drawn, and are zero in a run."""
+        settings = run.settings
+        places = settings.behind().values()
+        rests = []
+        for name, (arrows, drawn) in self._dragged.items():
+            if name in places and getattr(settings, name) == 0.0:
+                rests.append(arrows.rest(float(getattr(drawn, name))))
+        return rests
 
     def _show_keys(self, frame: Frame, layout: Layout) -> None:
         """Show the keys of the status in rows or a column, with the magnification."""
