@@ -6,6 +6,7 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from itertools import chain
 from typing import Any
 
 import panel as pn
@@ -103,7 +104,8 @@ class Display:
         """Set the views in sight."""
         if views != self.views:
             self.views = views
-            self._state.needs = frozenset().union(*[view.needs for view in views])
+            needs = chain.from_iterable(view.needs for view in views)
+            self._state.needs = frozenset(needs)
             self._update()
 
     def catch_up(self) -> None:

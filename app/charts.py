@@ -156,8 +156,10 @@ def _panel_in_units(chart: Panel) -> Panel:
     drawn: list[PanelCurve | Runs] = [*chart.curves]
     if chart.runs is not None:
         drawn.append(chart.runs)
-    x_axis, x = _in_unit(chart.x, *[each.x for each in drawn])
-    y_axis, y = _in_unit(chart.y, *[each.y for each in drawn])
+    xs = [each.x for each in drawn]
+    ys = [each.y for each in drawn]
+    x_axis, x = _in_unit(chart.x, *xs)
+    y_axis, y = _in_unit(chart.y, *ys)
     curves = [replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves]
     runs = _divided(chart.runs, x, y)
     return replace(chart, x=x_axis, y=y_axis, runs=runs, curves=tuple(curves))
@@ -196,9 +198,10 @@ def overlay(chart: Chart) -> hv.Overlay:
         y_limits = edges(ys, chart.y)[[0, -1]]
     else:
         elements = _of_panel(chart)
-        # The empty list is joined, too, as there may be no curves.
-        xs = np.concatenate([[], *[curve.x for curve in chart.curves]])
-        ys = np.concatenate([[], *[curve.y for curve in chart.curves]])
+        # An empty array is joined, too, as there may be no curves.
+        none = [np.empty(0)]
+        xs = np.concatenate(none + [curve.x for curve in chart.curves])
+        ys = np.concatenate(none + [curve.y for curve in chart.curves])
         x_limits = chart.x.limits or (None, None)
         y_limits = chart.y.limits or (None, None)
     # Whether axes follow a chart that fills is asked of elements, not of their overlay.

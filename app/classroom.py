@@ -334,8 +334,10 @@ class ClassMember(param.Parameterized):
 
     def _sentence(self, room: Classroom) -> str:
         count = len(room.members)
+        if self.leads and count == 1:
+            return f"Class {room.code}: 1 follows."
         if self.leads:
-            return f"Class {room.code}: {count} follow{'s' * (count == 1)}."
+            return f"Class {room.code}: {count} follow."
         if room.is_over:
             return f"Class {room.code} has ended. Change anything to go on."
         if room.is_alone:

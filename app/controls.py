@@ -339,7 +339,8 @@ class Controls:
             if names:
                 controls = [SettingControl(name, self._state) for name in names]
                 self._controls += controls
-                view = pn.Column(*[control.view for control in controls], margin=0)
+                views = [control.view for control in controls]
+                view = pn.Column(*views, margin=0)
             else:
                 view = files_panel(self._state, WIDTH)
             self._groups[number] = (title, view)

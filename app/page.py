@@ -16,8 +16,8 @@ from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
 from app.files.export import LOOK, offers
-from app.files.link import Link, read, show
 from app.lessons.guide import Guide
+from app.link import Link, read, show
 from app.live import STYLE, Live, column
 from app.server import PAGES
 from app.state import TABS, PageState

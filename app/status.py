@@ -57,7 +57,9 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     if newest.status is None:
         paused = "" if state.running else " · paused"
         return counted, f" · {wrong} wrong{paused}"
-    iterations = f"{newest.iteration} iteration{'s' * (newest.iteration != 1)}"
+    iterations = f"{newest.iteration} iterations"
+    if newest.iteration == 1:
+        iterations = "1 iteration"
     if frame.run.is_idle:
         hint = "nothing acts here; give a load, or move a side"
         return "at rest", f" · {iterations}: {hint}"

@@ -49,7 +49,7 @@ class PlainText(pn.viewable.Viewer):
 
     def __init__(self, **look: Any) -> None:
         super().__init__()
-        self._pane = pn.pane.HTML("", **{**looks("line"), **look})
+        self._pane = pn.pane.HTML("", **(looks("line") | look))
 
     @param.depends("object", watch=True)
     def _show(self) -> None:

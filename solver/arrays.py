@@ -73,6 +73,12 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
     )
 
 
+def largest_size(*fields: Array) -> float:
+    """Largest absolute value in fields of any shape; NaN where one is in them, or 0."""
+    sizes = [float(np.abs(field).max(initial=0.0)) for field in fields]
+    return float(np.max(sizes, initial=0.0))
+
+
 def without_residue(values: Array, terms: Array) -> Array:
     """Sums, (n_instants,), with zero for sums that are rounding errors of their terms.
 

@@ -8,6 +8,7 @@ import one_thread  # noqa: F401  # before NumPy, which asks but once
 
 import gc
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import closing
@@ -45,6 +46,10 @@ LONGEST_FIRST = (
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
+# A shell's background job ignores interrupts, and what it starts would, too
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
 # The same examples each time, however long a busy machine takes over one
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")
@@ -76,13 +81,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Together:
 
 
 def pytest_collection_finish() -> None:
-    """Have no collection of garbage look through all that was imported again."""
+    """Keep the garbage collector from searching the imported modules again."""
     gc.collect()
     gc.freeze()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Say in the last line how many tests of the page were skipped, and why."""
+    """Print the number of skipped tests of the page, and the reason."""
     reporter = config.pluginmanager.get_plugin("terminalreporter")
     if reporter:
         reports = reporter.stats.get("skipped", [])

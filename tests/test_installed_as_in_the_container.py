@@ -31,7 +31,7 @@ from processes import PATIENCE, wait_for
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = """
-from solver import End, Latin, Rods, solve
+from solver import End, Latin, Rods, discretise, solve
 import numpy as np, solver
 t = np.linspace(0.0, 1.0, 21)
 rods = Rods(
@@ -45,7 +45,7 @@ rods = Rods(
     instants=t,
     duration=1.0,
 )
-print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
+print(solve(discretise(rods), Latin()).status.ending, solver.__file__)
 """
 
 
@@ -63,7 +63,7 @@ print(table.numbers.tolist())
 
 
 def dockerfile() -> list[tuple[str, str]]:
-    """Give the instructions, continuation lines joined and comments dropped."""
+    """Instructions of the Dockerfile, with joined lines and without comments."""
     text = (ROOT / "Dockerfile").read_text()
     lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
     joined = "\n".join(lines).replace("\\\n", " ")
@@ -161,7 +161,7 @@ def test_the_image_is_slim_not_root_and_has_one_blas_thread():
 
 
 def handshake(port, origin):
-    """Give the answer to a page of some origin that asks for a websocket."""
+    """Answer to a page of some origin that asks for a websocket."""
     asked = http.client.HTTPConnection("127.0.0.1", int(port), timeout=PATIENCE)
     with closing(asked):
         asked.request(

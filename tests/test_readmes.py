@@ -33,7 +33,7 @@ PAPER_NAMES = [str(paper.relative_to(ROOT)) for paper in PAPERS]
 
 
 def words(path: Path) -> str:
-    """Give a file's text with every line break as one space."""
+    """Text of a file with every line break as one space."""
     return " ".join(path.read_text(encoding="utf-8").split())
 
 
@@ -42,12 +42,12 @@ def headings(path: Path) -> list[str]:
 
 
 def anchor(heading: str) -> str:
-    """Give a heading as addresses have it."""
+    """Heading in the form of an address."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def paths_in(readme: Path) -> set[str]:
-    """Give what looks like a file of the repository, or a folder in backticks."""
+    """Words in backticks that look like a file of the repository, or a folder."""
     text = re.sub(r"https?://\S+|`NAME[^`]*`", "", readme.read_text(encoding="utf-8"))
     files = re.findall(r"(?<![\w/.])[\w./-]+\.(?:py|md|png|svg|css)\b", text)
     return {*files, *re.findall(r"`([\w./-]+/)`", text)}

@@ -52,9 +52,10 @@ class WhatIf:
         self._make_fields()
         self._chart = LiveChart()
         table = download("Table (.csv)", "what-if.csv", self.table, **FIELD)
+        spans = [span.view for span in self.spans]
         self.view = pn.Column(
             pn.FlexBox(*self._ready.values()),
-            *(span.view for span in self.spans),
+            *spans,
             pn.FlexBox(self._of, self._at, self._scale, self._start, self._cancel),
             self.message,
             self._chart.view,

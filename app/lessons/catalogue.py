@@ -57,7 +57,9 @@ def plots_of(case: str) -> list[str]:
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
     """The plots beside a lesson: before the choice those without the answer."""
-    names = lesson.views if is_answered else lesson.beside
+    names = lesson.beside
+    if is_answered:
+        names = lesson.views
     return tuple(KINDS[name] for name in names)
 
 

@@ -192,7 +192,8 @@ def _closed_forms(run: Run, *, has_pressure: bool) -> list[ExactCurve]:
     curves = run.known("friction")
     if has_pressure:
         curves = curves + run.known("pressure")
-    return [curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2]
+    fields = [curve for curve in curves if curve.up.ndim == 2]
+    return [curve for curve in fields if curve.across.ndim == 1]
 
 
 def _curves(positions: Floats, fields: InterfaceFields | None, column: int) -> Floats:

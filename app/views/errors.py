@@ -120,7 +120,9 @@ class Convergence(ErrorPlot):
         is_back = frame is not newest and not frame.is_answer
         self.fill("shown", x=[frame.iteration] if is_back else [])
         # The answer, whose error is nearly zero, stands at the foot.
-        answers = [newest.iteration] if newest.is_answer else []
+        answers = []
+        if newest.is_answer:
+            answers = [newest.iteration]
         foot = 1.6 * self.figure.y_range.reset_start
         self.draw("answer", answers, [foot] * len(answers))
         self.fill("goal", y=[newest.run.settings.accuracy])

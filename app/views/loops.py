@@ -72,12 +72,16 @@ class HysteresisLoop(View):
         for curve in run.known("loop")[:1]:
             exact = np.stack([curve.across, curve.up])
         brought = (frame.extras.get("beside") or {}).get("brought")
-        source = brought.source if brought else ""
+        source = ""
+        if brought:
+            source = brought.source
         beside = _beside(brought, frame)
         curves = [frame.loop, exact, reference, beside]
         # The ghost may go beyond the limits: they are those of this run.
-        self.x.hold(frame.stage, *[x for x, _ in curves], [0.0], margin=0.08)
-        self.y.hold(frame.stage, *[y for _, y in curves], [0.0], margin=0.08)
+        xs = [x for x, _ in curves]
+        ys = [y for _, y in curves]
+        self.x.hold(frame.stage, *xs, [0.0], margin=0.08)
+        self.y.hold(frame.stage, *ys, [0.0], margin=0.08)
         self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)
         self.draw("exact", *exact)

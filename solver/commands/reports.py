@@ -22,7 +22,8 @@ from solver.commands.console import (
 from solver.files.disk import write
 from solver.files.saved import scene_settings, settings_from_command
 from solver.settings.definitions import SettingError
-from solver.study import proof, stability
+from solver.study import proof
+from solver.study import stability_report as stability
 from solver.study import study_report as study
 from solver.study.measured_times import error_against_time, times_at_sizes
 from solver.study.page import aligned, head_of, line_of

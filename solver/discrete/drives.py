@@ -68,6 +68,7 @@ class Drive:
         """
         before = self.before(instant)
         value = before + share * (float(self.values[instant]) - before)
+        # A load factor of a reversed load is that of the reversed peak.
         sign = np.sign(value)
         largest = float((sign * self.values).max(initial=0.0))
         amount = f"{self.name} = {plain(float(f'{value:.4g}'))} {self.unit}".rstrip()
@@ -95,6 +96,7 @@ def beyond(drives: Sequence[Drive], instant: int, share: float) -> str:
     changes.
     """
     moving = [drive for drive in drives if drive.changes(instant)]
+    # At the very beginning all loads are zero, and "beyond 0 N" would say nothing.
     from_nothing = not any(drive.before(instant) for drive in moving)
     if moving and from_nothing and share <= LEAST_STEP:
         return f"with {loads_at(drives, instant)}"

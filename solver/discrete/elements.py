@@ -37,6 +37,7 @@ def elastic_matrix(young: float, poisson: float, state: str) -> Array:
     `state` is "strain" or "stress" (Timoshenko and Goodier, Theory of Elasticity, 1970,
     ch. 2).
     """
+    # Plane strain is plane stress of a body with other constants.
     if state == "strain":
         young = young / (1.0 - poisson**2)
         poisson = poisson / (1.0 - poisson)
@@ -90,6 +91,7 @@ def element_stiffness(width: float, height: float, elastic: Array) -> Array:
         compatible = strain_matrix(xi, eta, width, height)
         strain = np.hstack([compatible, _bending(xi, eta, width, height)])
         stiffness += 0.25 * width * height * strain.T @ elastic @ strain
+    # The bending modes belong to one element, so they are eliminated in it.
     coupling = stiffness[8:, :8]
     response = np.linalg.solve(stiffness[8:, 8:], coupling)
     condensed = stiffness[:8, :8] - coupling.T @ response
@@ -214,6 +216,7 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
         slenderness = ratio
     else:
         slenderness = 1.0 / ratio
+    # A long side has many soft waves, which the macro forces have to balance.
     wanted = round(degree * max(LONG_SIDES * np.sqrt(slenderness), 1.0))
     highest = min(wanted, max(HIGHEST_DEGREE, degree), n_points - 1)
     return np.asarray(legvander(np.linspace(-1.0, 1.0, n_points), highest))
@@ -242,6 +245,8 @@ class SchurComplement:
         stiffness: sparse.csc_array | Array
         if isinstance(whole, SchurComplement):
             self._before = whole
+            # What was condensed before is condensed further: its inside is eliminated
+            # already.
             stiffness = whole.stiffness
             positions = np.searchsorted(whole.kept, kept)
         else:

@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import Rectangle, SchurComplement, dofs_of
-from solver.discrete.problem import Scales
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
 
 HELD = 1e-9
@@ -32,8 +32,8 @@ class RectangularSubstructure:
     body
         Number of its body.
     rows
-        Boundary rows by joint or by the span of an outer side, shape (n_nodes, n_components)
-        each.
+        Boundary rows by joint or by the span of an outer side, shape (n_nodes,
+        n_components) each.
     force
         Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
     """
@@ -62,7 +62,7 @@ class Inside:
         each.
     dofs
         Degrees of freedom of the problem that each substructure keeps, (n_kept,) each.
-    places, components
+    positions, components
         Position of every degree of freedom of the problem, (n_dofs, 2), scaled, and its
         component: 0 along x and 1 along y, (n_dofs,).
     """
@@ -125,6 +125,7 @@ class Inside:
                 continue
             np.add.at(total, dofs, part.condensed.condense(share)[:, 0])
             if part.force is not None:
+                # With the boundary held, only loads inside move the inner nodes.
                 held = np.zeros((len(dofs), self._size[1]))
                 constant += share[:, 0] @ part.condensed.recover(held, part.force)
         return total, constant * self._length
@@ -159,6 +160,8 @@ class Inside:
         for body in np.unique(bodies):
             dofs = np.flatnonzero(bodies == body)
             modes = self._rigid_modes(dofs)
+            # Motions that vanish where displacements are prescribed are those that stay
+            # free.
             at_fixed = modes[np.isin(dofs, fixed)]
             _, sizes, combinations = np.linalg.svd(at_fixed, full_matrices=True)
             hindered = np.count_nonzero(sizes > HELD)
@@ -199,6 +202,7 @@ class Inside:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
         is_along_x = self.components[dofs] == 0
         x, y = (self.positions[dofs] - self.positions[dofs].mean(axis=0)).T
+        # About the mean position, where translations and rotation are independent.
         rotation = np.where(is_along_x, -y, x)
         modes = np.stack([is_along_x, ~is_along_x, rotation], axis=1)
         return np.asarray(modes.astype(float))

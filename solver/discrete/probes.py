@@ -9,17 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, without_residue
+from solver.discrete.contacts import ContactFields
 from solver.discrete.inside import Inside
 from solver.discrete.problem import Problem
-
-if TYPE_CHECKING:
-    from solver.discrete.structure import LoopFields
 
 AXES = {
     "left": 0,
@@ -28,6 +26,17 @@ AXES = {
     "top": 1,
 }
 """Axis normal to each side: 0 is x, 1 is y."""
+
+
+class LoopFields(Protocol):
+    """Fields of an iterate or a reference, SI, shape (n, n_instants)."""
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement of the problem's degrees of freedom, m."""
+
+    def contact(self, name: str) -> ContactFields:
+        """Fields of one interface with friction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,6 +193,7 @@ def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
         loads += held[problem.row_dofs[given.rows]] @ given.values
     scales = problem.scales
     dofs = np.flatnonzero(weights)
+    # The weights of a force by displacements are a stiffness.
     elastic = weights[dofs] * scales.force / scales.displacement
     elements = Probe(dofs, elastic, -loads * scales.force)
     return Reaction(elements, _contacts_at(problem, held))
@@ -197,8 +207,10 @@ def _contacts_at(
     `held` has shape (n_dofs,), weights of normal forces, or None, and of tangential
     forces have (n_points,).
     """
-    contacts: dict[str, tuple[Array | None, Array]] = {}
-    for name, law in problem.rubbing.items():
+    found: dict[str, tuple[Array | None, Array]] = {}
+    names = problem.rubbing.names
+    for law, numbers, _, _ in problem.rubbing.stacks:
+        # All pairs of a point are at one node, so one of them tells its weight.
         _, pairs = np.unique(law.points, return_index=True)
         weights = []
         for component in law.components:
@@ -206,9 +218,11 @@ def _contacts_at(
             if component.below is not None:
                 weight = weight - held[problem.row_dofs[component.below[pairs]]]
             weights.append(weight)
-        if any(weight.any() for weight in weights):
-            contacts[name] = (weights[0] if law.opens else None, weights[-1])
-    return contacts
+        for number, (points, _) in zip(numbers, law.ranges, strict=True):
+            normal, tangential = weights[0][points], weights[-1][points]
+            if normal.any() or tangential.any():
+                found[names[number]] = (normal if law.opens else None, tangential)
+    return {name: found[name] for name in names if name in found}
 
 
 class AxialForce:
@@ -238,6 +252,7 @@ class AxialForce:
         if free:
             self._free = problem.scales.force * np.concatenate(free)[:, instants]
         self.positions: Array = 0.5 * (places[self._first] + places[self._second])
+        # A rod begins where its first substructure stands at the first position.
         begins = [places[part.dofs[0]] == places[0] for part in parts]
         sizes = [len(part.dofs) - 1 for part in parts]
         self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
@@ -272,6 +287,7 @@ def _integral(inside: Inside, ends: Indices, component: int, density: Array) -> 
     `ends` are the nodes at both ends of n edges, `density` the values there, (2, n).
     """
     length = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1)
+    # Simpson's rule, exact for the product of two linear functions.
     shares = length / 6.0 * (density + density.sum(axis=0))
     weights = np.zeros_like(inside.nodes)
     np.add.at(weights[:, component], ends, shares)

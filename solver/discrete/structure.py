@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solver.arrays import Array
-from solver.discrete.contacts import ContactFields
-from solver.discrete.probes import Probe
+from solver.discrete.probes import LoopFields, Probe
 from solver.discrete.problem import Problem
 
 OUTWARD = {
@@ -21,7 +20,7 @@ OUTWARD = {
     "top": (0.0, 1.0),
 }
 """Sides of all bodies together, and the outward normal of each."""
-Way = tuple[float, float]
+Direction = tuple[float, float]
 
 
 def on_side(side: str, shares: ArrayLike) -> Array:
@@ -31,6 +30,7 @@ def on_side(side: str, shares: ArrayLike) -> Array:
     shape (n,). On the side "body" the points lie along the middle.
     """
     along = np.asarray(shares, dtype=float)
+    # A side fixes one coordinate, and the shares run along the other.
     x = {"left": 0.0, "right": 1.0}.get(side, along)
     y = {"bottom": 0.0, "top": 1.0, "body": 0.5}.get(side, along)
     columns = [np.broadcast_to(x, along.shape), np.broadcast_to(y, along.shape)]
@@ -60,12 +60,12 @@ class Act:
     where: str
     symbol: str
     points: Array
-    towards: Way | Array
+    towards: Direction | Array
     values: Array
     unit: str
 
     @property
-    def away(self) -> Way:
+    def away(self) -> Direction:
         """Direction out of the body, a unit vector: there is room for an arrow."""
         return OUTWARD.get(self.where.partition(" ")[0], OUTWARD["right"])
 
@@ -136,17 +136,6 @@ class Description:
         object.__setattr__(self, "acts", acts)
 
 
-class LoopFields(Protocol):
-    """Fields of an iterate or a reference, SI, shape (n, n_instants)."""
-
-    @property
-    def displacement(self) -> Array:
-        """Displacement of the problem's degrees of freedom, m."""
-
-    def contact(self, name: str) -> ContactFields:
-        """Fields of one interface with friction."""
-
-
 Axes = tuple[tuple[str, str], tuple[str, str]]
 """Titles and units of a loop's displacement and force."""
 
@@ -189,9 +178,6 @@ class Loop:
 
 class Structure(Protocol):
     """Bodies, supports and loads as plain data: `Rods`, `Rope`, `Stack`."""
-
-    def discretise(self) -> Problem:
-        """Make the discrete problem."""
 
     @property
     def axes(self) -> Axes:

@@ -71,6 +71,7 @@ class Elasticity:
         stiffness that is not symmetric hardly passes.
         """
         numbers = np.arange(self.stiffness.shape[0])
+        # Two products cost less than a transpose of a large stiffness.
         first = np.cos(numbers)
         second = np.sin(numbers)
         force = self.stiffness @ second

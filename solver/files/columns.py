@@ -296,7 +296,7 @@ _EXAMPLES = {
 class TableColumn:
     """A column of a table: its number from 0, its name, unit, and the line of these."""
 
-    place: int
+    number: int
     line: int = 0
     name: str = ""
     unit: str = ""
@@ -315,6 +315,8 @@ class TableColumn:
     def quantities(self) -> tuple[frozenset[str], bool]:
         """Quantities that the name may mean, and whether all of it means them."""
         name = self.key.replace("_", " ").rstrip(" .:")
+        # A head may be `load cell`, `Axial Force 2` or `Prüfzeit`: the whole name, its
+        # last word without a number, and its ending are tried.
         joined = name.replace(" ", "")
         last = name.rstrip("0123456789 ").rpartition(" ")[2]
         words = [name, joined, last]
@@ -339,8 +341,8 @@ class TableColumn:
     def with_units(self, line: int, cells: list[str], refuse: Refuse) -> TableColumn:
         """Make the column with its unit from a line of units; refuse a second unit."""
         unit = ""
-        if self.place < len(cells):
-            unit = cells[self.place].strip("()[]")
+        if self.number < len(cells):
+            unit = cells[self.number].strip("()[]")
         if not unit:
             return self
         if self.unit and parse_unit(unit) != parse_unit(self.unit):
@@ -371,19 +373,21 @@ def _meant_by() -> dict[str, frozenset[str]]:
     return meant
 
 
-def column_of(place: int, line: int, head: str) -> TableColumn:
+def column_of(number: int, line: int, head: str) -> TableColumn:
     """Make the column of a head, which is split into name and unit."""
+    # Brackets are certain, a last word only if it is spelt as a unit; after a slash or
+    # "in" an unknown word is taken for one, too, and refused later.
     in_brackets = _BRACKETS.fullmatch(head)
     if in_brackets is not None:
-        return TableColumn(place, line, *in_brackets.groups())
+        return TableColumn(number, line, *in_brackets.groups())
     behind = _BEHIND.fullmatch(head)
     if behind and _is_unit_behind(behind[2]):
         name = re.sub(r"\s+in$", "", behind[1])
-        return TableColumn(place, line, name, behind[2])
+        return TableColumn(number, line, name, behind[2])
     divided = _IN_OR_SLASH.fullmatch(head)
     if divided is not None:
-        return TableColumn(place, line, *divided.groups())
-    return TableColumn(place, line, head)
+        return TableColumn(number, line, *divided.groups())
+    return TableColumn(number, line, head)
 
 
 def _is_unit_behind(word: str) -> bool:
@@ -408,6 +412,7 @@ def are_units(cells: list[str]) -> bool:
     Symbols of quantities, as t, s and F, are no units. At least half of the cells are
     units, as prose may have an "in".
     """
+    # Cells that are "-" or "1" are units that prove nothing.
     words = [cell.strip("()[]") for cell in cells if cell.strip("()[]-1")]
     units = [word for word in words if is_spelt_as_unit(word)]
     others = [word for word in words if word not in units]
@@ -420,6 +425,7 @@ def parse_unit(text: str) -> tuple[float, Dimensions] | None:
     size = Fraction(1)
     total = [0, 0, 0, 0, 0]
     for sign, symbol, power in _factors(text):
+        # As it is written comes first: in small letters mN and MN would be one.
         known = symbol
         if symbol not in _SYMBOLS:
             known = SPELLINGS.get(symbol.lower(), "")
@@ -428,13 +434,14 @@ def parse_unit(text: str) -> tuple[float, Dimensions] | None:
         exponent = sign * int(power or 1)
         factor, dimensions = _SYMBOLS[known]
         size *= factor**exponent
-        for place, dimension in enumerate(dimensions):
-            total[place] += exponent * dimension
+        for axis, dimension in enumerate(dimensions):
+            total[axis] += exponent * dimension
     return float(size), tuple(total)
 
 
 def _factors(text: str) -> Iterable[tuple[int, str, str]]:
     """Yield sign of the exponent, symbol and exponent of every factor of a unit."""
+    # Powers are written in many ways, as m², m^2 and m2.
     plain = text.strip().replace("²", "2").replace("³", "3").replace("^", "")
     # A hyphen between letters is a product, as in kN-m.
     plain = re.sub(r"(?<=[^\W\d])-(?=[^\W\d])", "·", plain)
@@ -480,6 +487,7 @@ def unit_doubt(name: str, unit: str, size: float, usual: float, of: str) -> str:
     """
     if not unit or not (math.isfinite(size * usual) and size * usual > 0.0):
         return ""
+    # Prefixes go by thousands, so a forgotten one shows as a power of 1000.
     thousands = math.log10(size / usual) / 3.0
     if abs(thousands) < DOUBTFUL:
         return ""

@@ -41,6 +41,7 @@ def curve_of(
     """
     columns = columns_for(table, definition, name, units)
     reading = table.read(columns, definition.columns, units)
+    # Here the line of the file is known; later checks know the points alone.
     falls = np.flatnonzero(np.diff(reading.numbers[0]) <= 0.0)
     if definition.is_path and len(falls):
         line = reading.lines[falls[0] + 1]
@@ -84,6 +85,7 @@ def path_doubts(
     units = settings.curve_units(name)
     if not definition.is_path:
         return []
+    # Zero is a size with which nothing is compared.
     usual = [0.0, 0.0]
     if definition.abscissa == "position":
         usual[0] = settings.length
@@ -92,11 +94,11 @@ def path_doubts(
         usual[1] = float(np.abs(default.points(name)).max(axis=0)[1])
     sizes = np.abs(points).max(axis=0)
     doubts = []
-    for place, column in enumerate(columns_for(table, definition, name, units)):
+    for number, column in enumerate(columns_for(table, definition, name, units)):
         if not column.name or column.unit:
             continue
         doubt = unit_doubt(
-            column.name, units[place], float(sizes[place]), usual[place], "the scene"
+            column.name, units[number], float(sizes[number]), usual[number], "the scene"
         )
         if doubt:
             doubts.append(doubt)
@@ -107,6 +109,7 @@ def _chosen(
     table: Table, definition: CurveParameter, name: str, units: Sequence[str]
 ) -> list[TableColumn]:
     """Columns of a curve that a head names."""
+    # A column named after another setting is not taken, whatever quantity it names.
     others = _SETTINGS - {name}
     free = [column for column in table.columns if column.key not in others]
     chosen: list[TableColumn] = []
@@ -114,10 +117,12 @@ def _chosen(
     key = ""
     last = len(units) - 1
     if definition.is_path and definition.abscissa == "time":
+        # Measured loops, force over displacement, are what people most often bring
+        # here.
         remedy += "; a loop, as force over displacement, is no path over time"
-    for place, (title, unit) in enumerate(zip(definition.columns, units, strict=True)):
+    for number, (title, unit) in enumerate(zip(definition.columns, units, strict=True)):
         kinds: Collection[str] = {title}
-        if definition.is_path and place == last:
+        if definition.is_path and number == last:
             # Of two columns the second is the value if its name says nothing.
             if len(table.columns) == 2 and free and not free[0].quantities[0]:
                 return [*chosen, *free]
@@ -141,6 +146,8 @@ def read_tables(
         value = values.get(name)
         if not isinstance(definition, CurveParameter) or not isinstance(value, str):
             continue
+        # Points in the units by default: other settings, which may change these, are
+        # not checked yet.
         if value not in ("", *definition.presets):
             table = tables[name] = _read_file(folder / value, definition, name)
             values[name], _ = curve_of(table, definition, name, definition.units)

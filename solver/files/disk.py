@@ -29,6 +29,7 @@ def read_bytes(path: Path, refuse: Refuse) -> bytes:
     """
     data = b""
     try:
+        # The opened file is asked for its kind: the name could be another file by then.
         with open(path, "rb", opener=_open_at_once) as file:
             is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
             if is_file:
@@ -65,10 +66,12 @@ def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
     if "b" not in mode:
         encoding = "utf-8"
         newline = ""
+    # Exclusive, so that nobody can have put a link under that name.
     new = mode.replace("w", "x")
     try:
         with part.open(new, encoding=encoding, newline=newline) as file:
             yield file
+        # In the same folder, so that the replacement is one step of the file system.
         part.replace(target)
     finally:
         part.unlink(missing_ok=True)
@@ -102,6 +105,8 @@ def _target_and_part(path: Path) -> tuple[Path, Path]:
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
     if target.exists() and not target.is_file():
         raise OSError(errno.EINVAL, "It is a device, not a file")
+    # Replacing needs rights on the folder alone, and would pass over a write-protected
+    # file.
     if target.exists() and not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     return target, target.with_name(f".{secrets.token_hex(6)}.part")

@@ -59,6 +59,7 @@ def _pattern(decimal: str, thousands: str) -> re.Pattern[str]:
     # Fortran leaves the letter out before three digits; without a point that is a part
     # number.
     fortran = rf"(?:\d+{point}\d*|{point}\d+)[+-]\d{{3}}"
+    # One sign between all groups of a number: the first one is referred to by \1.
     groups = (
         rf"[1-9]\d{{0,2}}([{thousands}{_APART}])\d{{3}}(?:\1\d{{3}})*(?:{point}\d*)?"
     )
@@ -88,6 +89,7 @@ def is_gap(cell: str) -> bool:
 def decimal_signs(cell: str) -> str:
     """Decimal signs under which a cell is a number: both (`1,234`), one, or none."""
     if _PLAIN.fullmatch(cell):
+        # Almost all cells are plain, and spare two larger patterns.
         if not ("." in cell or "," in cell) or _GROUP.fullmatch(cell):
             return SIGNS
         return "." if "." in cell else ","
@@ -103,6 +105,7 @@ def is_numeral(cell: str) -> bool:
 def number(cell: str, decimal: str) -> float:
     """Number of a cell under a decimal sign; NaN of a gap or a word."""
     thousands = "." if decimal == "," else ","
+    # The quick way of almost all cells.
     if thousands not in cell and _PLAIN.fullmatch(cell):
         return float(cell.replace(",", "."))
     plain = cell.translate(_MINUS)

@@ -16,7 +16,7 @@ import numpy as np
 
 from solver.files.curves import messages, read_tables
 from solver.files.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
-from solver.latin import Iterate, Solution
+from solver.latin import Answer, Iterate, Solution
 from solver.reference.distance import determinate_forces, held_instants
 from solver.scenes import CATALOGUE
 from solver.scenes.remarks import remarks_on
@@ -122,11 +122,15 @@ def settings_from_command(
         values.pop("case", None)
         number = format_in(values)
     kind = scene_settings(values.pop("scene", None))
+    # Names of files are replaced by points before anything is checked.
     tables = read_tables(kind, values, Path(scene).parent)
     changes = _changes_in(assignments, kind)
+    # A table that an assignment replaces has nothing to say any more.
     for name in changes:
         tables.pop(name, None)
     tables |= read_tables(kind, changes, Path())
+    # The file is checked by itself first, so that a refusal tells its faults from those
+    # of changes.
     settings = kind.checked(values).replace(**changes)
     found = dict(messages(tables, settings))
     from_file = values.keys() - changes
@@ -182,6 +186,7 @@ def check_keys(
     for name, value in values.items():
         if name not in keys:
             raise SettingError(name, value, known, "there is no such key: leave it out")
+        # True is an instance of int in Python, and no number here.
         if not isinstance(value, keys[name]) or isinstance(value, bool):
             raise SettingError(
                 name, value, WORDS.get(keys[name], "a number"), "mend the value"
@@ -198,6 +203,7 @@ def fields_in(kind: Any, values: Mapping[str, Any], **others: Any) -> dict[str, 
     the types of keys that are no fields, or whose values have another type in the file.
     Keys are refused as by `check_keys`, and lists of anything but texts.
     """
+    # Types of fields are texts in modules with postponed annotations.
     types = get_type_hints(kind)
     keys = {}
     optional = []
@@ -279,7 +285,9 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
     for name in INDICATORS:
         figures[name] = getattr(last, name, None)
     figures["certified"] = solution.is_certified
-    figures["residual"] = solution.iterate.residual
+    figures["residual"] = None
+    if isinstance(solution.iterate, Answer):
+        figures["residual"] = solution.iterate.residual
     for name in ERRORS:
         figures[name] = getattr(last, name, None)
     figures["seconds"] = seconds
@@ -295,7 +303,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     """
     iterate = solution.iterate
     residual = math.nan
-    if iterate.residual is not None:
+    if isinstance(iterate, Answer):
         residual = iterate.residual
     arrays: dict[str, Any] = {"t": iterate.problem.instants}
     arrays |= _body_arrays(iterate)
@@ -310,6 +318,8 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
 def _body_arrays(iterate: Iterate) -> dict[str, Any]:
     """Arrays of bodies: of nodes along rods, or of nodes and elements in the plane."""
     problem = iterate.problem
+    # Along rods every node is an unknown; in the plane inner nodes are condensed, and
+    # follow from the sides.
     inside = problem.inside
     if inside is None:
         return {
@@ -346,13 +356,17 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     """
     arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
-    for name, law in iterate.problem.rubbing.items():
-        if law.is_plain and len(iterate.problem.rubbing) == 1:
-            continue
+    contacts = iterate.problem.rubbing
+    positions = contacts.of_points([law.positions for law in contacts.laws.values()])
+    # A single rod on its support has its fields under short names at the top level.
+    is_plain = all(law.is_plain for law in contacts.laws.values())
+    if is_plain and len(contacts) == 1:
+        return arrays
+    for name in contacts:
         fields = iterate.contact(name)
-        *_, tangential = iterate.problem.contact_slices[name]
+        *_, tangential = contacts.forces[name]
         entries = {
-            "points": law.positions,
+            "points": positions[contacts.points[name]],
             "determinate": determinate[tangential],
             "normal_force": fields.normal_force,
             "tangential_force": fields.tangential_force,

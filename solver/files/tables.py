@@ -71,14 +71,8 @@ from solver.arrays import Array, Flags, Indices, read_only
 from solver.files.columns import TableColumn, examples_of, size_in
 from solver.files.disk import LARGEST, TOO_LARGE, Refuse
 from solver.files.numerals import SIGNS, decimal_signs, is_gap, number
-from solver.files.table_lines import (
-    Block,
-    Line,
-    block_of,
-    fitted,
-    headed,
-    lines_of_text,
-)
+from solver.files.table_blocks import Block, block_of, fitted, headed
+from solver.files.table_lines import Line, lines_of_text
 from solver.files.workbooks import is_archive, lines_of_workbook
 from solver.settings.definitions import SettingError
 
@@ -191,6 +185,8 @@ class Table:
                 return False
             return bool(size_in(column.unit, unit))
 
+        # A stricter rule comes first: what merely ends with a word counts only where no
+        # column is named so outright.
         for rule in (has_key, is_word_for_it, ends_with_it, has_its_unit):
             likely = [column for column in columns if rule(column)]
             # A column of words, such as the time of day, gives way to one of numbers.
@@ -209,7 +205,7 @@ class Table:
 
     def _has_numbers(self, column: TableColumn) -> bool:
         """Return whether any cell of a column is a finite number."""
-        return bool(np.isfinite(self.numbers[column.place]).any())
+        return bool(np.isfinite(self.numbers[column.number]).any())
 
     def choose(
         self,
@@ -253,8 +249,9 @@ class Table:
         sizes = []
         for column, unit in zip(columns, units, strict=True):
             sizes.append(column.size(unit, self.refuse))
+        # Only columns that are read count: a remark without a number costs no row.
         has_all = self._rows_with(columns)
-        numbers = self.numbers[[column.place for column in columns]][:, has_all]
+        numbers = self.numbers[[column.number for column in columns]][:, has_all]
         notes = [self._note_on_points(columns, names, units, numbers)]
         others = [repr(column.name) for column in self.columns if column not in columns]
         if others:
@@ -282,6 +279,7 @@ class Table:
         heads = []
         for column, name, unit in zip(columns, names, units, strict=True):
             heads.append(column.message(name, unit))
+        # The range shows at a glance whether a unit is a thousand times off.
         ends = f"from {numbers[-1].min():g} to {numbers[-1].max():g}"
         last_unit = columns[-1].unit or units[-1]
         if last_unit not in ("", "-", "1"):
@@ -290,13 +288,13 @@ class Table:
 
     def _rows_with(self, columns: Sequence[TableColumn]) -> Flags:
         """Rows with a number in all of some columns, (n_rows,); refuse words."""
-        numbers = self.numbers[[column.place for column in columns]]
+        numbers = self.numbers[[column.number for column in columns]]
         is_finite = np.isfinite(numbers)
         has_all = np.asarray(is_finite.all(axis=0))
         for row in np.flatnonzero(~has_all):
-            for place, column in enumerate(columns):
-                is_number = is_finite[place, row]
-                if not is_number and not is_gap(self.cells[row][column.place]):
+            for index, column in enumerate(columns):
+                is_number = is_finite[index, row]
+                if not is_number and not is_gap(self.cells[row][column.number]):
                     raise self._refused_cell(columns, column, int(row))
         if not has_all.any():
             raise self.refuse("none of its rows has a number in each of these columns")
@@ -312,10 +310,11 @@ class Table:
             return self.refuse(
                 f"line {line} is {shown!r}, not {len(columns)} finite numbers"
             )
+        # An infinite number was read as one, and cannot be mended by a number.
         remedy = "leave such rows out"
-        if np.isnan(self.numbers[column.place, row]):
+        if np.isnan(self.numbers[column.number, row]):
             remedy = "give a number"
-        text = self.cells[row][column.place]
+        text = self.cells[row][column.number]
         return self.refuse(f"line {line} has {text!r} as {column.name}: {remedy}")
 
 
@@ -336,6 +335,7 @@ def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table
     words on what is allowed.
     """
     refuse = partial(SettingError, name, source, allowed)
+    # Before anything is parsed, as that takes time and memory by its size.
     if len(data) > LARGEST:
         raise refuse(TOO_LARGE)
     remarks: list[str] = []
@@ -350,6 +350,7 @@ def read_table(data: bytes | str, source: str, name: str, allowed: str) -> Table
     cells = fitted(block, len(columns), separator, refuse)
     line_numbers = np.array([row.number for row in block.rows])
     line_numbers.flags.writeable = False
+    # One sign for the whole table: a column of whole numbers says nothing by itself.
     decimal, thousands = _notation(block.rows, separator, refuse)
     return Table(
         columns=tuple(columns),
@@ -386,11 +387,15 @@ def _notation(
     rows: Sequence[Line], separator: str, refuse: Refuse
 ) -> tuple[str, list[str]]:
     """Decimal sign of a table, and words on signs between thousands, as above."""
+    # Most tables have points alone: then no cell is matched a second time.
     if not any(map(_has_doubtful_sign, rows)):
         return ".", []
     sure, unsure = _cells_by_sign(rows)
     _check_alike(sure, refuse)
+    # Commas before three digits alone, as 1,234: nothing in the table says whether they
+    # are decimal.
     if not sure["."] and not sure[","] and unsure[","]:
+        # Programs write semicolons between columns where the comma is decimal.
         if unsure["."] or separator != ";":
             line, cell = unsure[","][0]
             decimals = cell.replace(",", ".")
@@ -437,6 +442,7 @@ def _check_alike(sure: CellsBySign, refuse: Refuse) -> None:
     """Refuse decimal points and commas in one table, with the line of the rarer."""
     if not sure["."] or not sure[","]:
         return
+    # Likely the rarer one is the slip, so its line is named.
     rare = "," if len(sure[","]) <= len(sure["."]) else "."
     line, cell = sure[rare][0]
     names = {",": "comma", ".": "point"}

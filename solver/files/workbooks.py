@@ -7,7 +7,7 @@ import warnings
 import zipfile
 
 from solver.files.disk import Refuse
-from solver.files.table_lines import Line, line_of
+from solver.files.table_lines import Line, line_of, up_to_last_filled
 
 UNPACKED = 20_000_000
 """Largest size of a workbook's parts in bytes: some five times that of a text."""
@@ -46,7 +46,8 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
         raise refuse(f"{OTHER} ({type(problem).__name__})") from None
     lines = []
     for number, row in enumerate(rows, start=1):
-        line = line_of(number, " ".join(row), _without_end(row))
+        # Empty rows keep their number: messages name lines as the workbook does.
+        line = line_of(number, " ".join(row), up_to_last_filled(row))
         if line.cells:
             lines.append(line)
     words = f"sheet {sheet.title!r}"
@@ -58,6 +59,7 @@ def lines_of_workbook(data: bytes, refuse: Refuse) -> tuple[list[Line], str]:
 def _check_archive(data: bytes, refuse: Refuse) -> None:
     """Refuse archives that are no workbook, or are far larger when unpacked."""
     try:
+        # Sizes are in the directory of an archive, so nothing is unpacked for this.
         parts = zipfile.ZipFile(io.BytesIO(data)).infolist()
     except zipfile.BadZipFile:
         raise refuse(OTHER) from None
@@ -72,11 +74,3 @@ def _text_of(value: object) -> str:
     if value is None:
         return ""
     return str(value).strip()
-
-
-def _without_end(cells: list[str]) -> list[str]:
-    """Cells up to the last filled one."""
-    count = len(cells)
-    while count and not cells[count - 1]:
-        count -= 1
-    return cells[:count]

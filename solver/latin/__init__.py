@@ -3,6 +3,7 @@
 from solver.latin.anderson import Anderson
 from solver.latin.direction.directions import Auto, Paper
 from solver.latin.direction.from_status import FromStatus
+from solver.latin.end.certified import Answer
 from solver.latin.end.status import Decision, Ending, Status
 from solver.latin.end.status_step import StatusStep
 from solver.latin.end.stop import Stop, StopState
@@ -18,6 +19,7 @@ from solver.latin.start import Nested
 __all__ = [
     "PGD",
     "Anderson",
+    "Answer",
     "Auto",
     "Checkpoint",
     "Decision",

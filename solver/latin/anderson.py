@@ -77,21 +77,22 @@ class AndersonState:
         self._blocks = blocks
         size = sum(group.target.size for group in self._groups)
         self._memory = max(1, min(MEMORY, MOST_VALUES // size - 1))
+        # Steps of the sample may not skip a row at all instants, so groups differ.
         smallest_step = -(-size // SAMPLE)
         self._steps = [_step(smallest_step, group.rows.size) for group in self._groups]
-        weights = [
-            group.k[:, None, None] * problem.time_weights for group in self._groups
-        ]
+        weights = []
+        for group in self._groups:
+            weights.append(group.k[:, None, None] * problem.time_weights)
         self._root = np.sqrt(self._sampled(weights))
         self._free_motion = None
         if motion is not None:
             self._free_motion = self._free(motion, problem.n_instants)
         # Memory that nothing was written to costs nothing yet; an instant is in one
         # piece.
-        self._images = [
-            np.zeros((self._memory + 1, *group.target.T.shape))
-            for group in self._groups
-        ]
+        self._images = []
+        for group in self._groups:
+            shape = (self._memory + 1, *group.target.T.shape)
+            self._images.append(np.zeros(shape))
         self._residuals = np.zeros((self._memory, len(self._root)))
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)
@@ -123,6 +124,7 @@ class AndersonState:
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
             return
+        # Before the mixture, which would be made of differences that misled.
         if size > self._growth * self._smallest:
             self._forget()
         if np.isfinite(self._smallest):  # there is an image before
@@ -170,10 +172,12 @@ class AndersonState:
         """Write the mixture of the images into the state."""
         used = min(self._count, self._memory)
         gram = self._products[:used, :used]
+        # Differences shrink by orders of magnitude in a run: scaled, all count alike.
         scale = 1.0 / np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
         scaled = gram * scale * scale[:, None]
         scaled[np.diag_indices(used)] += REGULAR
         _, gamma, failed = dposv(scaled, scale * self._wanted[:used])
+        # The plain iterate stands, as if there were no memory.
         if failed:
             return
         shares = self._shares(scale * gamma)
@@ -192,6 +196,7 @@ class AndersonState:
         """
         shares = np.zeros(len(gamma) + 1)
         shares[self._slot_of(self._count)] = 1.0
+        # A difference adds its share to one image and takes it from the next.
         for number in range(self._count - len(gamma), self._count):
             share = gamma[number % self._memory]
             shares[self._slot_of(number + 1)] -= share
@@ -244,7 +249,7 @@ def _allowed_growth(problem: Problem) -> float:
         # Where the bound of friction is known 1 is best; twice as much takes up to a
         # third more iterations to 1e-6.
         return 1.0
-    if any(law.is_on_support for law in problem.rubbing.values()):
+    if any(law.is_on_support for law in problem.rubbing.laws.values()):
         return GROWTH_ON_SUPPORT
     return GROWTH_BETWEEN_BODIES
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,51 @@ from solver.discrete.problem import Problem
 from solver.laws.contact import Violation
 from solver.laws.interface import beyond, squared
 
-if TYPE_CHECKING:
-    from solver.latin.iterate import Iterate
+
+class Stages(Protocol):
+    """Fields of both stages of an iterate, (n_rows, n_instants) each, scaled.
+
+    Their names are those of `Iterate`.
+    """
+
+    @property
+    def problem(self) -> Problem:
+        """The problem that is solved."""
+
+    @property
+    def k(self) -> Array:
+        """Search direction of the rows, shape (n_rows,)."""
+
+    @property
+    def outgoing(self) -> Array:
+        """W + F/k of the linear stage."""
+
+    @property
+    def incoming(self) -> Array:
+        """W - F/k of the linear stage."""
+
+    @property
+    def local_displacement(self) -> Array:
+        """W^ of the local stage."""
+
+    @property
+    def local_incoming(self) -> Array:
+        """W^ - F^/k of the local stage."""
+
+    @property
+    def boundary_displacement(self) -> Array:
+        """W of the linear stage."""
+
+    @property
+    def boundary_force(self) -> Array:
+        """F of the linear stage."""
+
+    @property
+    def boundary_local_force(self) -> Array:
+        """F^ of the local stage."""
 
 
-def latin_indicator(iterate: Iterate) -> float:
+def latin_indicator(iterate: Stages) -> float:
     """LATIN indicator eta: relative squared distance of both stages (paper, eq. 2).
 
     With ||s||^2 = integral of k W^2 + F^2/k = 1/2 integral of k [(W + F/k)^2 + (W -
@@ -28,6 +68,7 @@ def latin_indicator(iterate: Iterate) -> float:
         return float(iterate.k @ (field * field @ weights))
 
     weights = iterate.problem.time_weights
+    # W + F/k and W - F/k are at hand, so no force is computed for the norm.
     local_outgoing = 2.0 * iterate.local_displacement - iterate.local_incoming
     distance = weighted(iterate.outgoing - local_outgoing)
     distance += weighted(iterate.incoming - iterate.local_incoming)
@@ -41,7 +82,7 @@ CREEP = 1e-2
 however far the stages are apart, so that an early iterate shows where it slips."""
 
 
-def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np.int8]:
+def contact_status(iterate: Stages, creep: Array | float = CREEP) -> NDArray[np.int8]:
     """Contact status of the local stage, shape (n_points, n_instants).
 
     The values are those of `Iterate.status`. A point that comes to rest goes on
@@ -58,9 +99,9 @@ def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np
     force = iterate.boundary_local_force
     linear_moved = iterate.boundary_displacement
     linear_force = iterate.boundary_force
-    groups = iterate.problem.contact_groups
+    groups = iterate.problem.rubbing.groups
     creep = np.broadcast_to(creep, len(iterate.problem.rubbing))
-    n_points = sum(len(group.points) for group in groups)
+    n_points = iterate.problem.rubbing.n_points
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
     for group in groups:
         slip = group.slip(moved, force)
@@ -72,6 +113,8 @@ def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np
             touches = group.law.by_point(force[normal.component.above]) > 0.0
             size = np.where(touches, size, 0.0)
             distance = np.where(touches, distance, 0.0)
+        # The smaller one: an early iterate has distant stages, a late one little slip
+        # left.
         still = np.minimum(
             creep[group.numbers] * group.largest(size), group.largest(distance)
         )
@@ -111,6 +154,7 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
     energy = _elastic_energy(problem, displacement, beyond(force, noise))
     energy += sum(float(violation.dissipated.sum()) for violation in violations)
     largest_friction = sum(float(violation.bound.sum()) for violation in violations)
+    # Where nothing can dissipate any force sets the scale.
     if largest_friction == 0.0:
         largest_friction = float(np.abs(force).sum())
     mean_slip = ratio(energy, largest_friction)
@@ -128,7 +172,7 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
 
 def _known_groups(problem: Problem) -> list[ContactGroup]:
     """Groups of contacts whose laws are those of `Contact.violation`."""
-    groups = problem.contact_groups
+    groups = problem.rubbing.groups
     return [group for group in groups if group.law.incremental_form() is not None]
 
 
@@ -138,6 +182,7 @@ def _worst(group: ContactGroup, violation: Violation, mean_slip: float) -> float
     if violation.pressing is not None:
         pressed = np.maximum(violation.pressing, 0.0).mean(axis=1)
         pairs = group.interfaces[group.law.points]
+        # Interfaces of a group lie in one array, and each has its own mean.
         means = group.sums(pressed) / group.sums(np.ones_like(pressed))
         mean_force = means[pairs, None]
     energy = violation.energy(mean_slip, mean_force)
@@ -162,6 +207,7 @@ def _rounding(displacement: Array, force: Array) -> float:
     """
     moved = float(np.abs(displacement).max())
     pulled = float(np.abs(force).max())
+    # A structure that sticks everywhere hardly moves, and its slips are rounding.
     if moved <= STILL * pulled / len(force):
         return max(moved, ROUNDING * pulled)
     return ROUNDING * (moved + pulled)
@@ -173,7 +219,7 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
     `force` has shape (n_rows, n_instants), scaled.
     """
     largest = float(np.abs(force).max())
-    laws = [group.law for group in problem.contact_groups]
+    laws = [group.law for group in problem.rubbing.groups]
     carried = max((law.carried(force) for law in laws), default=0.0)
     by_friction = sum(law.capacity(problem.is_held) for law in laws)
     capacity = max(by_friction, SMALL_CONTACT * carried)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, read_only
-from solver.discrete.contacts import ContactFields, contact_fields
+from solver.discrete.contacts import ContactFields
 from solver.discrete.problem import Problem
 from solver.latin.indicators import contact_status, latin_indicator, violation_of
 from solver.reduction.basis import SharedBasis
@@ -96,19 +96,9 @@ class Iterate:
         W - F/k that the local stage read, which is its own W^ - F^/k, same shape.
     bases
         Separated bases that hold the linear stage, one per substructure; empty for full
-        fields. In a certified solution they are those of the search that led to it, and
-        do not hold all of it.
+        fields.
     k_update
         State of the k update, with the k of the next iteration.
-    residual
-        KKT residual of a certified solution (`solver.latin.end.certified`), relative to
-        the contact force; None in all other iterates.
-    force
-        F of a certified solution, shape (n_rows, n_instants), scaled; None in all other
-        iterates. Beside a body's rigid motion the digits of F/k may be lost.
-    is_answer
-        Whether a certified solution stands beside the iterates of a search that came to
-        its own end, and so is no iteration.
     """
 
     number: int
@@ -121,28 +111,23 @@ class Iterate:
     local_incoming: Array
     bases: tuple[SharedBasis, ...] = ()
     k_update: UpdateProgress | None = None
-    residual: float | None = None
-    force: Array | None = None
-    is_answer: bool = False
 
     @property
     def iterations(self) -> int:
-        """Number of iterations done, without an answer that stands beside them."""
-        return self.number - self.is_answer
+        """Number of iterations done."""
+        return self.number
 
     @property
     def checkpoint(self) -> Checkpoint:
         """State from which the iteration goes on."""
         k_update = self.k_update
         if k_update is not None and k_update.k is not self.k:
+            # With another k, W and F stay and W + F/k changes.
             displacement, force = k_update.fields
             outgoing = read_only(displacement + force / k_update.k[:, None])
             return Checkpoint(self.number, self.seconds, outgoing, k_update=k_update)
-        bases: tuple[SharedBasis, ...] = ()
-        if self.residual is None:
-            bases = self.bases
         return Checkpoint(
-            self.number, self.seconds, self.outgoing, bases, self.k_update
+            self.number, self.seconds, self.outgoing, self.bases, self.k_update
         )
 
     @property
@@ -153,15 +138,11 @@ class Iterate:
     @property
     def boundary_force(self) -> Array:
         """F of the linear stage, shape (n_rows, n_instants), scaled."""
-        if self.force is not None:
-            return self.force
         return 0.5 * self.k[:, None] * (self.outgoing - self.incoming)
 
     @property
     def boundary_local_force(self) -> Array:
         """F^ of the local stage, shape (n_rows, n_instants), scaled."""
-        if self.force is not None:
-            return self.force
         return self.k[:, None] * (self.local_displacement - self.local_incoming)
 
     @cached_property
@@ -203,17 +184,26 @@ class Iterate:
         Shape (n_points, n_instants), N: points of all interfaces with friction, one
         interface after the other.
         """
-        forces = [np.zeros((0, self.problem.n_instants))]
-        for components in self.problem.contact_slices.values():
+        contacts = self.problem.rubbing
+        force = np.empty((contacts.n_points, self.problem.n_instants))
+        for stacked in contacts.stacks:
             # The tangential component is the last one.
-            forces.append(self.contact_force[components[-1]])
-        return np.concatenate(forces)
+            force[stacked.points] = self.contact_force[stacked.forces[-1]]
+        return force
 
     def contact(self, name: str) -> ContactFields:
         """Fields of an interface with friction, with the status of the local stage."""
-        status = self.status[self.problem.contact_points[name]]
-        moved = self.boundary_displacement
-        return contact_fields(self.problem, name, self.contact_force, moved, status)
+        return self.contacts[name]
+
+    @cached_property
+    def contacts(self) -> dict[str, ContactFields]:
+        """Fields of all interfaces with friction, by name."""
+        return self.problem.rubbing.fields(
+            self.contact_force,
+            self.boundary_displacement,
+            self.status,
+            self.problem.scales.displacement,
+        )
 
     @cached_property
     def status(self) -> NDArray[np.int8]:

@@ -61,6 +61,7 @@ def iterations(
             iteration.local_stage()
             iteration.linear_stage()
             iteration.choose_direction()
+        # The clock stands while the consumer has the iterate.
         seconds += time.perf_counter() - began
         iterate = iteration.snapshot(number, seconds)
         yield iterate
@@ -103,6 +104,8 @@ class Iteration:
                 problem, self.linear, self.local.motion, blocks
             )
         if start is None and problem.rest is not None:
+            # A body that nothing else holds would have to travel there iteration by
+            # iteration.
             start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
         elif start is None and latin.start is not None:
             start = latin.start.of(problem, self.k, STARTING * latin.stop.seconds)
@@ -130,6 +133,7 @@ class Iteration:
 
     def choose_direction(self) -> None:
         """Choose the k of the next iteration."""
+        # A k that stays needs no snapshot of the fields.
         if self._k_update.state != "returned":
             self._k_update = self._latin.direction.follow(
                 self.snapshot(), self._k_update

@@ -142,16 +142,17 @@ def _during(
             return None
         return field[:, some]
 
-    parts = [
-        replace(
-            part, body_force=during(part.body_force), free_force=during(part.free_force)
-        )
-        for part in problem.substructures
-    ]
+    parts = []
+    for part in problem.substructures:
+        body_force = during(part.body_force)
+        free_force = during(part.free_force)
+        parts.append(replace(part, body_force=body_force, free_force=free_force))
     interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
     if start is not None:
         for name, slider in start.items():
-            interfaces[name] = problem.rubbing[name].during(some).with_start(slider)
+            interfaces[name] = (
+                problem.rubbing.laws[name].during(some).with_start(slider)
+            )
     return replace(
         problem,
         substructures=tuple(parts),
@@ -173,11 +174,12 @@ def next_slab(
     instants = slice(first, min(first + length, problem.n_instants))
     moved = solved.local_displacement
     force = solved.boundary_local_force
-    ends = {
+    ends = {}
+    for name, law in solved.problem.rubbing.laws.items():
         # Pairs of one point that stand apart could never stick together again.
-        name: law.mean_by_point(law.tangential.slider(moved, force)[:, -1])[law.points]
-        for name, law in solved.problem.rubbing.items()
-    }
+        slider = law.tangential.slider(moved, force)[:, -1]
+        ends[name] = law.mean_by_point(slider)[law.points]
+    # The fields of the last cycle are the guess for the next.
     again = solved.outgoing[:, solved.problem.n_instants - length :]
     again = np.asfortranarray(again[:, : instants.stop - instants.start])
     return Slab(
@@ -222,6 +224,7 @@ def solve_in_slabs(
         if not solutions:
             finish = StatusStep()
         method = replace(slab.latin, finish=finish)
+        # The limit on time is one for all slabs.
         billed = spent + time.perf_counter() - began
         solutions.append(
             solve(slab.problem, method, start=slab.start, watch=False, spent=billed)
@@ -232,6 +235,7 @@ def solve_in_slabs(
     records: list[Record] = []
     for solution in solutions:
         records += solution.records
+    # The last record is replaced by that of the whole interval.
     last = records.pop()
     records = [
         replace(entry, iteration=number) for number, entry in enumerate(records, 1)

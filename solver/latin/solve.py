@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
+from solver.latin.end.certified import Answer
 from solver.latin.end.status import CANCELLED, Decision, Ending, Status
 from solver.latin.end.stop import StopState
 from solver.latin.iterate import Checkpoint, Iterate
@@ -36,7 +37,7 @@ class Record:
     modes
         Number of modes of every substructure; empty for full fields.
     is_answer
-        Whether the iterate is an answer beside the iterations, as in `Iterate`.
+        Whether the iterate is an answer beside the iterations, as in `Answer`.
     """
 
     iteration: int
@@ -61,7 +62,7 @@ class Solution:
     @property
     def is_certified(self) -> bool:
         """Check whether the iterate is a certified solution of the problem."""
-        return self.iterate.residual is not None
+        return isinstance(self.iterate, Answer)
 
 
 def record(
@@ -83,6 +84,7 @@ def record(
         Whether indicators and estimate are wanted of every iteration, and not only of
         the last.
     """
+    # The last record is that of the result, and is always complete.
     watch = watch or verdict.status is not None
     estimated = verdict.estimated_error
     if watch and math.isnan(estimated) and verdict.certificate is not None:
@@ -109,7 +111,7 @@ def record(
         error_displacement=error_displacement,
         error_force=error_force,
         modes=tuple(basis.n_modes for basis in iterate.bases),
-        is_answer=iterate.is_answer,
+        is_answer=isinstance(iterate, Answer) and iterate.is_beside,
     )
 
 
@@ -180,10 +182,12 @@ def solve(
     with one_blas_thread:
         for iterate, verdict in judged(problem, latin, start, spent, cancelled):
             status = verdict.status
+            # A diverged iterate is no result: the one before is.
             if status is not None and status.ending is Ending.DIVERGED:
                 return Solution(last or iterate, records, status)
             records.append(record(iterate, verdict, distance, watch=watch))
             last = iterate
+            # A run that ends by itself in the same iteration has its own status.
             if status is None and cancelled():
                 status = CANCELLED
             if status is not None:

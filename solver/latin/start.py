@@ -138,6 +138,7 @@ def _carried(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
         friction = law.by_point(known[law.tangent.above])
+        # Per length, as nodal forces depend on the mesh.
         density = friction / law.by_point(law.weights)[:, None]
         spread = _interpolated(
             _points_apart(fine, target), _points_apart(coarse, law), density
@@ -186,6 +187,7 @@ def _interpolated(fine: Array, coarse: Array, values: Array) -> Array:
     `fine` and `coarse` are positions, shapes (n_fine,) and (n_coarse,), m, `values`
     have shape (n_coarse, n_instants); the result has shape (n_fine, n_instants).
     """
+    # Beyond the coarse ends the value at the end holds.
     right = np.clip(np.searchsorted(coarse, fine), 1, len(coarse) - 1)
     share = (fine - coarse[right - 1]) / (coarse[right] - coarse[right - 1])
     share = np.clip(share, 0.0, 1.0)[:, None]

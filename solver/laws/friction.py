@@ -103,16 +103,22 @@ class FrictionLaw:
         else:
             cap = self.cap / force * weights
         if cap is not None:
+            # A known bound is cut once and for all; only a pressing force needs the cap
+            # later.
             bound = np.minimum(bound, cap[:, None])
         strength = self.strength
         if strength is not None:
+            # Fields of a run are scaled, so the table is, too.
             slips = tuple(slip / length for slip in strength.slips)
             strength = Strength(slips, strength.factors)
+        if friction is None:
+            friction = np.zeros(len(weights))
+            cap = None
         return Friction(
             component=component,
             bound=bound,
-            friction=np.zeros(len(weights)) if friction is None else friction,
-            cap=None if friction is None else cap,
+            friction=friction,
+            cap=cap,
             compliance=compliance_of(self.stiffness, weights, scales),
             strength=strength,
         )
@@ -228,6 +234,7 @@ class Friction:
         RefusedError
             If the law remembers more than these positions.
         """
+        # Accumulated slip, and bonds that broke, are not told by the sliders.
         if self.strength is not None or (self.bound.any() and self.friction.any()):
             kind = "general"
             if self.strength is not None:
@@ -300,6 +307,7 @@ def is_intact(opening: Array, pressing: Array) -> Array:
 
     Opening, pressing force, scaled, and result are (n_pairs, n_instants).
     """
+    # Where both sides press, the opening is zero up to rounding.
     noise = OPENED * float(np.abs(opening).max(initial=0.0))
     is_closed = (opening <= noise) | (pressing > 0.0)
     return np.asarray(np.logical_and.accumulate(is_closed, axis=1), dtype=float)

@@ -5,16 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, cast
+from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice, in_rows
 from solver.refusal import RefusedError
-
-if TYPE_CHECKING:
-    from solver.laws.contact import Contact
 
 
 class Component(NamedTuple):
@@ -77,6 +74,7 @@ class Springs:
         if self._share_below is None:
             displacement[self._above] = held
             return
+        # Both sides carry the same force, so each takes the share of its compliance.
         moved = held - jump
         under = self._share_below * moved
         displacement[self._below] = incoming[self._below] - under
@@ -146,7 +144,7 @@ class IncrementalForm:
     force: PrescribedRows | None = None
     displacement: PrescribedRows | None = None
     glued: Glued | None = None
-    contact: Contact | None = None
+    contact: Interface | None = None
 
 
 class Interface(ABC):
@@ -171,6 +169,7 @@ class Interface(ABC):
     def __init_subclass__(cls, **options: Any) -> None:
         """Reset methods `OF_ONE_LAW` of a class without its own incremental form."""
         super().__init_subclass__(**options)
+        # A class that says its incremental form knows what it inherits.
         if "incremental_form" in vars(cls):
             return
         for name in OF_ONE_LAW:
@@ -231,6 +230,7 @@ def gaps_of_rule(
     law: Interface, displacement: Array, force: Array, noise: float, k: Array
 ) -> Gaps:
     """Violations of a law by W and F, from its local stage; as `Interface.gaps`."""
+    # W - F/k is z, from which the local stage starts (paper, problem 2.1).
     incoming = displacement - force / k[:, None]
     local = displacement.copy(order="F")
     law.rule(k, displacement.shape[1])(incoming, local, slice(None))
@@ -258,6 +258,24 @@ def joined(parts: Sequence[Any]) -> Any:
     values = dict[str, Any]()
     for field in fields(first):
         values[field.name] = joined([getattr(part, field.name) for part in parts])
+    return kind(**values)
+
+
+def restricted(whole: Any, pairs: slice) -> Any:
+    """A law, or a field of it, restricted to a range of pairs.
+
+    Arrays, (n_pairs, ...), are cut; other values stay as they are.
+    """
+    if isinstance(whole, np.ndarray):
+        return whole[pairs]
+    if isinstance(whole, Component):
+        return Component(*[restricted(side, pairs) for side in whole])
+    if not is_dataclass(whole):
+        return whole
+    kind = cast(Any, type(whole))
+    values = dict[str, Any]()
+    for field in fields(whole):
+        values[field.name] = restricted(getattr(whole, field.name), pairs)
     return kind(**values)
 
 

@@ -147,6 +147,8 @@ class Perfect(Interface):
 
         def glue(incoming: Array, displacement: Array, _instants: slice) -> None:
             other = incoming[second]
+            # The mean from one side on, so that sides which agree stay exactly where
+            # they are.
             common = other + share * (incoming[first] - other)
             displacement[first] = common
             displacement[second] = common
@@ -155,6 +157,8 @@ class Perfect(Interface):
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Compare both sides, as `Interface.gaps`."""
+        # Fields are contiguous in space: gathering from the transpose reads memory in
+        # order.
         apart = _at(displacement, self.first) - _at(displacement, self.second)
         unbalanced = _at(force, self.first) + _at(force, self.second)
         return Gaps(

@@ -48,6 +48,8 @@ class Play:
     """
 
     def __init__(self, n_points: int, n_times: int, start: Array | None = None) -> None:
+        # Blocks as long as they are many, about: both loops then take the root of the
+        # time.
         size = max(2, round(0.5 * np.sqrt(n_times)))
         blocks = -(-n_times // size)
         self._limits = np.zeros((2, blocks, size, n_points))
@@ -55,6 +57,7 @@ class Play:
         self._low = low.reshape(-1, n_points)[:n_times]
         self._high = high.reshape(-1, n_points)[:n_times]
         self._composed = np.zeros((size, 2, blocks, n_points))
+        # Views are made once: the same memory serves every iteration.
         self._steps = [
             (self._composed[j - 1], low[:, j], high[:, j], self._composed[j])
             for j in range(1, size)
@@ -77,6 +80,7 @@ class Play:
         np.subtract(target, slack, out=self._low.T)
         np.add(target, slack, out=self._high.T)
         self._composed[0] = self._limits[:, :, 0]
+        # Inside all blocks at once, then from block to block, then at all instants.
         for before, low, high, after in self._steps:
             np.maximum(before, low, out=after)
             np.minimum(after, high, out=after)
@@ -160,6 +164,7 @@ class Strength:
 
     def lowest_slope(self, first: Array, last: Array) -> Array:
         """Smallest slope between a first and a last slip, shape (n,) all."""
+        # All segments between the two slips, ends included.
         passed = np.arange(len(self.slips))[:, None]
         on_way = (self.segment(first) <= passed) & (passed <= self.segment(last))
         lowest: Array = np.where(on_way, self.slopes[:, None], np.inf).min(axis=0)
@@ -182,6 +187,7 @@ def follow(target: Array, slack: Array, strength: Strength) -> Array:
     position = np.zeros(len(target))
     slipped = np.zeros(len(target))
     slacks = np.broadcast_to(slack, target.shape).T
+    # Accumulated slip depends on all instants before, so no scan composes them.
     for after, wanted, limit in zip(positions.T, target.T, slacks, strict=True):
         distance = wanted - position
         slip = _slip(np.abs(distance), limit, slipped, strength)
@@ -209,6 +215,8 @@ def _slip(distance: Array, slack: Array, slipped: Array, strength: Strength) -> 
         zeros = np.zeros_like(after)
         share = np.divide(missing, missing - after, out=zeros, where=ends)
         within = slip + share * (ahead - slip)
+        # Points that stop on this segment, points that go on, and points that have
+        # stopped.
         slip = np.where(ends, within, np.where(left, ahead, slip))
         left &= ~ends
         missing = after

@@ -70,6 +70,7 @@ class ContactRule:
             self._across = Springs(normal.component, k)
             self._closed = -normal.gap[:, None]
             self._pressed = _share(self._across.soft, normal.compliance)
+            # Openings are needed only where they may break a bond.
             self._bonds = bool(along.bound.any())
         soft = self._springs.soft
         # The slider stays behind z by the friction force over both springs in series;
@@ -113,6 +114,7 @@ class ContactRule:
         Shape (n_pairs, n_instants) both, scaled.
         """
         jump = self._across.jump(incoming)
+        # Rows that do not overlap stay at z, and so carry no force.
         held = np.maximum(jump, self._closed)
         if self._bonds:
             opening = held - self._closed

@@ -13,9 +13,9 @@ import numpy as np
 from solver.arrays import Array
 
 STEPS = 4
-"""Steps of the fixed point at most: 1, 2 and 10 steps, and the leading singular pair
-itself, reach 1 % of force error within one iteration of each other (bar and strand, 98
-to 106; measured)."""
+"""Largest number of steps of the fixed point: 1, 2 and 10 steps, and the leading
+singular pair itself, reach 1 % of force error within one iteration of each other (bar
+and strand, 98 to 106; measured)."""
 STAGNATION = 0.01
 """Change of a pair's size, as a share, at which the fixed point stops; 0 and 0.1 as
 well."""
@@ -47,6 +47,8 @@ class SeparatedBasis:
         cls, field: Array, k: Array, weights: Array, tolerance: float, largest: int
     ) -> SeparatedBasis:
         """Basis of a field, shape (n_boundary, n_columns), downsized."""
+        # In these coordinates the inner product is the plain one, and unit vectors are
+        # modes.
         root = np.sqrt(k)[:, None]
         basis = cls(np.eye(len(k)), root * field, k, weights).downsized(
             tolerance, largest
@@ -85,7 +87,10 @@ class SeparatedBasis:
         return replace(self, modes=modes, time_functions=time_functions)
 
     def orthonormal(self, mode: Array) -> Array | None:
-        """A mode made orthonormal to the others; None if nothing of it is left."""
+        """A mode made orthonormal to the others, shape (n_boundary,).
+
+        None if it depends on them up to rounding.
+        """
         size = np.sqrt(float(self.k @ (mode * mode)))
         if size == 0.0:
             return None
@@ -109,6 +114,7 @@ class SeparatedBasis:
         if self.n_modes == 0:
             return self
         root = np.sqrt(self.weights)
+        # A small matrix: its rows are modes, and its columns are weighted by time.
         turn, values, right = np.linalg.svd(
             self.time_functions * root, full_matrices=False
         )
@@ -123,17 +129,25 @@ class SeparatedBasis:
         whole = self.squared_of(self.time_functions)
         if whole == 0.0:
             return 0.0
+        # Modes of the other are orthonormal, so squares of coefficients add up.
         inside = other.coefficients(self.modes) @ self.time_functions
         return float(np.sqrt(max(1.0 - self.squared_of(inside) / whole, 0.0)))
 
 
 def nearest_mode(residual: Array, k: Array, weights: Array) -> Array:
-    """Space mode of the pair that is nearest to a residual delta / k, of any length.
+    """Space mode of the pair nearest to a residual delta / k, shape (n_boundary,).
 
     With G + k Z = g for every boundary field g, problem 2.3 asks for the pair g phi
     nearest to the residual; the paper's fixed point alternates between both factors,
-    and is a power iteration towards the leading singular pair. Of a residual that is
-    zero the mode is zero; k and `weights` are those of space and of the columns.
+    and is a power iteration towards the leading singular pair. The norm of the mode has
+    no meaning. Of a residual that is zero the mode is zero.
+
+    Parameters
+    ----------
+    residual
+        Residual, shape (n_boundary, n_columns), scaled.
+    k, weights
+        Weights of space, shape (n_boundary,), and of the columns, (n_columns,).
     """
     # Only the shape matters, and the squares of very small numbers are zero.
     largest = float(np.abs(residual).max())

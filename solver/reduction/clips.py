@@ -61,6 +61,7 @@ class Clips:
         Relative to the field in L2 over length and time; zero for a field that
         vanishes.
         """
+        # Singular vectors of the rest are the best that can be added to the clips.
         rest = decompose(self.given - self.field, self.space_weights, self.time_weights)
         whole = float(self.space_weights @ self.given**2 @ self.time_weights)
         if whole > 0.0:
@@ -93,6 +94,7 @@ def clips_of(
         (n_instants,).
     """
     bound = np.broadcast_to(bound.reshape(len(field), -1), field.shape)
+    # Friction over a bound that changes with time is a clip of the load over its size.
     share = _size_of(bound)
     driving = np.asarray(load / share)
     weights = time_weights * share**2
@@ -123,6 +125,7 @@ def monotone(load: Array) -> Iterator[slice]:
     The load, shape (n_instants,), is zero before the first instant.
     """
     directions = np.sign(np.diff(load, prepend=0.0))
+    # An instant at which the load stands still belongs to the branch before.
     moving = np.flatnonzero(directions)
     turns = moving[1:][directions[moving[1:]] != directions[moving[:-1]]]
     for first, end in pairwise([0, *turns, len(load)]):
@@ -148,6 +151,7 @@ def _branch(
     weights
         Weights of the instants, shape (n_instants,).
     """
+    # Friction that falls is fitted upside down, so that one form serves both.
     falls = (field - held) @ weights < 0.0
     sign = np.where(falls, -1.0, 1.0)[:, None]
     limit = np.where(bound > 0.0, bound, np.inf)
@@ -189,6 +193,7 @@ def _ramps(
     """
     load = loads[1:]
     nearest = _NearestLines(shares, low, load, weights)
+    # Slope 0 first: a point that keeps its friction needs no line at all.
     nearest.keep(nearest.slope, nearest.offset)
     steepest = _steepest(shares, low, np.diff(loads))
     points = np.arange(len(shares))
@@ -197,6 +202,7 @@ def _ramps(
         nearest.keep(slope, shares[points, entry] - slope * load[entry])
     for _ in range(REFITS):
         line = nearest.line(nearest.slope, nearest.offset)
+        # Instants at which the clip hides the line say nothing about it.
         is_shown = (line > low) & (line < 1.0)
         slope, offset = _regression(load, shares, is_shown * weights)
         nearest.keep(slope, offset)
@@ -280,6 +286,7 @@ def _regression(load: Array, shares: Array, weights: Array) -> tuple[Array, Arra
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         whole = weights.sum(axis=1)
+        # About the middle, where slope and mean do not cancel.
         middle = weights @ load / whole
         mean = (weights * shares).sum(axis=1) / whole
         apart = load - middle[:, None]

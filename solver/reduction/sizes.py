@@ -61,6 +61,7 @@ def _numbers_of_bound(bound: Array) -> int:
     shape = bound[:, [int(sizes.argmax())]] / (largest or 1.0)
     if np.abs(bound - shape * sizes).max() > SAME_SHAPE * largest:
         return int(bound.size)
+    # A bound that changes in size alone is one product.
     if np.ptp(sizes):
         return len(bound) + int(bound.shape[1])
     return len(bound)
@@ -83,7 +84,7 @@ def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Si
     """
     lengths = np.zeros(problem.n_rows)
     seen = set[SharedBasis]()
-    for law in problem.rubbing.values():
+    for law in problem.rubbing.laws.values():
         lengths[law.components[-1].above] = law.weights
     largest = max(basis.n_modes for basis in bases)
     left = np.zeros(largest + 1)
@@ -93,6 +94,8 @@ def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Si
     ):
         places = np.flatnonzero(lengths[part.rows])
         points = len(places)
+        # Substructures that share a basis store its modes once, but each its time
+        # functions.
         if basis in seen:
             points = 0
         seen.add(basis)
@@ -126,6 +129,7 @@ def _add_squares(
     rest = force[rows] * per_length
     space = basis.force_modes[places] * per_length
     time = basis.time_functions(number)
+    # One mode more at a time is subtracted, so that all ranks cost one pass.
     for rank in range(len(left)):
         if 0 < rank <= basis.n_modes:
             rest -= space[:, [rank - 1]] * time[rank - 1]

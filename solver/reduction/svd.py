@@ -82,17 +82,20 @@ def decompose(
     """Decomposition of a field, (n_points, n_instants), in weighted inner products."""
     space_root = np.sqrt(space_weights)[:, None]
     time_root = np.sqrt(time_weights)
+    # Weighted by roots, the plain decomposition is that in the weighted inner products.
     left, values, right = np.linalg.svd(
         space_root * field * time_root, full_matrices=False
     )
     space_modes = left / space_root
     time_modes = right / time_root
     signs = _signs(space_modes)
+    if positions is None:
+        positions = np.arange(float(len(field)))
     return Decomposition(
         values=values,
         space_modes=space_modes * signs,
         time_modes=time_modes * signs[:, None],
-        positions=np.arange(float(len(field))) if positions is None else positions,
+        positions=positions,
         space_weights=space_weights,
         time_weights=time_weights,
     )
@@ -112,11 +115,12 @@ def decompositions(
     """
     scales = problem.scales
     lengths = np.zeros(problem.n_rows)
-    for law in problem.rubbing.values():
+    for law in problem.rubbing.laws.values():
         for rows in law.tangent.sides:
             lengths[rows] = law.weights
     slides = lengths > 0.0
     whole = field * (scales.force if is_force else scales.displacement)
+    # Forces are nodal: per length they do not depend on the mesh.
     if is_force:
         whole[slides] /= lengths[slides, None]
     positions = problem.positions[problem.row_dofs]
@@ -145,5 +149,6 @@ def _signs(modes: Array) -> Array:
     if not modes.size:
         return np.ones(modes.shape[1])
     size = np.abs(modes)
+    # Of entries that are equal but for rounding the first decides, on every machine.
     largest = np.argmax(size >= (1.0 - ALIKE) * size.max(axis=0), axis=0)
     return np.where(modes[largest, np.arange(modes.shape[1])] < 0.0, -1.0, 1.0)

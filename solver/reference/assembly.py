@@ -19,20 +19,22 @@ class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no er
 
 def assembled_stiffness(problem: Problem) -> sparse.csr_array:
     """Stiffness K of the whole structure, shape (n_dofs, n_dofs), scaled."""
+    # Equal substructures share one operator, which is taken apart once.
     entries: dict[int, sparse.coo_array] = {}
     for part in problem.substructures:
         if id(part.elasticity) not in entries:
             entries[id(part.elasticity)] = sparse.coo_array(part.elasticity.stiffness)
-    parts = [
-        (part.dofs, entries[id(part.elasticity)]) for part in problem.substructures
-    ]
-    rows, columns = (
-        np.concatenate([dofs[matrix.coords[axis]] for dofs, matrix in parts])
-        for axis in (0, 1)
-    )
-    values = np.concatenate([matrix.data for _, matrix in parts])
+    rows = []
+    columns = []
+    values = []
+    for part in problem.substructures:
+        matrix = entries[id(part.elasticity)]
+        rows.append(part.dofs[matrix.coords[0]])
+        columns.append(part.dofs[matrix.coords[1]])
+        values.append(matrix.data)
+    positions = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array(
-        (values, (rows, columns)), shape=(problem.n_dofs, problem.n_dofs)
+        (np.concatenate(values), positions), shape=(problem.n_dofs, problem.n_dofs)
     )
 
 
@@ -58,12 +60,10 @@ def external_force(problem: Problem) -> Array:
 
 def points_dofs(problem: Problem) -> Indices:
     """Degree of freedom of every point that rubs, by interfaces, shape (n_points,)."""
-    dofs = []
-    for law in problem.rubbing.values():
-        under = np.zeros(len(law.positions), dtype=np.intp)
-        under[law.points] = problem.row_dofs[law.tangent.above]
-        dofs.append(under)
-    return np.concatenate(dofs)
+    dofs = np.zeros(problem.rubbing.n_points, dtype=np.intp)
+    for law, _, points, _ in problem.rubbing.stacks:
+        dofs[points[law.points]] = problem.row_dofs[law.tangent.above]
+    return dofs
 
 
 def jumps(problem: Problem) -> sparse.csr_array:
@@ -71,18 +71,18 @@ def jumps(problem: Problem) -> sparse.csr_array:
     rows = []
     columns = []
     values = []
-    first = 0
-    for law in problem.rubbing.values():
+    for law, _, _, forces in problem.rubbing.stacks:
+        # All pairs of a point make the same jump, so its first pair stands for it.
         points, pairs = np.unique(law.points, return_index=True)
-        for component in law.components:
+        for numbers, component in zip(forces, law.components, strict=True):
             for side, value in zip(component.sides, (1.0, -1.0), strict=False):
-                rows.append(first + points)
+                rows.append(numbers[points])
                 columns.append(problem.row_dofs[side[pairs]])
                 values.append(np.full(len(points), value))
-            first += len(law.positions)
     entries = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array(
-        (np.concatenate(values), entries), shape=(first, problem.n_dofs)
+        (np.concatenate(values), entries),
+        shape=(problem.rubbing.n_forces, problem.n_dofs),
     )
 
 
@@ -97,6 +97,7 @@ def separated(load: Array) -> tuple[Array, Array]:
     patterns = np.zeros((0, len(load)))
     rest = load.copy()
     smallest = float(np.finfo(float).eps * np.abs(load).max(initial=0.0))
+    # Gram-Schmidt by the largest rest, as a factorisation with pivoting.
     while len(patterns) < load.shape[1] // 2:
         largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())
         pattern = rest[:, largest] - patterns.T @ (patterns @ rest[:, largest])

@@ -140,6 +140,7 @@ class Condensation:
         load = self._force[self._free] - stiffness[:, self._fixed] @ self._prescribed
         stiffness = stiffness[:, self._free]
         diagonal = stiffness.diagonal()
+        # A bare degree of freedom would make a pair infinitely soft.
         diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
         self.springs: Array = 1.0 / (abs(free_jumps) @ (1.0 / diagonal))
         self.tie = TIE * float(self.springs.max(initial=0.0))
@@ -149,9 +150,12 @@ class Condensation:
         self._factor = factored(
             sparse.csc_array(self._glued.T @ stiffness @ self._glued)
         )
+        # The few patterns of the load are solved for, not its many instants.
         patterns, courses = separated(load)
         self._alone = self._solved(self._glued.T @ patterns) @ courses
         load = self._jumped.T @ load - self._pulled.T @ self._alone
+        # The difference of two matrices that are nearly equal: rounding makes it
+        # unsymmetric, and moves jumps that depend on each other.
         condensed = (self._jumped.T @ strained).toarray(order="C")
         self._subtract_glued(condensed, stop)
         _symmetrise(condensed)
@@ -201,11 +205,13 @@ class Condensation:
         gauge = self.gauge
         stiffness = self.stiffness
         costs = stiffness @ gauge
+        # Half of Q Q' S Q Q' each time, as rows and columns both subtract it.
         costs -= 0.5 * gauge @ (gauge.T @ costs)
         size = float(np.diagonal(stiffness).mean())
         for rows in _blocks(len(stiffness)):
             excess = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
             stiffness[rows] -= excess
+        # The resultant of the loads is known exactly, without condensation.
         self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
 
     @cached_property
@@ -277,6 +283,8 @@ class Condensation:
         size
             Largest force, scaled.
         """
+        # Sizes without signs: forces cancel at a degree of freedom, their rounding does
+        # not.
         inside = abs(self._whole) @ np.abs(deformation)
         moved = self.unit[:, None] * np.abs(self.jump(motion))
         sprung = moved[self.all_rules.compliance > 0.0]
@@ -337,6 +345,7 @@ def factored(matrix: sparse.csc_array) -> SuperLU:
         If some motion costs no force.
     """
     try:
+        # Pivots stay on the diagonal, as in a factorisation of Cholesky.
         factor = sparse_factor(
             matrix,
             permc_spec="MMD_AT_PLUS_A",
@@ -345,6 +354,7 @@ def factored(matrix: sparse.csc_array) -> SuperLU:
         )
     except LinAlgError as trouble:
         raise NoReferenceError(_NOT_HELD) from trouble
+    # Rounding leaves a small pivot, not zero, where a motion is free.
     pivots = factor.U.diagonal()
     if np.any(pivots <= LOOSE * matrix.diagonal()[np.argsort(factor.perm_c)]):
         raise NoReferenceError(_NOT_HELD)
@@ -358,6 +368,7 @@ def _blocks(size: int) -> list[slice]:
 
 def _symmetrise(matrix: Array) -> None:
     """Replace a matrix (n, n), in place, by its mean with its transpose."""
+    # By blocks, as the transpose of the whole would be a second large matrix.
     for rows in _blocks(len(matrix)):
         others = slice(rows.start, None)
         mean = matrix[rows, others] + matrix[others, rows].T

@@ -29,7 +29,7 @@ MOST_JUMPS = 13_000
 
 
 class IncrementalContact:
-    """The incremental solver of any interfaces with friction, ready to march through time.
+    """Incremental solver of any interfaces with friction, ready to march.
 
     Friction may have several solutions for a large mu, or no solution where contact
     alone holds a body. Where several exist one of them is found, and the instant is
@@ -100,6 +100,7 @@ class IncrementalContact:
             stop,
         )
         n_instants = problem.n_instants
+        # Instants that are not reached stay without increment and force.
         n_base, n_motions = condensed.gauge.shape
         done = Increment(
             jump=np.zeros((len(condensed.moving), n_instants)),
@@ -119,12 +120,14 @@ class IncrementalContact:
             is_negative = instants.system.has_negative_determinant
             has_others[instant] = is_negative or instants.has_others
             reached[instant] = True
+            # Beyond a collapse there is no equilibrium to seek.
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
         return self._judged(instants, done, has_others, reached)
 
     def _may_hold(self, instant: int, stop: Callable[[], bool] | None) -> bool:
         """Check that some contact forces balance the loads of an instant."""
+        # One analysis of the whole path, when a first instant fails.
         if not self._is_analysed:
             self._collapse = collapse_of(self._problem, stop)
             self._is_analysed = True
@@ -152,6 +155,8 @@ class IncrementalContact:
         forces = self._forces(done, deformation + rigid)
         slip, opening = self._slip_and_opening(done, deformation, rigid, forces)
         unbalanced = self._unbalanced(deformation, forces, slip, opening)
+        # Sticking points have exactly no slip in the solution; that of the fields is
+        # rounding.
         slip[condensed.moving] = done.jump
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         blurred = condensed.rounding(deformation, rigid, size)
@@ -197,6 +202,8 @@ class IncrementalContact:
         """
         condensed = self._condensed
         rules = self._rules
+        # Without the rigid motion, which may be far larger and hide the digits of the
+        # slip.
         moved = condensed.jump(deformation)
         moved += rules.compliance[:, None] * forces
         slip = np.diff(moved, axis=1, prepend=0.0)
@@ -227,7 +234,7 @@ class IncrementalContact:
 def jumps_in(problem: Problem) -> int:
     """Number of components of contact that `IncrementalContact` condenses."""
     count = 0
-    for law in problem.rubbing.values():
+    for law in problem.rubbing.laws.values():
         count += sum(len(component.above) for component in law.components)
     return count
 
@@ -239,6 +246,10 @@ def _status(rules: Rules, slip: Array, forces: Array) -> States:
     """
     tangential = ~rules.normal
     status = np.sign(slip).astype(np.int8)
+    # Friction never drives a slip: one along it is rounding, of a point that stays where
+    # it was at its bound.
+    status[slip * forces > 0.0] = 0
+    # A friction force of a known pressure has itself as partner, and never opens.
     with_normal = rules.normal[rules.partner][:, None]
     status[with_normal & (forces[rules.partner] <= 0.0)] = OPEN
     return np.asarray(status[tangential])

@@ -75,6 +75,7 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
     ground = jumps.shape[1]
     edges = graph_of(jumps)
     count, number = trees_of(edges, ground)
+    # The first point of a tree is its root, but the ground that of its own.
     _, roots = np.unique(number, return_index=True)
     standing = number[ground]
     roots[standing] = ground
@@ -129,6 +130,7 @@ def _branches(
     edges: tuple[Indices, Indices], points: Indices, parents: Indices, ground: int
 ) -> Indices:
     """The first jump between each point and its parent, (n,) all."""
+    # An edge has one number, by its two points, so that edges are found by a search.
     keys, first = np.unique(edges[0] * (ground + 1) + edges[1], return_index=True)
     wanted = np.minimum(points, parents) * (ground + 1) + np.maximum(points, parents)
     return np.asarray(first[np.searchsorted(keys, wanted)])
@@ -150,6 +152,7 @@ def self_stresses(jumps: sparse.csr_array, rigid: Flags) -> Array:
     jumps = jumps[places]
     if _is_forest(jumps):
         return np.zeros((size, 0))
+    # Jumps that share a point are coupled, so each ring has a small matrix of its own.
     products = sparse.csr_array(jumps @ jumps.T)
     _, group = connected_components(products, directed=False)
     stresses = []
@@ -189,6 +192,7 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
     rows = np.concatenate([base, np.repeat(others, len(tree_jumps))])
     places = np.searchsorted(base, tree_jumps)
     columns = np.concatenate([np.arange(len(base)), np.tile(places, len(others))])
+    # Paths follow jumps forward or backward: whole numbers up to rounding.
     values = np.concatenate([np.ones(len(base)), np.round(paths).T.ravel()])
     ties = sparse.csr_array((values, (rows, columns)), shape=(size, len(base)))
     ties.eliminate_zeros()
@@ -200,6 +204,7 @@ def _spanning(jumps: sparse.csr_array, rigid: Flags) -> Indices:
     first, last = graph_of(jumps)
     forest = DisjointSet(range(jumps.shape[1] + 1))
     chosen = []
+    # Kruskal's algorithm, with the rigid jumps as the lightest edges.
     for jump in np.argsort(~rigid, kind="stable").tolist():
         if forest.merge(int(first[jump]), int(last[jump])):
             chosen.append(jump)

@@ -45,8 +45,8 @@ BALANCED = 1e-6
 
 
 def rubs_on_supports(problem: Problem) -> bool:
-    """Check that friction of rods has known bounds, on one rigid support at every point."""
-    laws = problem.rubbing.values()
+    """Check that rods rub by known bounds, on one rigid support at every point."""
+    laws = problem.rubbing.laws.values()
     if not laws or not problem.is_chain or not all(law.is_plain for law in laws):
         return False
     dofs = points_dofs(problem)
@@ -85,7 +85,7 @@ class IncrementalRod:
         max_systems: int | None,
         stop: Callable[[], bool] | None,
     ) -> Reference:
-        """Solve by the general solver, which follows friction that softens fast, too."""
+        """Solve by the general solver, which also follows fast softening."""
         if self._general is None:
             self._general = IncrementalContact(self._problem, stop)
         dearer = 1 + len(self._dofs) // DEARER
@@ -100,7 +100,7 @@ class IncrementalRod:
         max_systems: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
-        """Solve instant by instant, as `IncrementalContact.march`; a guess is one of statuses.
+        """Solve instant by instant, as `IncrementalContact.march`, by statuses.
 
         Raises
         ------
@@ -160,6 +160,7 @@ class IncrementalRod:
             minimum = self._with_changing_bound(bound, load, status, accumulated_slip)
         else:
             search = self._search
+            # A constant bound keeps one search, and with it its coarser meshes.
             if rules.bound.shape[1] > 1:
                 search = Search(self._stiffness, bound * self._movable, self._movable)
             done = search.solutions
@@ -179,50 +180,69 @@ class IncrementalRod:
         softened on the way: then no other minimum slips there alone. All arrays have
         the shape (n_dofs,).
         """
-        rules = self._rules
-        movable = self._movable
+        strength = self._rules.strength
         dofs = self._dofs
         end = accumulated_slip
         for _ in range(TRIALS):
-            factor = rules.strength(end[dofs])
-            slope = rules.strength.slope(end[dofs])
-            slope = first * self._on_dofs(slope) * movable
-            bound = (
-                first * self._on_dofs(factor) - slope * (end - accumulated_slip)
-            ) * movable
-            search = Search(self._stiffness.stiffened(slope), bound, movable)
+            # The bound is linear in the slip on a segment of the strength: its slope
+            # goes into the stiffness, and the rest is a constant bound.
+            slope = first * self._on_dofs(strength.slope(end[dofs])) * self._movable
+            before = first * self._on_dofs(strength(end[dofs]))
+            bound = (before - slope * (end - accumulated_slip)) * self._movable
+            stiffness = self._stiffness.stiffened(slope)
+            search = Search(stiffness, bound, self._movable)
             try:
                 minimum = search(force, status * search.rubs)
-                reached = accumulated_slip + np.abs(minimum.increment)
-                if np.array_equal(
-                    rules.strength.segment(end[dofs]),
-                    rules.strength.segment(reached[dofs]),
-                ):
-                    growth = self._on_dofs(
-                        rules.strength.lowest_slope(
-                            accumulated_slip[dofs], reached[dofs]
-                        )
-                    )
-                    softest = self._stiffness.stiffened(first * growth * movable)
-                    slips = movable * (minimum.increment != 0.0)
-                    softest.solve_kept(slips, np.zeros_like(force))
-                    if np.any(bound[slips > 0.0] < 0.0):
-                        return None
-                    return replace(
-                        minimum, pull=minimum.pull + slope * minimum.increment
-                    )
             except LinAlgError:
                 return None
             finally:
                 self._systems += search.solutions
+            reached = accumulated_slip + np.abs(minimum.increment)
+            # The trial was right if the slip ends on the segment that was assumed.
+            assumed = strength.segment(end[dofs])
+            if np.array_equal(assumed, strength.segment(reached[dofs])):
+                slips = self._movable * (minimum.increment != 0.0)
+                if np.any(bound[slips > 0.0] < 0.0):
+                    return None
+                if not self._is_stable(first, slips, accumulated_slip, reached):
+                    return None
+                pull = minimum.pull + slope * minimum.increment
+                return replace(minimum, pull=pull)
             end = reached
             status = minimum.status
         return None
+
+    def _is_stable(
+        self, first: Array, slips: Array, begin: Array, reached: Array
+    ) -> bool:
+        """Check that the structure is stable under the steepest fall of friction.
+
+        All arrays have the shape (n_dofs,).
+
+        Parameters
+        ----------
+        first
+            Friction bound before any slip, scaled.
+        slips
+            1 where a point slips, else 0.
+        begin, reached
+            Accumulated slip at both ends of the instant, scaled.
+        """
+        dofs = self._dofs
+        growth = self._rules.strength.lowest_slope(begin[dofs], reached[dofs])
+        softening = first * self._on_dofs(growth) * self._movable
+        # Factoring fails where the structure is not stable.
+        try:
+            self._stiffness.stiffened(softening).solve_kept(slips, np.zeros_like(slips))
+        except LinAlgError:
+            return False
+        return True
 
     def _gathered(self, minima: list[Minimum]) -> Reference:
         """Reference of the minima of the first instants, after which nothing moves."""
         problem = self._problem
         dofs = self._dofs
+        # An instant is a row here: each is filled as a whole.
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
         for instant, minimum in enumerate(minima):
             increments[instant] = minimum.increment
@@ -241,8 +261,8 @@ class IncrementalRod:
             deformation=displacement,
             contact_force=friction * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
-            residual=max([0.0, *(minimum.residual for minimum in minima)]),
-            unbalanced=max([0.0, *(minimum.violation for minimum in minima)])
+            residual=max([0.0] + [minimum.residual for minimum in minima]),
+            unbalanced=max([0.0] + [minimum.violation for minimum in minima])
             * problem.scales.force,
             rounding=LEFT_INSIDE * inside * problem.scales.force,
             converged=solved,

@@ -133,6 +133,7 @@ class Instants:
         )
         held = before - np.where(rules.normal, self._opening, 0.0)
         step = self._together(Sides(load, self._bound(instant), held), instant)
+        # Only now, as the step was from the load and the shift before.
         self._load = condensed.load[:, instant]
         self._shift = condensed.shift[:, instant]
         step = step._replace(jump=step.jump - before)
@@ -156,6 +157,7 @@ class Instants:
         self._newton.accumulated_slip += np.abs(step.jump)
         self._newton.strained += step.strained
         self._motion += step.motion
+        # A bond that has opened once carries no friction any more.
         opened = self._states[rules.partner[rules.bonds]] == OPEN
         self._intact[rules.bonds[opened]] = 0.0
 
@@ -172,6 +174,7 @@ class Instants:
             if solved is None:
                 return self._stuck(sides)
             self._states, step, _ = solved
+            # Without rings there is nothing to pull together.
             if not self._condensed.stresses.size:
                 break
             pull = self._pull_together(step, instant)
@@ -217,6 +220,8 @@ class Instants:
                 solved = self._in_parts(begin, sides, known, instant)
             elif self._may_hold(instant):
                 solved = newton.follow(begin, sides, newton.approach(begin, sides))
+        # Where one instant is lost the next ones start from nothing sure: they get no
+        # costly search.
         self._is_lost = self._is_lost or solved is None
         return solved
 
@@ -236,6 +241,7 @@ class Instants:
         at, share = self._followed(lambda _: self._newton, at, (begin, sides), known)
         if share == 1.0:
             return at
+        # Only friction that falls with slip lets the structure snap.
         if self.jumps_at is None and rules.softens:
             self.jumps_at = instant
         if not self._may_hold(instant):
@@ -267,6 +273,7 @@ class Instants:
         The last solution found, and at which share.
         """
         begin, end = sides
+        # Parts grow while they succeed and shrink where they fail.
         share = 0.0
         length = FIRST_PART
         while share < 1.0:
@@ -304,6 +311,7 @@ class Instants:
             is_last = number == SLIDES
             before = at
             falls = np.abs(at.slip)
+            # The last resort: friction as after any slip.
             if is_last:
                 falls = np.full_like(falls, self._rules.strength.slips[-1])
             slid = self._slid(at, (begin, end), (fallen, falls), known)

@@ -1,8 +1,8 @@
-"""Residuals of all laws: how far fields are from balance and the laws of contact.
+"""Residuals of all laws: violations of balance and of the laws of contact by fields.
 
-Nothing here depends on how the fields were found, nor on what incremental solvers make
-of a problem: forces inside are those of each substructure, and every contact point is
-asked for its law in full, from the first instant to the last.
+Nothing here depends on how the fields were found, nor on the data that incremental
+solvers make of a problem: forces inside are those of each substructure, and the law of
+every contact point is checked in full, from the first instant to the last.
 
 Laws that say "one of two is zero" are measured by the smaller of both, each as a share
 of its own size: no stiffness has to make a force of a length.
@@ -16,23 +16,24 @@ from typing import Any
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Flags, Indices, largest_size
 from solver.discrete.problem import Problem
 from solver.laws import Contact, Dirichlet, Neumann, Perfect
 from solver.laws.interface import Component
 from solver.reference.distance import HIDDEN, Fields, force_size
 
 ROUNDED = 1e-4
-"""Share of the displacement that counts as a size of jumps: it leaves rounding, and may
-be much larger."""
+"""Share of the displacement that counts as a size of jumps: the displacement leaves
+rounding, and may be much larger."""
 OPENED = 1e-9
 """Opening, as a share of the largest, from which on a bond is broken."""
 KNOWN = Contact, Dirichlet, Neumann, Perfect
+"""Laws that are checked."""
 
 
 @dataclass(frozen=True)
 class LawResiduals:
-    """The largest violation of every kind of law over all places and instants.
+    """Largest violation of every kind of law over all places and instants.
 
     Forces are a share of `force_size`; lengths a share of the largest jump, or of
     `ROUNDED` of the displacement where that is more.
@@ -40,15 +41,16 @@ class LawResiduals:
     Attributes
     ----------
     balance
-        Of all forces at each degree of freedom that is free.
+        Violation of the balance of all forces at each free degree of freedom.
     held
-        Displacements that are prescribed.
+        Violation of prescribed displacements.
     glued
-        Both sides of the cuts: displacements that are equal, forces that are opposite.
+        Violation at cuts: both sides have equal displacements and opposite forces.
     pressing
-        Signorini's law: no tension, no overlap, no force at a distance.
+        Violation of Signorini's law: no tension, no overlap, no force at a distance.
     friction
-        Coulomb's law: no force above its bound, no slip below it, none along the force.
+        Violation of Coulomb's law: no force above its bound, no slip below it, none
+        along the force.
     """
 
     balance: float
@@ -59,12 +61,12 @@ class LawResiduals:
 
     @property
     def largest(self) -> float:
-        """The largest of all; NaN where one is."""
+        """Largest of all violations; NaN where one is."""
         return float(np.max(astuple(self)))
 
     @property
     def worst(self) -> str:
-        """The kind of law whose violation is the largest."""
+        """Kind of the law whose violation is the largest."""
         names = [field.name for field in fields(self)]
         return names[int(np.argmax(astuple(self)))]
 
@@ -82,17 +84,17 @@ def law_residuals(
     problem: Problem,
     rows: RowFields | None = None,
 ) -> LawResiduals:
-    """Measure how far fields are from all laws of a problem.
+    """Measure the violation of all laws of a problem by fields.
 
     Parameters
     ----------
     answer
         Displacements and contact forces of the whole structure, SI.
     problem
-        What they are to solve.
+        Problem that the fields should solve.
     rows
         Fields of both sides of every interface, of an answer that has them: with these
-        the balance is also that of each substructure, and cuts are asked.
+        the balance of each substructure and the cuts are checked, too.
 
     Raises
     ------
@@ -107,26 +109,28 @@ def law_residuals(
     held, prescribed = _prescribed(problem)
     missing = inner - outer - _contact_force(problem, force)
     size = force_size(force, outer, elastic, missing[held], HIDDEN)
-    points = list(_points(problem, displacement, force))
-    jumps = [jump for point in points for jump in point.jumps]
-    length_size = _largest(*jumps, ROUNDED * displacement)
+    interfaces = _interface_fields(problem, displacement, force)
+    length = ROUNDED * largest_size(displacement)
+    length = max([length] + [each.largest_jump for each in interfaces])
 
     balance = [np.delete(missing, held, axis=0)]
     glued = 0.0
     if rows is not None:
         balance += _balance_of_parts(problem, displacement, rows.force)
-        glued = _glued(problem, rows, length_size, size)
+        glued = _glued(problem, rows, length, size)
+    across = [each.across(length, size) for each in interfaces]
+    along = [each.along(length, size) for each in interfaces]
     return LawResiduals(
-        balance=_share(_largest(*balance), size),
-        held=_share(_largest(displacement[held] - prescribed), length_size),
+        balance=_share(largest_size(*balance), size),
+        held=_share(largest_size(displacement[held] - prescribed), length),
         glued=glued,
-        pressing=_largest(*(point.across(length_size, size) for point in points)),
-        friction=_largest(*(point.along(length_size, size) for point in points)),
+        pressing=largest_size(*across),
+        friction=largest_size(*along),
     )
 
 
 def _check_known(problem: Problem) -> None:
-    """Refuse interfaces whose law is none of the engine's: they would count as obeyed."""
+    """Refuse interfaces whose law is unknown: they would count as obeyed."""
     for name, law in problem.interfaces.items():
         if name in problem.own_laws or not isinstance(law, KNOWN):
             kind = type(law).__name__
@@ -134,8 +138,8 @@ def _check_known(problem: Problem) -> None:
 
 
 @dataclass(frozen=True)
-class _Points:
-    """Points of an interface: jumps and forces, shape (n_points, n_instants), scaled.
+class _InterfaceFields:
+    """Fields at the points of an interface, shape (n_points, n_instants), scaled.
 
     Attributes
     ----------
@@ -143,48 +147,49 @@ class _Points:
         Law of the interface.
     slider, friction
         Position of the slider, and the friction force on the body above.
+    largest_jump
+        Largest jump of the displacement, of all components.
     opening, pressing
         Distance of the sides with the compression between them, and the pressing force;
         None where the pressure is known.
-    jumps
-        Jumps of the displacement, of all components.
-    is_given
-        Whether the normal jump is prescribed, so that nothing says how much a point
-        carries, shape (n_points,).
+    is_prescribed
+        Whether the normal jump is prescribed, so that the pressing force is not
+        determinate, shape (n_points,).
     """
 
     law: Contact
     slider: Array
     friction: Array
+    largest_jump: float
     opening: Array | None
     pressing: Array | None
-    jumps: tuple[Array, ...]
-    is_given: Flags
+    is_prescribed: Flags
 
     def across(self, length_size: float, force_size: float) -> Array:
-        """Violation of Signorini's law at points whose jump is not prescribed."""
+        """Violation of Signorini's law where no jump is prescribed, (n, n_instants)."""
         if self.opening is None or self.pressing is None:
             return np.zeros(0)
         pressing = _share(self.pressing, force_size)
         opening = _share(self.opening, length_size)
         # One of both is zero, and none is negative: so the smaller one is zero.
-        broken = np.abs(np.minimum(pressing, opening))
-        return np.asarray(broken[~self.is_given])
+        violation = np.abs(np.minimum(pressing, opening))
+        return np.asarray(violation[~self.is_prescribed])
 
     def along(self, length_size: float, force_size: float) -> Array:
-        """Violation of Coulomb's law at points whose pressing force is known."""
+        """Violation of Coulomb's law where pressing is determinate, (n, n_instants)."""
         slip = self._slip
         bound = self._bound(slip)
         excess = _share(np.maximum(np.abs(self.friction) - bound, 0.0), force_size)
-        # What slips has all of its bound against its way; so either is zero.
+        # A point that slips has all of its bound against its motion: either the slip or
+        # what lacks to that force is zero.
         slipped = _share(np.abs(slip), length_size)
-        missing = _share(np.abs(self.friction + np.sign(slip) * bound), force_size)
-        broken = np.maximum(excess, np.minimum(slipped, missing))
-        return np.asarray(broken[~self.is_given])
+        lacking = _share(np.abs(self.friction + np.sign(slip) * bound), force_size)
+        violation = np.maximum(excess, np.minimum(slipped, lacking))
+        return np.asarray(violation[~self.is_prescribed])
 
     @property
     def _slip(self) -> Array:
-        """Way of the slider from the instant before, shape (n_points, n_instants)."""
+        """Motion of the slider since the instant before, (n_points, n_instants)."""
         start = self.law.tangential.start
         before: Array | float = 0.0
         if start is not None:
@@ -197,7 +202,7 @@ class _Points:
         along = self.law.tangential
         bound = law.by_point(along.bound) * np.ones_like(slip)
         if self.opening is not None and self.pressing is not None:
-            far = OPENED * _largest(self.opening)
+            far = OPENED * largest_size(self.opening)
             is_open = (self.opening > far) & (self.pressing <= 0.0)
             # A bond that has opened once is gone for good.
             bound[np.logical_or.accumulate(is_open, axis=1)] = 0.0
@@ -206,36 +211,59 @@ class _Points:
             if along.cap is not None:
                 bound = np.minimum(bound, law.by_point(along.cap)[:, None])
         if along.strength is not None:
-            accumulated_slip = np.cumsum(np.abs(slip), axis=1)
-            bound *= np.interp(
-                accumulated_slip, along.strength.slips, along.strength.factors
-            )
+            accumulated = np.cumsum(np.abs(slip), axis=1)
+            bound *= along.strength(accumulated)
         return np.asarray(bound)
 
 
-def _points(problem: Problem, displacement: Array, force: Array) -> Iterator[_Points]:
-    """Yield the points of every interface with contact."""
+def _interface_fields(
+    problem: Problem, displacement: Array, force: Array
+) -> list[_InterfaceFields]:
+    """Fields of every interface with contact.
+
+    By displacements (n_dofs, n_instants) and contact forces (n_forces, n_instants),
+    scaled.
+    """
+    found = []
     held, _ = _prescribed(problem)
     for name, law in problem.rubbing.items():
-        places = problem.contact_slices[name]
-        friction = force[places[-1]]
-        slider = jump = _jump(problem, law, law.tangent, displacement)
-        if law.tangential.compliance is not None:
-            slider = (
-                jump + law.in_parallel(law.tangential.compliance)[:, None] * friction
-            )
-        opening = pressing = None
-        is_given = np.zeros(len(law.positions), dtype=bool)
-        jumps = [jump]
+        slices = problem.rubbing.forces[name]
+        friction = force[slices[-1]]
+        jump = _jump(problem, law, law.tangent, displacement)
+        largest = largest_size(jump)
+        opening = None
+        pressing = None
+        is_prescribed = np.zeros(len(law.positions), dtype=bool)
         if law.normal is not None:
-            pressing = force[places[0]]
+            pressing = force[slices[0]]
             across = _jump(problem, law, law.normal.component, displacement)
-            jumps.append(across)
+            largest = max(largest, largest_size(across))
             opening = across + law.mean_by_point(law.normal.gap)[:, None]
-            if law.normal.compliance is not None:
-                opening += law.in_parallel(law.normal.compliance)[:, None] * pressing
-            is_given[law.points] = _is_held(problem, law.normal.component, held)
-        yield _Points(law, slider, friction, opening, pressing, tuple(jumps), is_given)
+            opening = _with_spring(law, opening, pressing, law.normal.compliance)
+            is_prescribed[law.points] = _is_held(problem, law.normal.component, held)
+        fields = _InterfaceFields(
+            law=law,
+            slider=_with_spring(law, jump, friction, law.tangential.compliance),
+            friction=friction,
+            largest_jump=largest,
+            opening=opening,
+            pressing=pressing,
+            is_prescribed=is_prescribed,
+        )
+        found.append(fields)
+    return found
+
+
+def _with_spring(
+    law: Contact, jump: Array, force: Array, compliance: Array | None
+) -> Array:
+    """Jumps plus the length of springs in series, (n_points, n_instants), scaled.
+
+    Jumps and forces have that shape; compliances, (n_pairs,), are None without springs.
+    """
+    if compliance is None:
+        return jump
+    return np.asarray(jump + law.in_parallel(compliance)[:, None] * force)
 
 
 def _jump(
@@ -249,7 +277,7 @@ def _jump(
 
 
 def _is_held(problem: Problem, component: Component, held: Indices) -> Flags:
-    """Whether the jump of every pair is prescribed, shape (n_pairs,)."""
+    """Flags of pairs whose jump is prescribed, (n_pairs,), by held dofs, (n_held,)."""
     given = [np.isin(problem.row_dofs[side], held) for side in component.sides]
     return np.asarray(np.logical_and.reduce(given))
 
@@ -259,10 +287,10 @@ def _contact_force(problem: Problem, force: Array) -> Array:
     total = np.zeros((problem.n_dofs, problem.n_instants))
     for name, law in problem.rubbing.items():
         pairs = np.bincount(law.points)[law.points]
-        for place, component in zip(
-            problem.contact_slices[name], law.components, strict=True
-        ):
-            carried = force[place][law.points] / pairs[:, None]
+        slices = problem.rubbing.forces[name]
+        for stacked, component in zip(slices, law.components, strict=True):
+            # The pairs of a point share its force, which acts on both sides oppositely.
+            carried = force[stacked][law.points] / pairs[:, None]
             for side, sign in zip(component.sides, (1.0, -1.0), strict=False):
                 np.add.at(total, problem.row_dofs[side], sign * carried)
     return total
@@ -288,28 +316,35 @@ def _inner_force(problem: Problem, displacement: Array) -> tuple[Array, Array]:
     total = np.zeros((problem.n_dofs, problem.n_instants))
     sizes = np.zeros_like(total)
     for part in problem.substructures:
-        own = displacement[part.dofs]
+        moved = displacement[part.dofs]
         stiffness = part.elasticity.stiffness
-        np.add.at(total, part.dofs, stiffness @ own)
-        np.add.at(sizes, part.dofs, abs(stiffness) @ np.abs(own))
+        np.add.at(total, part.dofs, stiffness @ moved)
+        np.add.at(sizes, part.dofs, abs(stiffness) @ np.abs(moved))
     return total, sizes
 
 
 def _prescribed(problem: Problem) -> tuple[Indices, Array]:
-    """Degrees of freedom that are held, (n,), and where, (n, n_instants); some twice."""
-    given = [law for law in problem.interfaces.values() if isinstance(law, Dirichlet)]
-    dofs = [problem.row_dofs[law.rows] for law in given]
-    values = [law.values for law in given]
-    return (
-        np.concatenate([np.zeros(0, dtype=np.intp), *dofs]),
-        np.concatenate([np.zeros((0, problem.n_instants)), *values]),
-    )
+    """Held degrees of freedom, (n,), and their displacements, (n, n_instants), scaled.
+
+    A degree of freedom that several rows hold is there several times.
+    """
+    dofs = [np.zeros(0, dtype=np.intp)]
+    values = [np.zeros((0, problem.n_instants))]
+    for law in problem.interfaces.values():
+        if isinstance(law, Dirichlet):
+            dofs.append(problem.row_dofs[law.rows])
+            values.append(law.values)
+    return np.concatenate(dofs), np.concatenate(values)
 
 
 def _balance_of_parts(
     problem: Problem, displacement: Array, force: Array
 ) -> Iterator[Array]:
-    """Yield what every substructure lacks to balance, with the forces of its rows."""
+    """Yield unbalanced forces of every substructure, (n_dofs, n_instants), scaled.
+
+    By displacements (n_dofs, n_instants) of the structure, and forces of all rows
+    (n_rows, n_instants).
+    """
     for part in problem.substructures:
         missing = np.asarray(part.elasticity.stiffness @ displacement[part.dofs])
         if part.body_force is not None:
@@ -321,22 +356,15 @@ def _balance_of_parts(
 def _glued(
     problem: Problem, rows: RowFields, length_size: float, force_size: float
 ) -> float:
-    """Difference of the two sides of all cuts, and the sum of their forces, as shares."""
+    """Largest gap of both sides of all cuts, or sum of their forces, as a share."""
     largest = 0.0
     for law in problem.interfaces.values():
         if isinstance(law, Perfect):
             apart = rows.displacement[law.first] - rows.displacement[law.second]
-            both = rows.force[law.first] + rows.force[law.second]
-            largest = _largest(
-                np.array(largest), _share(apart, length_size), _share(both, force_size)
-            )
+            unbalanced = rows.force[law.first] + rows.force[law.second]
+            shares = _share(apart, length_size), _share(unbalanced, force_size)
+            largest = float(np.maximum(largest, largest_size(*shares)))
     return largest
-
-
-def _largest(*parts: Array) -> float:
-    """The largest absolute value in all arrays; NaN where one is in them, 0 of none."""
-    sizes = [float(np.abs(part).max(initial=0.0)) for part in parts]
-    return float(np.max(sizes, initial=0.0))
 
 
 def _share(value: Array | float, size: float) -> Any:

@@ -85,6 +85,7 @@ class _Program:
         caps = rules.cap[self._rubs][self._capped]
         self._caps = np.tile(self._strongest * caps, 2) / unit
         size = len(rules.gap)
+        # Pressing forces are not negative, and the share is between 0 and 1.
         lows = np.append(np.where(rules.normal, 0.0, -np.inf), 0.0)
         highs = np.append(np.full(size, np.inf), 1.0)
         self._bounds = np.stack([lows, highs], axis=1)
@@ -157,6 +158,7 @@ def collapse_of(
     before = np.zeros(len(loads))
     for instant, now in enumerate(loads.T / unit):
         step = sparse.csr_array((now - before)[:, None])
+        # The load stands still: what held an instant before holds on.
         if not step.nnz and instant:
             continue
         if stop is not None and stop():
@@ -182,6 +184,7 @@ def _collapse_at(
     shares = np.zeros(problem.motions.shape[1])
     if balanced.status != INFEASIBLE:
         shares = balanced.eqlin.marginals
+    # The multipliers of the balance are the motions that the loads do work on.
     moved = -problem.motions @ shares
     mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
     return Collapse(time, instant, share, mechanism, _tips(problem, mechanism))

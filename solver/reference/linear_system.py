@@ -1,4 +1,4 @@
-"""One instant of frictional contact with known states: a linear system.
+"""Frictional contact at an instant with known states: a linear system.
 
 With S y = f + q and jumps y + Q a (`solver.reference.condensation`), the unknowns are y
 where a jump is not held or where something is in series, the forces of jumps that
@@ -199,6 +199,7 @@ class LinearSystem:
         """
         if rows is None:
             places = places[unknown[places] != 0.0]
+            # A product with all of S costs less than gathering many of its rows.
             if self._ties is not None or len(places) * FEW > len(unknown):
                 alone = np.zeros_like(unknown)
                 alone[places] = unknown[places]
@@ -219,6 +220,7 @@ class LinearSystem:
         if self._is_plain:
             return strained.copy()
         ends = self._jump(strained, motion) + self._compliance * force
+        # What is held is known exactly, and rounding must not pass for slip.
         ends[self._held] = held[self._held]
         return ends
 
@@ -260,6 +262,7 @@ class LinearSystem:
         is_free = (states != HELD) | (self._compliance > 0.0)
         self._free: Indices = np.flatnonzero(is_free[self._base])
         self._kept: Indices = np.flatnonzero(~is_free[self._base])
+        # Jumps beyond the base are unknown by their forces, held or not.
         rows = np.concatenate([self._base[self._free], self._others])
         self._rows = rows
         others = np.arange(len(self._base), len(self._of_unknowns))
@@ -282,9 +285,11 @@ class LinearSystem:
     def _with_friction(self) -> Array:
         """Force of each row less its friction by all unknowns, (n_rows, n_rows)."""
         unknowns = self._unknowns
+        # Each row is f + s mu f_n = -s r: the force of a jump less its friction.
         matrix = self._of_unknowns[np.ix_(self._rows, unknowns)]
         if self._grows:
             matrix *= self._lengthening[:, None]
+        # Few rows drag, and each reads a further row of S.
         tied = np.flatnonzero(self._drag)
         if len(tied):
             normal = self._of_unknowns[np.ix_(self._carriers[tied], unknowns)]
@@ -348,6 +353,7 @@ class LinearSystem:
         compliance = self._compliance[springs, None]
         none = np.zeros((len(springs), len(self._others)))
         moved = np.hstack([jumps, none, jumps @ self._gauge[free]])
+        # A soft spring makes an equation of forces, a stiff one an equation of lengths.
         scale = 1.0 / (1.0 + compliance)
         self._sprung_scale = scale[:, 0]
         return np.asarray(scale * (compliance * forces + moved))
@@ -395,6 +401,7 @@ class Factors:
         if len(matrix):
             self._factors, self._pivots, _ = lapack.dgetrf(matrix)
         diagonal = np.diagonal(self._factors)
+        # Every exchange of rows changes the sign of the determinant.
         swaps = np.count_nonzero(self._pivots != np.arange(len(matrix)))
         changes_of_sign = np.count_nonzero(diagonal < 0.0) + swaps
         self.has_negative_determinant = bool(changes_of_sign % 2)
@@ -414,6 +421,7 @@ class Factors:
         right = self._rows * right
         solution = self._solve(right)
         if not self.singular:
+            # One refinement is enough once rows and columns have one size.
             solution += self._solve(right - self._matrix @ solution)
         return np.asarray(self._columns * solution)
 

@@ -116,6 +116,7 @@ class Newton:
         strength = self._rules.strength
         if self._fallen is None:
             return strength(self.accumulated_slip + slip)
+        # The fall is that up to the given slip, the rise that up to the slip itself.
         fallen = self.accumulated_slip + self._fallen
         return (
             strength(fallen)
@@ -161,6 +162,8 @@ class Newton:
         tried = at.states[:0]
         for _ in range(SPRING_STEPS):
             springs = share * np.diagonal(condensed.stiffness)
+            # A spring at its relaxed length pulls with nothing, so at rest it changes
+            # no solution.
             pulled = replace(sides, load=sides.load + springs * relaxed)
             solved = self.seek(self._with_springs(springs), at, pulled)
             if solved is not None:
@@ -226,6 +229,7 @@ class Newton:
         if growth is None:
             motion[free] = self._rules.compliance[condensed.base[free]] > 0.0
         else:
+            # The lowest eigenvalue is the softest motion: the way down from a ridge.
             softened = self._softened(growth, free)
             _, vectors = eigh(softened, subset_by_index=[0, 0], check_finite=False)
             motion[free] = vectors[:, 0]
@@ -256,6 +260,7 @@ class Newton:
                 return None
             pieces.append(piece)
             step = system(states, tangent)
+            # Systems with springs cost as much as others, and are counted with them.
             if system is not self.system:
                 self.system.solutions += 1
             corrected = self._corrected(states, step, tangent, system.friction)
@@ -326,6 +331,7 @@ class Newton:
         if not len(free):
             return True
         try:
+            # It succeeds exactly where the matrix is positive definite.
             cholesky(self._softened(growth, free), overwrite_a=True, check_finite=False)
         except LinAlgError:
             return False
@@ -348,6 +354,8 @@ class Newton:
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
         slopes = self._lowest_slopes(at, reached, sides)
         growth = np.where(slips, slopes, 0.0)
+        # Stiffness without softening is positive, so the solution is the only one
+        # nearby.
         if not np.any(growth < 0.0):
             return growth, np.zeros(0, dtype=np.intp)
         # A contact and a spring in series with it share the motion.

@@ -54,6 +54,8 @@ class Tridiagonal:
         # Added to the diagonal where degrees of freedom are not held.
         self._slipping = slipping
         self._upper = np.asfortranarray([np.append(0.0, beside), diagonal])
+        # The largest row is a bound on the largest eigenvalue, and scales what rounding
+        # leaves.
         sums = np.abs(diagonal)
         sums[1:] += np.abs(beside)
         sums[:-1] += np.abs(beside)
@@ -97,6 +99,8 @@ class Tridiagonal:
         diagonal = self.diagonal
         if self._slipping is not None:
             diagonal = diagonal + self._slipping * keep
+        # A held degree of freedom is cut off by zeros beside the diagonal: no matrix is
+        # copied.
         *_, solved, trouble = lapack.dptsv(
             diagonal, self.beside * keep[1:] * keep[:-1], force
         )
@@ -194,6 +198,7 @@ class Search:
         # Neither held nor rubbing.
         self._free = movable - self.rubs
         self._limit = np.where(self.rubs > 0.0, bound, np.inf)
+        # Rods are parts of the chain that no stiffness ties: each is mended on its own.
         is_tied = stiffness.beside * movable[1:] * movable[:-1] != 0.0
         self._starts = np.flatnonzero(np.append(True, ~is_tied))
         sizes = np.diff(self._starts, append=len(movable))
@@ -217,6 +222,7 @@ class Search:
         """
         status, changing, fields = self._newton(force, status)
         if fields is None:
+            # Most rods have come to rest: only those that cycle are sought otherwise.
             for rod in np.unique(self._rod[changing]):
                 self._mend_rod(rod, force, status)
             fields = self._fields(force, status)
@@ -285,6 +291,8 @@ class Search:
         """
         if len(force) >= COARSEST:
             coarser, group = self._coarser
+            # A front moves two points in a step of the coarse mesh, and the coarsest is
+            # small.
             forces = summed(group, force)
             guess, _, fields = coarser._newton(forces, np.sign(summed(group, status)))
             if fields is None:
@@ -310,6 +318,8 @@ class Search:
         -------
         The statuses at the minimum, shape (n_dofs,).
         """
+        # Points that would move against their status stick, so that the start lowers
+        # phi.
         increment = self._fields(force, status).increment
         status, increment = self._moving(status, increment)
         released = -1
@@ -360,6 +370,7 @@ class Search:
         self.solutions += 1
         increment = stiffness.solve_kept(keep, keep * (force - self._bound * status))
         inside = self._stiffness.largest_row * np.abs(increment).max()
+        # Rounding of the pull is a share of the forces that cancel in it.
         largest = inside + np.abs(force).max()
         pull = force - self._stiffness.product(increment)
         return _Fields(increment, pull, self._limit + ROUNDING * float(largest))

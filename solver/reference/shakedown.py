@@ -83,6 +83,7 @@ def shakedown_limit(problem: Problem, cycle: slice) -> float:
     elastic = elastic[rubs] - carried @ elastic[free]
     shape = (len(rubs), problem.n_instants)
     bound = np.broadcast_to(rules.bound[rubs], shape)[:, cycle]
+    # HiGHS works with absolute tolerances, so numbers are brought near 1.
     scale = float(bound.max(initial=0.0)) or 1.0
     elastic = elastic / scale
     bound = bound / scale
@@ -107,6 +108,7 @@ def _forces_of_slips(
     elastic = -condensed.load[:, cycle]
     if not rules.compliance.any():
         return stiffness, elastic, condensed.stresses
+    # A force through a spring in series moves the structure and the spring.
     springs = 1.0 / rules.compliance[:, None]
     tied = springs * condensed.ties.toarray()
     gives = np.linalg.solve(stiffness + condensed.ties.T @ tied, tied.T)
@@ -118,7 +120,7 @@ def _forces_of_slips(
 
 def _count(problem: Problem) -> int:
     """Number of points that rub."""
-    return sum(len(law.positions) for law in problem.rubbing.values())
+    return problem.rubbing.n_points
 
 
 def _limit_of_points(elastic: Array, bound: Array) -> float:
@@ -127,6 +129,7 @@ def _limit_of_points(elastic: Array, bound: Array) -> float:
     Forces of the loads and bounds have the shape (n_points, n_instants), scaled.
     """
     factor = np.inf
+    # Slip that stays shifts all instants alike: only differences between two are fixed.
     for force, limit in zip(elastic.T, bound.T, strict=True):
         swing = np.abs(elastic - force[:, None])
         is_felt = swing > FELT
@@ -208,7 +211,8 @@ def slip_space(problem: Problem) -> SlipSpace:
     condensed = Condensation(problem)
     if not _is_of_coulomb(condensed):
         raise NoReferenceError(
-            "The planes are those of Coulomb's friction, where forces follow from slips."
+            "The planes are those of Coulomb's friction, where forces follow from "
+            "slips."
         )
     rules = condensed.rules
     stiffness = condensed.elastic
@@ -259,6 +263,7 @@ def largest_swing(space: SlipSpace, cycle: slice) -> tuple[float, Array]:
     limit = space.limit[:, cycle]
     mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)
     lowest = (limit - mean[:, None]).min(axis=1)
+    # Near 1, as HiGHS has absolute tolerances.
     unit = float(np.abs(space.matrix).max())
     scale = float(np.abs(limit).max()) or 1.0
     size = space.matrix.shape[1]
@@ -280,6 +285,7 @@ def room_of_two(space: SlipSpace, cycle: slice) -> Array:
     limit = space.limit[:, cycle].min(axis=1)
     slack = SLACK * float(np.abs(space.limit).max(initial=0.0))
     corners = []
+    # A corner is where two lines meet and no other line cuts it off.
     for pair in combinations(range(len(matrix)), 2):
         lines = matrix[list(pair)]
         if abs(np.linalg.det(lines)) > SLACK * np.abs(lines).max() ** 2:

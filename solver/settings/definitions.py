@@ -258,6 +258,7 @@ def redefined(
     **record: Any,
 ) -> Any:
     """Define a setting anew for some scenes, with changes to its definition."""
+    # A copy, as all scenes share the definition.
     again = copy.copy(definition)
     again.default = default
     if slider is not None:
@@ -331,6 +332,7 @@ def _likeness(name: str, other: str, definition: Parameter) -> float:
     """Likeness of a name to a setting in spelling, in words, and in its meaning."""
     spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
     words = set(name.lower().split("_"))
+    # People mistype a name, turn its words round, or call a setting by its meaning.
     in_name = words & set(other.split("_"))
     meaning = f"{title_of(definition)} {_meaning(definition)}".lower()
     in_meaning = words & set(re.findall(r"\w+", meaning))
@@ -389,6 +391,7 @@ def _checked_curve(definition: CurveParameter, name: str, value: object) -> str 
     if not isinstance(value, list | tuple) or not value:
         raise refuse(f"give at least one {'pair' if definition.is_path else 'row'}")
     rows: list[tuple[float, ...]] = []
+    # Row by row, so that a refusal names the first that is wrong.
     for number in range(1, len(value) + 1):
         rows.append(_checked_row(definition, name, value, number))
         if definition.is_path and number > 1 and rows[-1][0] <= rows[-2][0]:
@@ -406,16 +409,17 @@ def _checked_row(
     row = value[number - 1]
     n_columns = len(definition.columns)
     if not isinstance(row, list | tuple) or len(row) != n_columns:
+        # Most curves have two columns, which people call a pair.
         expected = f"{n_columns} numbers"
         if definition.is_path:
             expected = "a pair of numbers"
         raise refuse(f"row {number} must be {expected}")
     if not all(is_number(entry) for entry in row):
         raise refuse(f"row {number} has an entry that is not a number")
-    for place, entry in enumerate(row):
-        column = definition.columns[place]
-        unit = definition.units[place]
-        low, high = definition.bounds[place]
+    for index, entry in enumerate(row):
+        column = definition.columns[index]
+        unit = definition.units[index]
+        low, high = definition.bounds[index]
         if entry < low == 0.0:
             can = f"{column}s of at least 0 {unit}".rstrip()
             raise SettingError(name, value, can, f"raise the negative {column}")

@@ -130,6 +130,7 @@ class FrictionSettings(MethodSettings):
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
         is_given = self.is_general and self.strength != "constant"
         strength = None
+        # A strength that stays 1 is no strength: then no slip is accumulated.
         if self.is_linear_in_slip or is_given:
             slips, factors = zip(*self.strength_points(), strict=True)
             strength = Strength(slips, factors)
@@ -183,6 +184,7 @@ class FrictionSettings(MethodSettings):
 
     def check_digits(self, name: str, stiffness: float, remedy: str) -> None:
         """Refuse a stiffness of which no digits are left beside that of bodies."""
+        # Beyond these bounds the spring, or the body, has no digit left in their sum.
         value = getattr(self, name)
         definition = self.definitions()[name]
         unit = about(definition).unit

@@ -104,6 +104,7 @@ class LoadSettings(FrictionSettings):
         """Name of the setting of the value of a path's presets; None: it is 1."""
         sizes = self._sizes().get(path, ())
         definitions = self.definitions()
+        # Of several sizes, as a force or a displacement, the one that applies.
         for name in sizes:
             if about(definitions[name]).applies(self):
                 return name
@@ -147,10 +148,11 @@ class LoadSettings(FrictionSettings):
     @property
     def is_repeatable(self) -> bool:
         """Return whether any load path is a preset that is periodic."""
-        presets = [self.preset(name) for name in self.paths]
-        return any(
-            preset is not None and preset.repeats is not None for preset in presets
-        )
+        for name in self.paths:
+            preset = self.preset(name)
+            if preset is not None and preset.repeats is not None:
+                return True
+        return False
 
     def times(self) -> Array:
         """Instants, (n_instants,), s: points of all paths, and others between them."""
@@ -165,6 +167,7 @@ class LoadSettings(FrictionSettings):
     def _times(self) -> Array:
         """Instants, (n_instants,), s; of large problems those of thinned tables."""
         instants = self._instants({name: getattr(self, name) for name in self._tables})
+        # Only where every point would cost minutes.
         if self.n_nodes * len(instants) > EVERY_POINT and self._tables:
             instants = self._instants(
                 {name: self._thinned(name) for name in self._tables}
@@ -181,7 +184,7 @@ class LoadSettings(FrictionSettings):
         """Points of a table that its path needs to stay within a share of its range."""
         table: Rows = getattr(self, name)
         kept = thinned(table, THINNED * float(np.ptp(np.array(table)[:, 1])))
-        return tuple(table[place] for place in kept)
+        return tuple(table[index] for index in kept)
 
     def _instants(self, tables: Mapping[str, Rows]) -> Array:
         """Instants, (n_instants,), s, for some tables and all presets.
@@ -197,6 +200,7 @@ class LoadSettings(FrictionSettings):
                 times = self._turning(name, times)
             points.append(times)
         for name in self.paths:
+            # A path of size zero has no corners that matter.
             if name in tables or not self.size_of(name):
                 continue
             times = self.knots(name)
@@ -233,6 +237,7 @@ class LoadSettings(FrictionSettings):
             solved = interpolate(np.column_stack([times, self.path(name)]), given)
             difference = float(np.abs(values[inside] - solved).max(initial=0.0))
             span = float(np.ptp(values))
+            # A point that is an instant up to rounding is not left out.
             count = len(apart(given, times, SAME * self.duration))
             if self.instants > 1 and count and difference > STRAIGHT * span:
                 share = f"{100.0 * difference / span:.2g} %"
@@ -254,6 +259,7 @@ class LoadSettings(FrictionSettings):
         preset = self.preset(name)
         if preset is None:
             return interpolate(getattr(self, name), instants)
+        # Presets are functions of the phase, so that a longer run has the same path.
         values = preset.value(instants / self.duration, self.seed, self.cycles)
         return self.size_of(name) * values
 
@@ -276,6 +282,8 @@ class LoadSettings(FrictionSettings):
         if not isinstance(preset, Preset):
             rows: Rows = preset.rows(self)
             return rows
+        # Curved parts need points between the knots; straight ones lose them again
+        # below.
         even = np.linspace(0.0, self.duration, (POINTS - 1) * self.cycles + 1)
         times = instants_of(self.duration, 2, NO_KNOTS, self.knots(name))
         times = instants_of(self.duration, 2, times, even)

@@ -80,6 +80,7 @@ class Preset:
         The periodic part is passed `cycles` times in the same time.
         """
         if cycles > 1 and self.repeats is not None:
+            # The periodic part is run through faster, the part before it as it is.
             turns = cycles * (phase - self.repeats) / (1.0 - self.repeats)
             again = self.repeats + (1.0 - self.repeats) * (turns - np.floor(turns))
             phase = np.where(phase > self.repeats, again, phase)
@@ -121,6 +122,7 @@ def _walk(seed: int) -> tuple[Array, Array]:
 def _size_of_walk(seed: int) -> tuple[Array, Array]:
     """Phases and ordinates of a random walk's size, (n_points,), with its zeros."""
     phases, walk = _walk(seed)
+    # A line that crosses zero turns there once it has no sign.
     crossed = np.flatnonzero(walk[:-1] * walk[1:] < 0.0)
     zeros = crossed + walk[crossed] / (walk[crossed] - walk[crossed + 1])
     every = np.union1d(phases, zeros / RANDOM_POINTS)
@@ -303,11 +305,14 @@ def instants_of(
     knots = np.unique(knots[(knots >= 0.0) & (knots <= duration)])
     corners = np.unique(corners)
     corners = corners[np.diff(corners, prepend=-duration) > rounding]
+    # Points of tables are kept to the bit, corners of presets only up to rounding.
     every = np.union1d(knots, apart(corners, knots, rounding))
     is_among_even = len(apart(every, even, rounding)) == 0
+    # Knots that are even instants already: most paths need no others.
     if is_among_even and np.all(np.diff(every) > rounding):
         return even
     every = np.union1d(every, even[[0, -1]])
+    # Each interval between knots gets as many steps as keep it within the given step.
     shares = np.diff(every) * ((number - 1) / duration)
     steps = np.maximum(np.ceil(shares - SAME * number), 1.0).astype(np.intp)
     return _divided(every, steps)
@@ -361,17 +366,19 @@ def thinned(points: Rows | Array, allowed: float) -> Indices:
     tops = {values.index(max(values)), values.index(min(values))}
     low = -math.inf
     high = math.inf
-    for place in range(1, len(times)):
+    for index in range(1, len(times)):
         last = kept[-1]
-        slope = (values[place] - values[last]) / (times[place] - times[last])
-        if place - 1 > last and (place - 1 in tops or not low <= slope <= high):
-            last = place - 1
+        # A straight line from the last kept point has to pass all points between within
+        # the allowed error: an interval of slopes, which narrows.
+        slope = (values[index] - values[last]) / (times[index] - times[last])
+        if index - 1 > last and (index - 1 in tops or not low <= slope <= high):
+            last = index - 1
             kept.append(last)
             low = -math.inf
             high = math.inf
-        span = times[place] - times[last]
-        low = max(low, (values[place] - allowed - values[last]) / span)
-        high = min(high, (values[place] + allowed - values[last]) / span)
+        span = times[index] - times[last]
+        low = max(low, (values[index] - allowed - values[last]) / span)
+        high = min(high, (values[index] + allowed - values[last]) / span)
     if len(times) > 1:
         kept.append(len(times) - 1)
     return np.array(kept)

@@ -219,12 +219,13 @@ class MethodSettings(param.Parameterized):
     @cache
     def definitions(cls) -> Mapping[str, Any]:
         """Definition of every setting, by name, in the order of their groups."""
-        parameters = {name: cls.param[name] for name in cls.param}
-        return {
-            name: parameter
-            for name, parameter in parameters.items()
-            if "about" in (parameter.metadata or {})
-        }
+        definitions = {}
+        for name in cls.param:
+            parameter = cls.param[name]
+            # Parameters of param itself, as `name`, are no settings.
+            if "about" in (parameter.metadata or {}):
+                definitions[name] = parameter
+        return definitions
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
@@ -245,11 +246,10 @@ class MethodSettings(param.Parameterized):
         method = clean.get("method", definitions["method"].default)
         complete = cls.of_method(method) | clean
         # To set a value takes param some time, even where it is the default.
-        changed = {
-            name: value
-            for name, value in complete.items()
-            if value is not definitions[name].default
-        }
+        changed = {}
+        for name, value in complete.items():
+            if value is not definitions[name].default:
+                changed[name] = value
         settings = cls(**changed)
         settings.check_together()
         return settings
@@ -260,6 +260,7 @@ class MethodSettings(param.Parameterized):
         values = dict(cls.METHODS[method])
         for name, value in values.items():
             definition = cls.definitions()[name]
+            # A scene may lack an option, as a nested start.
             is_choice = isinstance(definition, param.Selector)
             if is_choice and value not in definition.objects:
                 values[name] = definition.default
@@ -296,13 +297,14 @@ class MethodSettings(param.Parameterized):
             defaults = base.values()
         else:
             defaults = self.defaults(self.method)
+        # Values that come with another method are no choice of their own.
         if base and base.method != self.method:
             defaults.update(self.of_method(self.method))
-        return {
-            name: value
-            for name, value in self._values.items()
-            if value != defaults[name]
-        }
+        changed = {}
+        for name, value in self._values.items():
+            if value != defaults[name]:
+                changed[name] = value
+        return changed
 
     def replace(self, /, **changes: object) -> Self:
         """Make settings with some values changed, checked as a whole.
@@ -311,6 +313,7 @@ class MethodSettings(param.Parameterized):
         """
         values = self.values()
         if changes.get("method", self.method) != self.method:
+            # Values that the old method brought would count as chosen.
             for name in self.METHODS[self.method]:
                 del values[name]
         return self.checked(values | changes)

@@ -70,6 +70,8 @@ def harmonic_means(table: Rows, edges: Array) -> Array:
     ends, (values,), first = _pieces([table], edges)
     change = np.diff(values) / values[:-1]
     is_steep = np.abs(change) > STEEP
+    # The integral of 1 / (1 + c x) is log(1 + c) / c, whose digits are lost where c is
+    # small.
     inverse = np.log1p(change, where=is_steep, out=1.0 - 0.5 * change)
     inverse = np.where(is_steep, inverse / np.where(is_steep, change, 1.0), inverse)
     whole = np.diff(ends) * inverse / values[:-1]
@@ -89,6 +91,7 @@ def gap_at(table: Rows, nodes: Array) -> Array:
     values = values[inside]
     after = np.searchsorted(nodes, x, side="right").clip(1, len(nodes) - 1)
     is_left = x - nodes[after - 1] <= nodes[after] - x
+    # A peak that no node sees would let bodies pass through each other.
     nearer = np.where(is_left, after - 1, after)
     lowest = gap.copy()
     is_lower = values < np.minimum(gap[after - 1], gap[after])
@@ -104,5 +107,6 @@ def off_nodes(table: Rows, length: float, pieces: int) -> Array:
     """
     x, values = np.array(table).T
     nodes = np.linspace(0.0, length, pieces + 1)
+    # The run sees the line through the nodes, not the table.
     off = np.abs(np.interp(x, nodes, interpolate(table, nodes)) - values)
     return np.where((x >= 0.0) & (x <= length), off, 0.0)

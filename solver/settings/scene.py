@@ -12,8 +12,10 @@ from typing import ClassVar, Literal, NamedTuple, Self
 import numpy as np
 import param
 
+from solver.discrete import discretise
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields, Structure
+from solver.discrete.structure import Structure
 from solver.reference.closed_forms import ExactCurve
 from solver.settings.definitions import SettingError, about
 from solver.settings.load import LoadSettings
@@ -89,9 +91,10 @@ class Settings(LoadSettings):
                 coarse = coarse.replace(elements=elements, substructures=1)
             except SettingError:
                 return
+            # A start on other instants would have to be interpolated in time.
             if not np.array_equal(coarse.times(), self.times()):
                 return
-            yield coarse.structure().discretise()
+            yield discretise(coarse.structure())
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
@@ -141,6 +144,7 @@ class Settings(LoadSettings):
             if not self.applies(name):
                 continue
             for load in about(definition).places:
+                # A setting that is 0 places a load only if no other does.
                 if load not in settings or getattr(self, name):
                     settings[load] = name
         return settings
@@ -177,6 +181,7 @@ class Settings(LoadSettings):
         if self.n_instants <= largest:
             return
         remedy = "give paths with fewer points or cycles, or a coarser mesh"
+        # More instants than were set come from points of paths.
         if self.n_instants == self.instants:
             remedy = "give fewer instants, or a coarser mesh"
         raise SettingError(

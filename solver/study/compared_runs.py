@@ -78,6 +78,7 @@ def scale_of(settings: Settings, name: str) -> tuple[float, float, float, float]
     definition = settings.definitions()[name]
     value = getattr(settings, name)
     low, high = definition.bounds
+    # Positive quantities, as stiffnesses, span decades, and their errors are factors.
     if low >= 0.0 and value > 0.0:
         return value, 0.0, low, high
     if is_logarithmic(definition):
@@ -165,6 +166,7 @@ class ComparedRuns:
 
     def _on_scale(self, values: Array) -> Array:
         """The z of values of the settings in SI, shape (p,)."""
+        # Both scales are computed for all settings, and one of them means nothing.
         with np.errstate(divide="ignore", invalid="ignore"):
             in_logarithm = np.log(values / self._start)
             in_size = (values - self._start) / self._size
@@ -180,6 +182,7 @@ class ComparedRuns:
 
     def changes(self, z: Array) -> dict[str, float]:
         """Values of the settings at z, (p,), by name, in SI, rounded to 12 digits."""
+        # A difference in the last bits would be another run, and another place.
         values = [float(f"{value:.12g}") for value in self.values(z)]
         return dict(zip(self.names, values, strict=True))
 
@@ -246,6 +249,7 @@ class ComparedRuns:
     def _derivative(self, z: Array, step: float, along: Array) -> Array:
         """Derivative of differences, (n_rows,), at z, (p,), along a direction, (p,)."""
         moves = [move for move in (step, -step) if self.holds(z + move * along)]
+        # A tiny step is straight enough one way, and one run fewer.
         if step == STEP:
             moves = moves[:1]
         # A difference across z where there are runs on both sides, else from z.
@@ -277,6 +281,7 @@ class ComparedRuns:
         """
         settings = self._settings.replace(**self.changes(z))
         with contextlib.suppress(RefusedError):
+            # Half the size: what changes is what the mesh hides of the loop.
             finer = {name: 2 * getattr(settings, name) for name in settings.MESH}
             run = finished_run(
                 settings.replace(**finer), errors=False, indicators=False
@@ -293,6 +298,7 @@ class ComparedRuns:
         best = np.zeros(len(self.names))
         for setting in range(len(best)):
             middle = best
+            # Both ways from the middle, as one side may fall first and rise later.
             for step in (-COARSE, COARSE):
                 best = self._stepped(best, middle, setting, step)
         return best
@@ -364,6 +370,7 @@ class ComparedRuns:
         bounds
             Smallest and largest z, shape (2, p).
         """
+        # Where one setting follows from the others there is nothing to constrain.
         pivot = int(np.abs(along).argmax())
         free = np.delete(np.arange(len(z)), pivot)
         if not len(free):
@@ -382,6 +389,7 @@ class ComparedRuns:
                 return np.full(len(self.first.differences), np.nan)
             return self.differences(at)
 
+        # Least squares cannot begin where there is no run.
         if not np.isfinite(differences(np.zeros(len(free)))).all():
             return z
         found = least_squares(

@@ -117,7 +117,10 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
 
 def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:
     """Refuse a column of friction in newtons: nodal forces depend on the mesh."""
+    # Newtons are no unit of a traction, and here they are the likely mistake.
     if size_in(column.unit, "N") is not None:
+        # Without its mesh nobody can tell what a nodal force of another program stands
+        # for.
         nodal = "divide nodal forces by what a node stands for"
         column.size(unit, lambda remedy: table.refuse(f"{remedy}; {nodal}"))
 
@@ -137,6 +140,7 @@ def _columns(table: Table) -> tuple[str, list[TableColumn]]:
         raise table.refuse(
             "name its columns in the first line, as in x,t,friction force"
         )
+    # By their words alone: units are the same for positions and displacements.
     x = table.find(table.columns, {"position"})
     t = table.find(table.columns, {"time"})
     if x is None:
@@ -175,6 +179,7 @@ def _check_places(
     length = settings.length
     duration = settings.duration
     beyond = np.flatnonzero((x < -EDGE * length) | (x > (1.0 + EDGE) * length))
+    # A position outside is mostly one in millimetres.
     if len(beyond):
         first = beyond[0]
         raise refuse(
@@ -221,7 +226,7 @@ class Comparison:
         # Friction is per length of the points of one interface.
         if results.quantity == FRICTION:
             law = problem.rubbing[self.interface]
-            self._places = problem.contact_slices[self.interface][-1]
+            self._places = problem.rubbing.forces[self.interface][-1]
             self._sizes = law.by_point(law.weights)[:, None]
             positions = law.positions
         self._order = np.argsort(positions, kind="stable")
@@ -251,6 +256,7 @@ class Comparison:
         else:
             field = fields.contact_force[self._places] / self._sizes
         ours = _interpolated(field[self._order], self._at)
+        # Relative to the other results, or to ours where those vanish everywhere.
         size = self._norm(self._values) or self._norm(ours) or 1.0
         return self._norm(ours - self._values) / size
 

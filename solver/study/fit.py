@@ -201,6 +201,7 @@ def _check_rows(runs: ComparedRuns, measured: MeasuredLoop) -> None:
 def _explored(runs: ComparedRuns) -> tuple[Valley, list[LikelihoodProfile]]:
     """Valley of the nearest run that is found, and the profiles of all settings."""
     settings = np.eye(len(runs.names))
+    # A slight pull, so that the least squares have one solution.
     z = runs.solve(runs.coarse(), LOOSE * settings)
     # The last round seeks no lower place, so that it ends.
     for rest in reversed(range(ROUNDS)):
@@ -225,6 +226,7 @@ def _blind(valley: Valley, is_known: Flags) -> Array:
     moves = moves[np.abs(moves).max(axis=1) <= LIMIT * (1.0 + SILENT)]
     # A known setting moves a little with the rest, but is no part of a direction.
     moves[:, is_known] = 0.0
+    # The directions of the moves, the widest first.
     directions = np.linalg.svd(moves)[2]
     distances = np.abs(moves @ directions.T).max(axis=0)
     return np.asarray(directions[distances > LIMIT / 2.0])
@@ -323,6 +325,7 @@ def _combination(
     # A floor is bent, and no product of powers is the same all along it.
     along = moves @ powers
     below, above = profile.ends()
+    # What the bend of the floor adds widens the margin to both sides.
     below -= float(along.min())
     above += float(along.max())
     if max(below, above) >= LIMIT:
@@ -353,6 +356,7 @@ def _correlation(jacobian: Array, blind: Array, is_known: Flags) -> Array:
     is_known
         Whether a setting is known, shape (p,).
     """
+    # Directions without an end have no variance, and are taken out first.
     known = np.eye(len(is_known))
     if len(blind):
         known = null_space(blind)
@@ -372,6 +376,7 @@ def _echelon(rows: Array) -> Array:
     """
     # Pivoting finds the columns in which the rows differ most.
     pivots = np.sort(qr(rows, mode="r", pivoting=True)[1][: len(rows)])
+    # A product of few powers is read more easily than an orthonormal row.
     reduced = np.linalg.solve(rows[:, pivots], rows)
     tenths = np.round(reduced, 1)
     rounded = np.where(np.abs(reduced - tenths) < NEAR, tenths, np.round(reduced, 2))

@@ -50,6 +50,7 @@ def messages(fit: Fit) -> list[str]:
     sentences += _bounds(fit)
     sentences += _for_the_mesh(fit)
     nearest = fit.nearest
+    # A loop fitted under another path than the measured one says little.
     given = nearest.beside.figures(nearest.run.iterate)["distance_given"]
     sentences += [f"{message}." for message in nearest.beside.drive_messages(given)]
     if not nearest.run.solution.is_certified:
@@ -148,7 +149,7 @@ def _rows(fit: Fit) -> list[list[str]]:
     if len(fit.names) > 1:
         others = fit.names
     head = ["setting", "value", "standard error", "two of them: from", "to", "start"]
-    table = [[*head, *(f"with {name}" for name in others)]]
+    table = [head + [f"with {name}" for name in others]]
     for name, unit, start, value, error, lower, upper, *correlation in _entries(fit):
         shown = "not known alone"
         if math.isfinite(error):

@@ -11,10 +11,10 @@ from scipy.special import erfc
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
-from solver.discrete.probes import reaction, reaction_moment
+from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.discrete.structure import Loop, LoopFields
+from solver.discrete.structure import Loop
 from solver.latin import Solution
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.closed_forms.fluid_driven_slip import (
@@ -77,6 +77,8 @@ def loop(answer: Answer) -> Iterator[Number]:
         given = up
     unit = WORKS.get(loop.across[1])
     if turning_points(given) and unit:
+        # From the first peak on the path repeats; the first loading is no part of a
+        # cycle.
         start = int(np.argmax(given))
         known = _area(exact.up, exact.across, start)
         found = _area(up, across, start)
@@ -141,6 +143,7 @@ def pressed_parabola(answer: Answer) -> Iterator[Number]:
     lengths, distances = _points(answer, force)
     exact = _half_plane(answer, float(force.sum()))
     yield "largest pressure", "Pa", exact.peak, (force / lengths).max()
+    # Half the width is twice the root of the second moment of an elliptic pressure.
     second = float(force @ distances**2 / force.sum())
     yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
 
@@ -195,6 +198,7 @@ def _energy_of_shear(answer: Answer, first: int) -> Number:
     """Energy of a cycle of the shear, after its first peak."""
     pressing, shear = answer.support
     friction = answer.settings.friction
+    # Friction works on the slip of each instant, against it.
     slip = np.diff(answer.slip, axis=1)[:, first:]
     total = float(pressing[:, -1].sum())
     share = abs(float(shear[:, -1].sum())) / (friction * total)
@@ -301,6 +305,7 @@ def pile(answer: Answer) -> Iterator[Number]:
     """
     settings = answer.settings
     pressing, brick = _forces(answer)
+    # The top brick presses least, so it slides first.
     slides = settings.friction * (pressing + brick)
     count = settings.courses
     total = pressing + count * brick
@@ -354,6 +359,7 @@ def pushed_block(answer: Answer) -> Iterator[Number]:
     moment = reaction_moment(problem, "left").of(fields)
     # The foot is at the origin, at the left end of the support.
     around_foot = float(moment[-1] + problem.rubbing["support"].positions @ pressing)
+    # The block slides, so its support carries all that friction can.
     held = settings.friction * load
     yield "force at the pushed side", "N/m", held, float(push[-1])
     yield "pressing force", "N/m", load, float(pressing.sum())

@@ -80,6 +80,7 @@ class Claim:
         holds = self.low <= value <= self.high
         words = _written(value, quantity.unit)
         if quantity.when is not None:
+            # What a learner sees in the plots must not contradict the claim.
             seen = quantity.of(run, round(share * (run.problem.n_instants - 1)))
             if not self.low <= seen <= self.high:
                 holds = False
@@ -137,6 +138,7 @@ class Lesson:
         asked = ""
         for claim in self.checkpoints:
             values = claim.settings.values()
+            # A claim with another change is a point of another curve.
             others = [name for name in given if name != self.draw]
             same = all(values[name] == given[name] for name in others)
             if self.draw in values and same and asked in ("", claim.quantity.name):
@@ -188,9 +190,10 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
     with placed("settings"):
         settings = kind.checked(values["settings"])
     controls = values["controls"]
-    most = f"at most {MOST_CONTROLS} settings"
+    can = f"at most {MOST_CONTROLS} settings"
+    # A learner who turns several controls at once learns of none of them.
     is_few = len(controls) <= MOST_CONTROLS
-    require(is_few, "controls", controls, most, "a lesson is about one thing")
+    require(is_few, "controls", controls, can, "a lesson is about one thing")
     check_controls(controls, settings)
     for key in ("text", "explanation"):
         with placed(key):

@@ -27,8 +27,9 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Axes, Loop, LoopFields
+from solver.discrete.structure import Axes, Loop
 from solver.files.columns import KINDS, TableColumn, unit_doubt
 from solver.files.tables import Table
 from solver.settings.definitions import SettingError
@@ -123,6 +124,7 @@ def columns_of(
     time = table.find(columns, {"time"}, "s")
     rest = [column for column in columns if column is not time]
     both = []
+    # A column that is taken is not asked again: both could have the same word.
     for title, unit in axes:
         remedy = f"name that of {title}, {unit}"
         kinds = KINDS.get(unit, {unit})
@@ -231,6 +233,7 @@ class LoopComparison:
         if times is None:
             return np.ones(len(self.measured.force), dtype=bool)
         first, last = self._instants[[0, -1]]
+        # From rest at zero, also where the first instant comes later.
         counted = (times >= min(first, 0.0)) & (times <= last)
         if counted.sum() < FEWEST:
             ends = f"{times.min():g} s to {times.max():g} s"
@@ -289,6 +292,7 @@ class LoopComparison:
             given = force
             found = displacement
         instants = np.arange(len(self._instants))
+        # With times rows are matched by these; without, along the path.
         if self.measured.times is not None:
             times = self.measured.times[self.counted]
             places = np.interp(times, self._instants, instants)
@@ -305,6 +309,7 @@ class LoopComparison:
         """
         rows = branches(self._given)
         instants = branches(given)
+        # Falling branches are turned over, so that their values rise.
         directions = np.sign(np.diff(self._given[rows]))
         first = self._first_branch(given, instants, rows)
         places = np.empty(len(self._given))

@@ -166,6 +166,7 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
 
     Forms with an automatic search direction start nested where the scene allows it.
     """
+    # A start that the scene does not have is left out of the name, too.
     is_nested = settings.applies("start")
     name = "LATIN auto k"
     auto = {"search_direction": "auto"}
@@ -272,6 +273,7 @@ def times_at_sizes(settings: Settings, *, large: bool = False) -> list[TimesAtSi
         longest = LONGEST_OF_LARGE
     names = settings.GROWS
     measured: dict[tuple[int, int], TimesAtSize] = {}
+    # Rounding may give a size twice, which is measured once.
     for later, factor in product(FACTORS, factors):
         changes = {}
         for name in names:
@@ -302,6 +304,7 @@ def _measured(
             return TimesAtSize(*at, message="the incremental solver finds no solution")
     except NoReferenceError as refusal:
         return TimesAtSize(*at, message=str(refusal))
+    # This run warms up, so that its time does not count.
     ending = latin(form).status.ending
     message = ""
     if ending is not Ending.CONVERGED:
@@ -310,6 +313,7 @@ def _measured(
     of_incremental: list[float] = []
     is_quick = True
     while not of_latin or (len(of_latin) < REPEATS and is_quick):
+        # In turns, as the load of a machine changes within seconds.
         of_latin.append(seconds_of(partial(latin, form)))
         of_incremental.append(seconds_of(partial(incremental, form)))
         is_quick = of_latin[0] + of_incremental[0] < SLOW

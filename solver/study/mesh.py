@@ -59,6 +59,7 @@ class Refinement:
         """Differences from mesh to mesh; zero where all values are equal."""
         coarse, middle, fine = self.values
         size = max(abs(value) for value in self.values)
+        # A quantity that no mesh changes has neither order nor error.
         if max(self.values) - min(self.values) <= EQUAL * size:
             return 0.0, 0.0
         return middle - coarse, fine - middle
@@ -131,6 +132,7 @@ def _refined(settings: Settings, names: Sequence[str], factor: float) -> Setting
         first = 0
         if name == "instants":
             first = 1
+        # Steps count, of which there is one fewer than instants.
         size = factor * (settings.values()[name] - first) + first
         if size == int(size):
             size = int(size)

@@ -218,7 +218,9 @@ def write_page(
     templates.filters["kind"] = kind_of
     head = ""
     charts: Sequence[str] = []
-    render = renderer() if plots else None
+    render = None
+    if plots:
+        render = renderer()
     if render is not None:
         head, charts = render(plots)
     page = templates.get_template(template)

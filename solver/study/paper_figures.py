@@ -115,6 +115,7 @@ def _rates(runs: PaperRuns, window: tuple[int, int]) -> Finding:
     words = []
     for name, quantity in QUANTITIES.items():
         tails = np.log(_of_both(runs, name)[:, start - 1 : end])
+        # The slope of the logarithm is the rate, which no single iteration tells.
         multi, mono = np.polyfit(np.arange(end - start + 1), tails.T, 1)[0]
         ratio = float(multi / mono)
         ratios.append(ratio)
@@ -142,6 +143,7 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
         at_instant = force[..., instant] / lengths
         panels.append(_forces_at(time, positions, at_instant))
     early = int(np.abs(instants - INSTANTS[0]).argmin())
+    # Lengths turn sums over nodes into integrals: L2 of u, and of f per length.
     root = np.sqrt(lengths)
     return paper_figure(
         4,

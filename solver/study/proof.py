@@ -91,6 +91,7 @@ class KnownCase:
         """Query that opens the run on the page, after the page's address."""
         texts = {"scene": self.settings.scene}
         for name, value in self.settings.changed().items():
+            # Texts stand in an address as they are, all else as JSON.
             if isinstance(value, str):
                 texts[name] = value
             else:
@@ -122,6 +123,7 @@ def _rows_by(
 ) -> Iterator[Row]:
     """Rows of a case by a solver, which has come to its end or not."""
     for quantity, unit, known, ours in case.numbers(answer):
+        # Known numbers are never zero: such a case would be no test.
         deviation = float(abs(ours - known) / abs(known))
         verdict = FAILS
         if has_ended and deviation <= case.allowed:
@@ -171,7 +173,7 @@ def cases() -> list[KnownCase]:
                 part=group.get("part", CLOSED_FORMS),
             )
             known.append(case)
-    return [*known, *(known_case(case) for case in all_cases())]
+    return known + [known_case(case) for case in all_cases()]
 
 
 def holds(row: Row) -> bool:

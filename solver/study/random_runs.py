@@ -1,16 +1,15 @@
-"""Random runs of any scene: wide in mesh, cuts, loads, profiles and method, yet not senseless.
+"""Random runs of any scene: wide in mesh, cuts, loads, profiles and method.
 
-Every setting is drawn by its own definition, over the range that its slider shows, so
-that a new one is drawn as well. What has to fit together is drawn together: elements
-and their aspect, and loads, which are measured by what friction can carry, and lengths
-and stiffnesses of the law of friction, which are measured by how far bodies move and
-how stiff they are.
+Every setting is drawn by its own definition, over the range of its slider, so that a
+new setting is drawn as well. Settings that have to fit together are drawn together:
+elements and their aspect here, and loads and the friction law in
+`solver.study.random_loads`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,18 +25,27 @@ from solver.settings.definitions import (
     is_logarithmic,
 )
 from solver.settings.scene import Settings
+from solver.study.random_loads import OFTEN_LOADS, SELDOM, log_uniform, random_loads
 from solver.study.stability import NOT_WRONG, StabilityCase
 
 LARGEST_FIELD = 6_000
-"""Nodes times instants of a run, at most: a thousand iterations then stay within
-seconds; a matter of counts, not of clocks, so that a row is the same on every
-machine."""
+"""Largest number of nodes times instants of a run: a thousand iterations then take
+seconds. A limit on counts, not on time, gives the same rows on every machine."""
 MOST_INSTANTS = 101
-SIZES = "elements", "elements_up", "wires", "layers", "bricks", "courses"
-"""Numbers of a mesh, all sizes alike."""
+SIZES = (
+    "elements",
+    "elements_up",
+    "wires",
+    "layers",
+    "bricks",
+    "courses",
+)
+"""Numbers of a mesh; all decades are equally likely."""
 WIDE = {
-    **{"poisson": (0.0, 0.4999), "friction": (0.02, 2.0)},
-    **{"relaxation": (0.4, 1.0), "k_scale": (1e-3, 1e3)},
+    "poisson": (0.0, 0.4999),
+    "friction": (0.02, 2.0),
+    "relaxation": (0.4, 1.0),
+    "k_scale": (1e-3, 1e3),
 }
 """Ranges other than those of the sliders."""
 KEPT = {"max_iterations", "method", "opening", "opening_height"}
@@ -46,9 +54,10 @@ NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between
 instants."""
 CHANGED = 0.15
-"""How often a setting differs from its default."""
-SELDOM = 0.2
-"""How often there is a load that a scene has not by itself."""
+"""Share of the runs in which a setting differs from its default."""
+IDLE = 0.5
+"""The same share of settings that do nothing by default, and need another to be drawn.
+"""
 OFTEN = {
     "friction_law": 0.6,
     "strength": 0.8,
@@ -61,52 +70,33 @@ OFTEN = {
     "bending": 0.6,
     "linear_stage": 0.3,
     "cycles": 0.3,
-    "temperature": 0.4,
-    "settlement": 0.4,
+    **OFTEN_LOADS,
 }
-"""How often a setting is drawn that makes another problem, or has another method, of a
-scene: all kinds of ends, sides, laws and loads are to come together. Of a load, how
-often there is one."""
+"""The same share of settings that change the kind of problem, or the method: all kinds
+of ends, sides, laws and loads are to come together."""
 WITH_OPENING = 0.4
-"""How often a wall that has room for an opening has one."""
-SMALLEST = 0.03
-LARGEST = 10.0
-OF_BRICKS = 0.5
-"""Loads over what friction carries; of bricks, which hang on nothing, the largest."""
-PRESSING = "pressure", "normal_stress", "tension"
-"""Loads that are as large as what presses."""
-WITHOUT_PATH = (
-    "normal_stress",
-    "shear_stress",
-    "unit_weight",
-    "body_force_x",
-    "body_force_y",
-)
-"""Loads that do not go on over time."""
-SLIPS = 0.01, 10.0
-"""Slip at which friction is the last, over how far bodies move."""
-SPRINGS = 1.0, 1e4
-"""Stiffness of contacts over that of bodies."""
+"""Share of the walls with room for an opening that have one."""
 TRIALS = 10_000
+"""Largest number of draws until settings fit together."""
 
 
 def random_cases(
     scenes: Sequence[str], number: int, seed: int
 ) -> Iterator[StabilityCase]:
-    """Random runs of scenes, or of all, in turn; row n is of scene n modulo their number."""
+    """Random runs of scenes, or of all: row n is of scene n modulo their number."""
     names = list(scenes or CATALOGUE)
     for row in range(number):
         yield random_case(draw(names[row % len(names)], seed, row), seed, row)
 
 
 def random_case(settings: Settings, seed: int, row: int) -> StabilityCase:
-    """Case of settings that were drawn; right are errors of its force within its accuracy."""
+    """Case of drawn settings, whose answer is right within their accuracy."""
     return StabilityCase(
-        f"row {row} of seed {seed}",
-        settings.scene,
-        settings.changed(),
-        NOT_WRONG,
-        settings.method,
+        title=f"row {row} of seed {seed}",
+        scene=settings.scene,
+        values=settings.changed(),
+        expected=NOT_WRONG,
+        method=settings.method,
         error_force=settings.accuracy,
         error_displacement=math.inf,
     )
@@ -124,95 +114,80 @@ def draw(scene: str, seed: int, row: int) -> Settings:
             settings = kind.checked(_values(kind, generator))
             if settings.n_nodes * settings.n_instants > LARGEST_FIELD:
                 continue
-            # Without what does nothing beside the others, so that a row says what
-            # matters.
-            changed = settings.changed().items()
-            values = {name: value for name, value in changed if settings.applies(name)}
-            return kind.checked({"method": settings.method, **values})
+            # Settings that do nothing beside the others are left out of the row.
+            values: dict[str, Any] = {"method": settings.method}
+            for name, value in settings.changed().items():
+                if settings.applies(name):
+                    values[name] = value
+            return kind.checked(values)
         except SettingError as refusal:
             last = refusal
     raise last
 
 
-def log_uniform(generator: Generator, low: float, high: float) -> float:
-    """A random positive number, all its decades alike."""
-    return float(np.exp(generator.uniform(math.log(low), math.log(high))))
-
-
-def _count(generator: Generator, low: int, high: int) -> int:
-    return min(int(log_uniform(generator, low, high + 1)), high)
-
-
 def _values(kind: Any, generator: Generator) -> dict[str, Any]:
+    """Values of the settings of a random run, by name, in SI."""
+    values = _mesh(kind, generator)
+    values["method"] = "paper" if generator.random() < 0.35 else "fast"
+    _draw_alone(kind, values, generator)
+    _fit_together(kind, values, generator)
+    values |= random_loads(kind, values, generator)
+    # A wall whose top moves before anything presses has no determinate positions.
+    if kind.scene != "wall":
+        values |= _paths(kind, values, generator)
+    return values
+
+
+def _mesh(kind: Any, generator: Generator) -> dict[str, Any]:
+    """Random numbers of instants, elements and substructures, by name."""
     definitions = kind.definitions()
+    # Most runs have many instants; some have few, down to a single one.
+    fewest = MOST_INSTANTS // 3
     if generator.random() < 0.3:
         fewest = 1
-    else:
-        fewest = MOST_INSTANTS // 3
     values: dict[str, Any] = {"instants": _count(generator, fewest, MOST_INSTANTS)}
     for name in SIZES:
         if name in definitions:
             values[name] = _count(generator, 2, definitions[name].softbounds[1])
     for part, whole in kind.PARTS.items():
         if part != "broken":
-            most = min(values[whole], definitions[part].softbounds[1])
-            values[part] = _count(generator, 1, most)
-    values["method"] = "paper" if generator.random() < 0.35 else "fast"
-    is_mixed = generator.random() < 0.5
-    rest = kind()
-    for name, definition in definitions.items():
-        is_method = about(definition).group == "Method" and name != "linear_stage"
-        # What does nothing by itself is taken back, unless another setting is drawn to
-        # go with it.
-        often = OFTEN.get(name, CHANGED if rest.applies(name) else 0.5)
-        if name in values or name in KEPT or (is_method and not is_mixed):
-            continue
-        if generator.random() < often:
-            values[name] = _drawn(name, definition, generator)
-    _fit_together(kind, values, generator)
-    values |= _loads(kind, values, generator)
-    # Where the top of a wall is moved before anything presses, where bricks lie is not
-    # determinate.
-    if kind.scene != "wall":
-        settings = kind.checked(values)
-        for path in settings.paths:
-            if generator.random() < CHANGED:
-                size = settings.size_of(path)
-                lowest = definitions[path].bounds[1][0]
-                least = -1.0 if lowest < 0.0 else 0.0
-                turns = size * generator.uniform(
-                    least, 1.0, int(generator.integers(1, 8))
-                )
-                values[path] = _table(turns, size, settings.duration, generator)
+            largest = min(values[whole], definitions[part].softbounds[1])
+            values[part] = _count(generator, 1, largest)
     return values
 
 
+def _count(generator: Generator, low: int, high: int) -> int:
+    """Random whole number; all decades are equally likely."""
+    return min(int(log_uniform(generator, low, high + 1)), high)
+
+
+def _draw_alone(kind: Any, values: dict[str, Any], generator: Generator) -> None:
+    """Add the settings that are drawn by their definitions alone."""
+    is_mixed = generator.random() < 0.5
+    default = kind()
+    for name, definition in kind.definitions().items():
+        # Half of the runs have a method as it is, the others a mixture of its parts.
+        is_method = about(definition).group == "Method" and name != "linear_stage"
+        if name in values or name in KEPT or (is_method and not is_mixed):
+            continue
+        usual = CHANGED
+        if not default.applies(name):
+            usual = IDLE
+        if generator.random() < OFTEN.get(name, usual):
+            values[name] = _drawn(name, definition, generator)
+
+
 def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> None:
-    """Change what was drawn to what fits the mesh."""
-    definitions = kind.definitions()
+    """Change the values drawn so far to values that fit the mesh."""
     if "friction_factors" in values:
-        some = {
-            n: values[n] for n in ("layers", "wires", "construction") if n in values
-        }
-        each = kind.checked(some).points("friction_factors")
-        values["friction_factors"] = [
-            [n, log_uniform(generator, 0.1, 10.0)] for n, _ in each
-        ]
+        values["friction_factors"] = _friction_factors(kind, values, generator)
     if "layer_lengths" in values and generator.random() < 0.5:
         shares = [1.0, *generator.uniform(0.1, 1.0, values["layers"] - 1).tolist()]
-        values["layer_lengths"] = [
-            [n, s] for n, s in enumerate(generator.permutation(shares), 1)
-        ]
-    if (
-        "elements_up" in values
-    ):  # elements up to a hundred times as long as high, or as wide
-        length = values.setdefault("length", definitions["length"].default)
-        power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
-        aspect = 10.0 ** generator.uniform(-power, power)
-        values[kind.across] = (
-            length * values["elements_up"] / (values["elements"] * aspect)
-        )
-    if "opening" in definitions and generator.random() < WITH_OPENING:
+        lengths = enumerate(generator.permutation(shares), start=1)
+        values["layer_lengths"] = [list(row) for row in lengths]
+    if "elements_up" in values:
+        _fit_aspect(kind, values, generator)
+    if "opening" in kind.definitions() and generator.random() < WITH_OPENING:
         room = values["bricks"] - 2, values["courses"] - 1
         if min(room) > 0:
             sizes = generator.integers(1, np.add(room, 1)).tolist()
@@ -222,145 +197,46 @@ def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> No
         values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // 4, 1))
 
 
-def _loads(
-    kind: Any, values: Mapping[str, Any], generator: Generator
-) -> dict[str, Any]:
-    """Sizes of all that acts on a scene, by the unit of each and what friction carries."""
-    definitions = kind.definitions()
-    rest = kind()
-    given = {**{name: each.default for name, each in definitions.items()}, **values}
-    scales = _scales(kind, given, generator)
-    largest = LARGEST
-    mu = given["friction"]
-    if "bricks" in given:
-        tips = (
-            0.5
-            * given["length"]
-            * given["bricks"]
-            / (given["height"] * given["courses"])
-        )
-        largest = OF_BRICKS
-        mu = min(mu, tips)
-    sizes: dict[str, Any] = {}
-    for name, definition in definitions.items():
-        record = about(definition)
-        is_load = (record.path or name in WITHOUT_PATH) and record.unit in scales
-        is_seldom = not definition.default and rest.applies(name)
-        if not is_load or (is_seldom and generator.random() > OFTEN.get(name, SELDOM)):
-            continue
-        share = log_uniform(generator, SMALLEST, largest)
-        factor = mu * (share if generator.random() < 0.7 else -share)
-        if name in PRESSING:
-            factor = 1.0
-        elif name in ("overpressure", "unit_weight"):
-            factor = float(
-                generator.uniform(0.0, 1.0 if name == "overpressure" else 0.1)
-            )
-        elif "_normal_" in name or name == "body_force_y":
-            factor = -1.0 if generator.random() < 0.9 else 1.0
-        sizes[name] = factor * scales[record.unit]
-    for name in ("cohesion", "friction_cap"):
-        pressing = sizes.get("pressure", sizes.get("normal_stress"))
-        pressing = pressing or scales.get(about(definitions[name]).unit)
-        if name in values and pressing:
-            sizes[name] = (
-                given["friction"] * pressing * log_uniform(generator, 0.01, 10.0)
-            )
-    sizes |= _law_of_friction(kind, given, scales["m"], values, generator)
-    if "radius" in definitions:
-        flat = given["length"] ** 2 / (8.0 * scales["m"])
-        sizes["radius"] = flat * 10.0 ** generator.uniform(-1.5, 1.5)
-    return sizes
+def _friction_factors(
+    kind: Any, values: dict[str, Any], generator: Generator
+) -> list[list[float]]:
+    """Random factor on mu for every interface of layers or wires, by its number."""
+    names = ("layers", "wires", "construction")
+    numbers = {name: values[name] for name in names if name in values}
+    rows = []
+    for number, _ in kind.checked(numbers).points("friction_factors"):
+        rows.append([number, log_uniform(generator, 0.1, 10.0)])
+    return rows
 
 
-def _law_of_friction(
-    kind: Any,
-    given: Mapping[str, Any],
-    moved: float,
-    values: Mapping[str, Any],
-    generator: Generator,
-) -> dict[str, Any]:
-    """Lengths and stiffnesses of what was drawn of the law of friction.
-
-    Slips are measured by how far bodies move, m; springs by the stiffness of bodies.
-    """
-    sizes: dict[str, Any] = {}
-    if "slip_length" in values:
-        sizes["slip_length"] = moved * log_uniform(generator, *SLIPS)
-    if isinstance(table := values.get("strength"), list):
-        last = moved * log_uniform(generator, *SLIPS)
-        sizes["strength"] = [
-            [last * slip / table[-1][0], factor] for slip, factor in table
-        ]
-    stiffness = _stiffness(kind, given)
-    for name in ("tangential_stiffness", "normal_stiffness"):
-        if name in values:
-            sizes[name] = stiffness * log_uniform(generator, *SPRINGS)
-    return sizes
+def _fit_aspect(kind: Any, values: dict[str, Any], generator: Generator) -> None:
+    """Choose the size across such that elements are slender by no more than 100."""
+    length = values.setdefault("length", kind.definitions()["length"].default)
+    power = 0.7
+    if generator.random() < 2.0 * CHANGED:
+        power = 2.0
+    aspect = 10.0 ** generator.uniform(-power, power)
+    across = length * values["elements_up"] / (values["elements"] * aspect)
+    values[kind.across] = across
 
 
-def _stiffness(kind: Any, given: Mapping[str, Any]) -> float:
-    """Stiffness of a body, per length along a rod, N/m^2, or per area, N/m^3."""
-    length: float = given["length"]
-    if "construction" in given:
-        return float(_section(kind, given).stiffness) / length**2
-    if "section" in given:
-        return float(given["young"] * given["section"]) / length**2
-    return float(given["young"]) / length
-
-
-def _section(kind: Any, given: Mapping[str, Any]) -> Any:
-    """Section of a rope."""
-    names = {"construction", "layers"} & given.keys()
-    return kind.checked({name: given[name] for name in names}).section
-
-
-def _scales(
-    kind: Any, given: Mapping[str, Any], generator: Generator
-) -> dict[str, float]:
-    """What presses on a scene, how far that moves it, and strains it as much, by unit."""
-    if "construction" in given:
-        section = _section(kind, given)
-        strain = 10.0 ** generator.uniform(-4.0, -2.0)
-        inclined = abs(math.sin(section.layers[-1].lay))
-        radius = section.radii[-1]
-        tension = section.stiffness * strain
-        return {
-            "N": tension,
-            "1/m": strain * inclined / radius,
-            "N/m": tension * inclined**2 / radius,
-            "m": strain * radius,
-        }
-    length = given["length"]
-    if "section" in given:
-        pressed = given["pressure"] * length
-        strain = pressed / (given["young"] * given["section"])
-        warm = strain / given.get("expansion", math.inf)
-        return {"N": pressed, "N/m": given["pressure"], "m": strain * length, "K": warm}
-    if "slack" in given:
-        weight = given["weight"]
-        spring = given["spring"]
-        return {"Pa": weight / length, "m": weight / spring}
-    height = given[kind.across] * given.get("layers", 1) * given.get("courses", 1)
-    strain = 10.0 ** generator.uniform(-7.0 if "layers" in given else -6.0, -3.0)
-    pressure = strain * given["young"]
-    # What bends slender bodies, as far as a force at their end does.
-    if "layers" in given:
-        bent = 8.0 / 3.0 * (length / height) ** 3
-    else:
-        bent = 1.0
-    return {
-        **{"Pa": pressure, "m": bent * strain * height, "N/m": pressure * height / 1.5},
-        **{
-            "N·m/m": pressure * length * height / 3.0,
-            "N/m^3": pressure / height,
-            "°": 20.0,
-        },
-    }
+def _paths(kind: Any, values: dict[str, Any], generator: Generator) -> dict[str, Any]:
+    """Random tables of some load paths, by name."""
+    settings = kind.checked(values)
+    tables = {}
+    for path in settings.paths:
+        if generator.random() < CHANGED:
+            size = settings.size_of(path)
+            lowest = kind.definitions()[path].bounds[1][0]
+            smallest = -1.0 if lowest < 0.0 else 0.0
+            count = int(generator.integers(1, 8))
+            turns = size * generator.uniform(smallest, 1.0, count)
+            tables[path] = _table(turns, size, settings.duration, generator)
+    return tables
 
 
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
-    """A value drawn by the definition alone."""
+    """Random value of a setting by its definition alone."""
     if isinstance(definition, CurveParameter):
         make = TABLES.get(definition.abscissa)
         if make and generator.random() < 0.4:
@@ -379,30 +255,24 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
 
 
 def _construction(_name: str, generator: Generator) -> list[list[float]]:
-    """A core, and a layer or two of wires around it with room to spare."""
+    """Random construction of a rope: a core, and one or two layers around it."""
     rows = [[1, float(generator.uniform(2e-3, 8e-3)), 0.0, 2e11]]
     around = rows[0][1]
     for _ in range(int(generator.integers(1, 3))):
         diameter = generator.uniform(0.3, 1.0) * rows[-1][1]
         lay = generator.uniform(5.0, 30.0)
         room = np.pi * (around + diameter) * np.cos(np.radians(lay))
-        most = max(int(0.95 * room / diameter), 1)
-        wires = int(generator.integers(1, most + 1))
-        sign = generator.choice([-1.0, 1.0])
-        rows.append(
-            [
-                wires,
-                float(diameter),
-                float(sign * lay),
-                log_uniform(generator, 1e9, 1e12),
-            ]
-        )
+        fitting = max(int(0.95 * room / diameter), 1)
+        wires = int(generator.integers(1, fitting + 1))
+        angle = float(generator.choice([-1.0, 1.0]) * lay)
+        modulus = log_uniform(generator, 1e9, 1e12)
+        rows.append([wires, float(diameter), angle, modulus])
         around += 2.0 * diameter
     return rows
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:
-    """Factors along a body, now and then zero but for a section."""
+    """Random factors along a body; some are zero, but not those of a section."""
     factors = 10.0 ** generator.uniform(-1.0, 1.0, int(generator.integers(2, 7)))
     if name != "section_profile":
         factors[generator.random(len(factors)) < SELDOM] = 0.0
@@ -410,22 +280,25 @@ def _profile(name: str, generator: Generator) -> list[list[float]]:
 
 
 def _strength(_name: str, generator: Generator) -> list[list[float]]:
-    """Factors over slip, from 1 on, up and down."""
-    slips = np.cumsum(
-        10.0 ** generator.uniform(-6.0, -3.0, int(generator.integers(1, 5)))
-    )
+    """Random factors on friction over slip, from 1 on."""
+    count = int(generator.integers(1, 5))
+    slips = np.cumsum(10.0 ** generator.uniform(-6.0, -3.0, count))
     factors = generator.uniform(0.0, 2.0, len(slips))
     return [[0.0, 1.0], *np.column_stack([slips, factors]).tolist()]
 
 
 TABLES = {"slip": _strength, "position": _profile, "wires": _construction}
-"""Of curves over what."""
+"""Functions that draw a table, by its abscissa."""
 
 
 def _table(
     values: Array, peak: float, extent: float, generator: Generator
 ) -> list[list[float]]:
-    """Values at random places; every third time with a narrow peak among them."""
+    """Table of values, (n_values,), at random positions from 0 to an extent.
+
+    Every third table has a narrow peak, too: it shows whether instants, or points, miss
+    what happens between them.
+    """
     where = np.sort(generator.uniform(0.0, extent, len(values)))
     if generator.random() < 1.0 / 3.0:
         half = 0.5 * extent * log_uniform(generator, *NARROW)
@@ -438,6 +311,5 @@ def _table(
         order = np.argsort(where)
         where = where[order]
         values = values[order]
-    return [
-        [float(place), float(value)] for place, value in zip(where, values, strict=True)
-    ]
+    rows: list[list[float]] = np.column_stack([where, values]).tolist()
+    return rows

@@ -68,6 +68,7 @@ def table(curves: Sequence[ErrorCurve]) -> list[Row]:
     incremental solver.
     """
     rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
+    # Who is first is decided at each level, not in all.
     times = np.array([_times_to_levels(curve) for curve in curves])
     for curve, is_first in zip(curves, times == times.min(axis=0), strict=True):
         rows.append(_row(curve, is_first))
@@ -173,6 +174,7 @@ def _error_panel(
     *latin, incremental = curves
     lines = []
     for hue, curve in enumerate(latin, start=1):
+        # An error of zero has no place on a logarithmic axis.
         y = np.maximum(errors[hue - 1], SMALLEST)
         lines.append(PanelCurve(curve.method, curve.seconds, y, hue))
     # The solver that is the reference itself is a vertical line.

@@ -40,6 +40,7 @@ def use_of(table: Table, axes: Axes) -> Use:
     with suppress(RefusedError):
         columns_of(table, axes)
         is_loop = True
+    # A position beside a force may be that of a testing machine.
     if has_position and (has_friction or not is_loop):
         return Use.RESULTS
     if has_position and not has_displacement and not _times_rise(table):
@@ -60,5 +61,7 @@ def brought_in(
 
 def _times_rise(table: Table) -> bool:
     """Check whether rows are in the order of their times, if the table has times."""
-    times = [column.place for column in table.columns if "time" in column.quantities[0]]
+    times = [
+        column.number for column in table.columns if "time" in column.quantities[0]
+    ]
     return len(times) != 1 or bool(np.all(np.diff(table.numbers[times[0]]) > 0.0))

@@ -130,6 +130,7 @@ def case_from_file(path: Path) -> Case:
             )
         settings = kind.checked(values)
         with placed("case"):
+            # A case without a picture of its own has that of its scene.
             entries = {"picture": settings.icon._asdict(), **entries}
             tables = dict.fromkeys(("picture", "flag", "surroundings"), dict)
             fields = fields_in(Case, entries, quantity=str, **tables)

@@ -98,6 +98,7 @@ class ProfileSide:
 
         Between two places the root of the rise is taken as straight.
         """
+        # The last place below the level: a dent before it does not end the margin.
         inside = int(np.flatnonzero(self.rises <= level)[-1])
         if inside == len(self.rises) - 1:
             if self.is_at_bound:
@@ -287,6 +288,7 @@ class Valley:
             ahead = places[-1] + course * (distance - last)
             place = self._place(along, distance, ahead, places[-1])
             rise = self._rise(place)
+            # The floor bends: the next place is sought along the last step.
             course = (place - places[-1]) / (distance - last)
             step = distance * self._growth(rise)
             distances.append(distance)

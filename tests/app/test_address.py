@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from app.browser import Browser
-from app.files.link import (
+from app.lessons.catalogue import CASES, settings_of
+from app.link import (
     LESSONS,
     LONGEST,
     Link,
@@ -20,7 +21,6 @@ from app.files.link import (
     show,
     shown_by,
 )
-from app.lessons.catalogue import CASES, settings_of
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache

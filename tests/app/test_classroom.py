@@ -72,7 +72,7 @@ class Seat:
 
 
 def tick(*seats: Seat) -> None:
-    """Let all documents do what is due, until nothing is."""
+    """Run all pending callbacks of all documents."""
     while any(seat.document.due for seat in seats):
         for seat in seats:
             due = seat.document.due
@@ -82,7 +82,7 @@ def tick(*seats: Seat) -> None:
 
 
 def show(seat: Seat, frame: Frame) -> Frame:
-    """Have the leader's worker send a frame of its present run."""
+    """Send a frame of the present run from the leader's worker."""
     shown = replace(frame, run=replace(frame.run, number=seat.state.number))
     seat.state.history = History()
     seat.state.history.add(shown)
@@ -153,7 +153,10 @@ def test_who_comes_late_has_the_present_frame_at_once(
 def test_a_page_is_made_with_what_its_class_shows(leader: Seat, leads_on: bool) -> None:
     leader.state.change(peak=600.0)
     leader.state.lesson = LESSON
-    address = leader.state.room if leads_on else code_of(leader)
+    if leads_on:
+        address = leader.state.room
+    else:
+        address = code_of(leader)
     made = PageState(default_settings("rope"), room=address)
     begin_with_class(made)
     assert made.settings is leader.state.settings

@@ -159,8 +159,8 @@ def test_advice_on_a_run_has_the_names_of_the_page_and_keeps_its_other_words() -
     )
     assert advice_in_titles(default_settings("bar"), advice) == (
         "Friction falls with slip. Raise Most iterations, or lower Last friction over "
-        "first or Friction coefficient μ, or try a Factor on k ten times smaller, where "
-        "friction falls."
+        "first or Friction coefficient μ, or try a Factor on k ten times smaller, "
+        "where friction falls."
     )
 
 

@@ -7,22 +7,24 @@ from app.controls import SettingControl
 from app.state import PageState, default_settings
 
 
-def test_a_value_that_a_field_showed_on_the_way_changes_nothing_later() -> None:
+def changed_twice() -> tuple[PageState, SettingControl]:
+    """Page whose peak load was 1000 N and is 1100 N, and the control of the peak."""
     state = PageState(default_settings("bar"))
     control = SettingControl("peak", state)
     for peak in (1000.0, 1100.0):
         state.change(peak=peak)
         control.update()
+    return state, control
+
+
+def test_a_value_that_a_field_showed_on_the_way_changes_nothing_later() -> None:
+    state, control = changed_twice()
     control.field.value = "1000"
     assert state.settings.values()["peak"] == 1100.0
 
 
 def test_later_the_same_value_is_typed_by_hand(monkeypatch) -> None:
     monkeypatch.setattr(app.browser, "LASTS", 0.0)
-    state = PageState(default_settings("bar"))
-    control = SettingControl("peak", state)
-    for peak in (1000.0, 1100.0):
-        state.change(peak=peak)
-        control.update()
+    state, control = changed_twice()
     control.field.value = "1000"
     assert state.settings.values()["peak"] == 1000.0

@@ -41,6 +41,14 @@ def opener(state: PageState, text: str, name: str = "rig.csv") -> TableOpener:
     return made
 
 
+def finished_runner(settings: Settings) -> Runner:
+    """Runner of a worker at the end of its run."""
+    runner = Runner(Start(1, settings, float("inf")), ReferenceCache(), lambda: False)
+    while runner.status is None:
+        runner.advance()
+    return runner
+
+
 def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
     state = PageState(bar())
     made = opener(state, "Weg [mm],Kraft [kN]\n0,0\n1,0.5\n2,0.7\n1,0.1\n0,-0.4\n")
@@ -67,9 +75,7 @@ def test_a_loop_is_read_by_its_head_and_as_the_dialog_says() -> None:
 
 def test_a_loop_without_units_is_doubted_beside_the_run_that_is_shown() -> None:
     settings = bar(start="nested", finish="at-once")
-    runner = Runner(Start(1, settings, float("inf")), ReferenceCache(), lambda: False)
-    while runner.status is None:
-        runner.advance()
+    runner = finished_runner(settings)
     state = PageState(settings)
     state.frame = runner.frame(Needs())
     loop = loop_of_a_run(settings)
@@ -109,9 +115,7 @@ def test_a_table_of_time_and_load_is_a_path_without_a_dialog() -> None:
 
 def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
     settings = bar(start="nested", finish="at-once")
-    runner = Runner(Start(1, settings, float("inf")), ReferenceCache(), lambda: False)
-    while runner.status is None:
-        runner.advance()
+    runner = finished_runner(settings)
     loop = loop_of_a_run(settings)
     off = MeasuredLoop(
         loop.displacement + 0.1 * np.ptp(loop.displacement),

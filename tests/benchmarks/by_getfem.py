@@ -58,8 +58,9 @@ def interpreter() -> str | None:
 
 
 def by_getfem(settings: Any, python: str) -> BlockFields:
-    """Have it solve a block of bilinear elements on a support,
-    moved at its top alone.
+    """Solution of GetFEM of a block of bilinear elements on a support.
+
+    The block is moved at its top alone.
     """
     body = settings.structure()
     assert body.support is not None

@@ -48,12 +48,12 @@ class Traction:
         return float(np.linalg.norm(self.friction))
 
     def error(self, argument: Array) -> float:
-        """Give the relative error of a clipped argument."""
+        """Relative error of a clipped argument."""
         clipped = np.clip(argument, -self.bound, self.bound)
         return float(np.linalg.norm(clipped - self.friction)) / self.size
 
     def losses(self, rank: int) -> list[Loss]:
-        """Give both distances as functions of the factors, with their gradients."""
+        """Both distances as functions of the factors, with their gradients."""
         reached = self.bound * (1.0 - AT_BOUND)
         low = np.where(self.friction <= -reached, -np.inf, self.friction)
         high = np.where(self.friction >= reached, np.inf, self.friction)
@@ -110,16 +110,14 @@ def fitted(field: Traction, rank: int, start: Array) -> Array:
 
 
 def best_products(field: Array) -> Array:
-    """Give the error of the best approximation of every rank from 0 on."""
+    """Error of the best approximation of every rank from 0 on."""
     squares = np.linalg.svd(field, compute_uv=False) ** 2
     left = np.append(np.cumsum(squares[::-1])[::-1], 0.0)
     return np.sqrt(left / left[0])
 
 
 def cattaneo() -> Traction:
-    """Give the traction of Cattaneo and Mindlin,
-    on a ramp to 0.95 of full slip, over mu p0.
-    """
+    """Traction of Cattaneo and Mindlin, on a ramp to 0.95 of full slip, over mu p0."""
     x = np.linspace(-1.0, 1.0, 402)[1:-1, None]
     stuck = 1.0 - np.linspace(0.0, 0.95, 101) - x**2
     bound = np.broadcast_to(np.sqrt(1.0 - x**2), stuck.shape)
@@ -127,7 +125,7 @@ def cattaneo() -> Traction:
 
 
 def solved(scene: str, **changes: str) -> Traction:
-    """Give the friction on all interfaces of a scene, and mu N."""
+    """Friction on all interfaces of a scene, and mu N."""
     run = finished_run(
         scene_settings(scene).checked(changes), errors=False, indicators=False
     )

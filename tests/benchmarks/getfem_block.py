@@ -103,7 +103,7 @@ def _elastic(asked: dict[str, Any]) -> tuple[Any, Any, Any]:
 
 
 def _touching(model: Any, displaced: Any, lowest: Any, friction: float) -> None:
-    """Let the lowest nodes touch, stick and slip."""
+    """Add contact and friction at the lowest nodes."""
     import getfem as gf
 
     count = len(lowest)

@@ -178,9 +178,7 @@ class Overhead:
 class _Unproven(ErrorEstimate):
     """Errors that are estimated without a status step."""
 
-    def can_be_proven(
-        self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
-    ) -> bool:
+    def can_be_proven(self, iterate: Iterate) -> bool:
         return False
 
 

@@ -142,7 +142,7 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
 
 
 def _bound_of(problem: Problem) -> Array:
-    """Largest friction force of every degree of freedom, (n_dofs, n_instants), scaled."""
+    """Largest friction of all degrees of freedom, (n_dofs, n_instants), scaled."""
     bound = np.zeros((problem.n_dofs, problem.n_instants))
     for law in problem.rubbing.values():
         np.add.at(bound, problem.row_dofs[law.tangent.above], law.tangential.bound)

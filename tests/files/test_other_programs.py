@@ -56,13 +56,11 @@ def table(quantity: str, x: Any, t: Any, values: Any) -> str:
 
 
 def own_friction(scene: str) -> tuple[Any, Any, Any]:
-    """Give our force per length or area where it is determinate,
-    with its points and instants.
-    """
+    """Determinate friction per length or area, with its points and instants."""
     _, problem, reference = solved(scene)
     (name, *_) = problem.rubbing
     law = next(iter(problem.rubbing.values()))
-    places = problem.contact_slices[name][-1]
+    places = problem.rubbing.forces[name][-1]
     sizes = law.by_point(law.weights)[:, None]
     known = determinate_forces(problem)[places].all(axis=1)
     force = reference.contact_force[places] / sizes

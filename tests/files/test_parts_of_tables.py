@@ -27,13 +27,8 @@ from solver.files.columns import (
 )
 from solver.files.disk import LARGEST, check_place, read_bytes, whole_file, write
 from solver.files.numerals import decimal_signs, is_gap, is_numeral, number
-from solver.files.table_lines import (
-    block_of,
-    fitted,
-    headed,
-    lines_of_text,
-    text_of,
-)
+from solver.files.table_blocks import block_of, fitted, headed
+from solver.files.table_lines import lines_of_text, text_of
 from solver.files.workbooks import UNPACKED, is_archive, lines_of_workbook
 from solver.settings.definitions import SettingError
 
@@ -165,7 +160,7 @@ def test_what_measures_something_else_has_no_size() -> None:
 )
 def test_a_head_has_one_name_and_unit_however_they_are_set_apart(head: str) -> None:
     column = column_of(2, 1, head)
-    assert (column.place, column.name, column.unit) == (2, "force", "kN")
+    assert (column.number, column.name, column.unit) == (2, "force", "kN")
     assert "force" in column.quantities[0]
 
 

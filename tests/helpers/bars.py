@@ -38,8 +38,9 @@ def relative(found, expected):
 
 
 def boundary_of(problem, reference):
-    """Give W and F of a reference on every row,
-    scaled: what elasticity leaves goes to the ends.
+    """W and F of a reference on every row, scaled.
+
+    The forces that elasticity leaves over are those of the ends.
     """
     law = problem.friction
     displacement = reference.displacement / problem.scales.displacement

@@ -12,6 +12,16 @@ from solver.study.sweep.plan import Plan, Row, plan_of
 from solver.study.sweep.run import sweep
 
 TINY = {"elements": 20, "instants": 21, "substructures": 2}
+"""Settings of a bar that runs in no time."""
+
+
+def sweep_of_bars(peaks: int) -> list[str]:
+    """Arguments of the command that runs tiny bars over a number of peak loads."""
+    arguments = ["sweep", "bar", "--vary", f"peak=300:900:{peaks}"]
+    arguments += ["--of", "iterations"]
+    for name, value in TINY.items():
+        arguments += ["--set", f"{name}={value}"]
+    return arguments
 
 
 class Here(ThreadPoolExecutor):

@@ -25,9 +25,7 @@ PATHS = ["ramp", "triangle", "cycle", "sine", "decaying", "random"]
 
 
 def balanced(substructures, **values):
-    """Give options whose friction k is 100 ES/L^2 per
-    length for any number of substructures.
-    """
+    """Options with a friction k of 100 ES/L^2 per length, however the bar is cut."""
     factor = 100.0 / substructures**2
     return options(substructures=substructures, k_scale=factor, **values)
 

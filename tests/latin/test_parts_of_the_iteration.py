@@ -18,6 +18,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin import (
     PGD,
+    Answer,
     Checkpoint,
     Full,
     Iterate,
@@ -30,8 +31,9 @@ from solver.latin import (
 from solver.latin.anderson import AndersonState
 from solver.latin.end.certified import (
     balance_of_rows,
-    finished,
+    certified_answer,
     known_forces,
+    own_answer,
     row_forces,
 )
 from solver.latin.end.status_step import Certificate, states_of, status_step
@@ -297,7 +299,7 @@ def test_the_indicator_has_no_scale_and_is_zero_where_the_stages_agree(
 def test_a_certified_solution_violates_no_law_and_what_is_beside_it_does(
     scene: str,
 ) -> None:
-    iterate = finished(
+    iterate = certified_answer(
         scene_problem(scene), scene_problem(scene).direction, certificate(scene)
     )
     of = iterate.problem
@@ -316,7 +318,7 @@ def test_statuses_of_a_certified_solution_are_those_of_the_reference(
 ) -> None:
     found = certificate(scene)
     of = scene_problem(scene)
-    iterate = finished(of, of.direction, found)
+    iterate = certified_answer(of, of.direction, found)
     status = contact_status(iterate, 0.0)
     wanted = found.solution.status
     assert len(np.unique(wanted)) > 1
@@ -358,7 +360,7 @@ def test_a_certified_solution_is_a_fixed_point_of_the_method_for_every_k(
     scene: str, scale: float
 ) -> None:
     of = scene_problem(scene)
-    iterate = finished(of, scale * of.direction, certificate(scene))
+    iterate = certified_answer(of, scale * of.direction, certificate(scene))
     assert close(iterate.local_displacement, iterate.boundary_displacement, 1e-12)
     method = Latin(direction=Paper(scale), acceleration=None)
     after = next(iterations(of, method, iterate.checkpoint))
@@ -366,9 +368,35 @@ def test_a_certified_solution_is_a_fixed_point_of_the_method_for_every_k(
     assert close(after.outgoing, iterate.outgoing, 1e-9)
     assert close(after.contact_force, certificate(scene).solution.contact_force, 1e-8)
     assert (iterate.number, after.number) == (1, 2)
-    again = finished(of, scale * of.direction, certificate(scene), after)
+    again = certified_answer(of, scale * of.direction, certificate(scene), after)
     assert again.number == 3
     assert np.array_equal(again.outgoing, iterate.outgoing)
+
+
+@pytest.mark.parametrize("is_beside", [False, True])
+def test_an_answer_goes_on_in_full_fields_and_counts_unless_it_stands_beside(
+    is_beside: bool,
+) -> None:
+    of = scene_problem("block")
+    last = next(islice(iterations(of, Latin(linear=PGD(modes=3))), 4, None))
+    answer = certified_answer(
+        of, last.k, certificate("block"), last, is_beside=is_beside
+    )
+    assert last.checkpoint.bases == last.bases == answer.bases != ()
+    assert answer.checkpoint.bases == ()
+    assert answer.iterations == last.iterations + (not is_beside)
+    assert not isinstance(last, Answer)
+    assert answer.boundary_force is answer.boundary_local_force
+
+
+def test_an_iterate_that_is_a_solution_keeps_its_fields_as_the_answer() -> None:
+    last = iterate_of(scene_problem("block"))
+    answer = own_answer(last, 1e-12, is_beside=False)
+    assert answer.number == last.number + 1
+    assert answer.residual == 1e-12
+    assert np.array_equal(answer.boundary_force, last.boundary_force)
+    assert np.array_equal(answer.contact_force, last.contact_force)
+    assert answer.indicator == last.indicator
 
 
 def opposite_on_cuts(of: Problem) -> Iterator[np.ndarray]:

@@ -40,7 +40,7 @@ def targets_and_reaches(draw, varying=True):
 
 
 def dominating(target):
-    """Give the place in time of the largest size that any point of the only row has."""
+    """Instant of the largest size that any point of the only row has."""
     return int(np.abs(target[0]).argmax())
 
 

@@ -56,9 +56,7 @@ def test_the_opposite_load_has_the_opposite_answer(path: list[float]) -> None:
 
 
 def test_a_cycle_of_a_quadratic_curve_dissipates_what_its_area_says() -> None:
-    """Of u = F + F²/4 the branches are s + s²/8,
-    which are off their chord by (2 - s) s / 8.
-    """
+    """Branches of u = F + F²/4 are s + s²/8, off their chord by (2 - s) s / 8."""
     top = 1.0
     load = np.concatenate(
         [

@@ -38,9 +38,7 @@ FREE = MESH | {
 
 
 def path(swing: float, first: float = 0.0) -> tuple[tuple[float, float], ...]:
-    """Give cycles of a load after a push or none,
-    so long that all turns are instants.
-    """
+    """Cycles of a load after a push or none, whose turns are instants."""
     turns = ((3.0 + 0.5 * n, swing * (-1.0) ** n) for n in range(2 * N_CYCLES + 2))
     return ((1.0, 0.0), (1.5, first), (2.0, 0.0), *turns, (8.0, 0.0))
 
@@ -71,7 +69,7 @@ def factor(run: FinishedRun) -> float:
 
 
 def goes_on(run: FinishedRun) -> bool:
-    """Tell whether anything slips or opens in the last cycle."""
+    """Check whether anything slips or opens in the last cycle."""
     assert run.solution.status.ending == "converged"
     return bool((run.iterate.status[:, last(run)][:, 1:] != 0).any())
 

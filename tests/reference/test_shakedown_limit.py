@@ -28,7 +28,7 @@ def limit(scene: str, **changes: Any) -> float:
 
 
 def slips(scene: str, **changes: Any) -> bool:
-    """Tell whether anything slips in the last cycle."""
+    """Check whether anything slips in the last cycle."""
     settings = CATALOGUE[scene].checked(changes)
     run = finished_run(settings, errors=False, indicators=False)
     return bool(cycles_of(settings, run.iterate).slip[:, -1].any())

@@ -1,10 +1,10 @@
-"""Where no equilibrium is found a run says when, under which loads, and what to try."""
+"""A run without equilibrium says when, under which loads, and what to try."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from solver import End, Rods, solve
+from solver import End, Rods, discrete, solve
 from solver.discrete.problem import Problem
 from solver.latin import Ending
 from solver.reference.incremental import reference_of
@@ -49,11 +49,11 @@ def pulled_rod(bound: float) -> Problem:
         left=End(force=0.0 * times),
         right=End(force=900.0 * times),
     )
-    return rods.discretise()
+    return discrete.discretise(rods)
 
 
 def test_columns_that_lean_are_given_up_without_trying_the_same_states_again() -> None:
-    """They fall with the same states under softer and softer springs."""
+    """Columns fall with the same states under softer and softer springs."""
     problem = discretise(stacked())
     found = reference_of(problem)
     assert found.is_lost

@@ -24,9 +24,7 @@ def run(scene="bar", **values):
 
 
 def pulled(force, stiffness):
-    """Give the end displacement of a clamped bar under a
-    monotone pull, and its slip zone.
-    """
+    """End displacement of a clamped bar under a monotone pull, and its slip zone."""
     density = stiffness * AXIAL / LENGTH**2
     return pulled_compliant_bar(force, LENGTH, AXIAL, BOUND, density)
 

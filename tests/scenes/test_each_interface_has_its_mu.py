@@ -58,9 +58,7 @@ def test_layers_of_a_rope_that_rub_unequally_meet_the_closed_form() -> None:
 
 
 def test_a_broken_wire_regains_its_force_over_the_friction_of_both_its_sides() -> None:
-    """Its force grows by mu p of both sides per length
-    from the break on: 0.6 and 1.4 are 2.
-    """
+    """The force grows by mu p of both sides per length: 0.6 and 1.4 are 2."""
     kind = CATALOGUE["strand"]
     changes: dict[str, Any] = {"load": "ramp", "instants": 11}
     uneven = kind.checked({**changes, "friction_factors": [[1, 0.6], [2, 1.4]]})

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from runs import solved
 
-from solver import Stack
+from solver import Stack, discrete
 from solver.discrete import Given, Side, Support
 from solver.discrete.rods.rods import End, Rods
 from solver.latin import Ending, Latin, solve
@@ -27,11 +27,9 @@ CHANGING = {"friction_law": "slip-dependent"}
 
 
 def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
-    """Give a clamped pulled_bar of 1 m whose end is pulled,
-    or displaced by force L / ES.
-    """
+    """A clamped bar of 1 m whose end is pulled, or displaced by force L / ES."""
     force = np.asarray(force, dtype=float)
-    return (
+    return discrete.discretise(
         Rods(
             length=1.0,
             stiffness=STIFFNESS,
@@ -44,7 +42,7 @@ def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
             duration=1.0,
             friction_law=law,
         )
-    ).discretise()
+    )
 
 
 def changing(ratio, slip_length):
@@ -241,8 +239,7 @@ STRIP = {
 
 
 def pull_out(length):
-    """Give displacement and force of the strip's end, up to where the other begins to
-    slip.
+    """Displacement and force of the strip's end, up to first slip of the other end.
 
     Behind the front friction softens over the same distance as long as it goes on, and
     beyond is its last value.
@@ -345,20 +342,22 @@ def pressed_block(law, *, lifted=False):
             x=Given(prescribed=True, mean=along), y=Given(prescribed=True, mean=down)
         )
     }
-    return Stack(
-        length=0.1,
-        height=0.02,
-        young=210e9,
-        poisson=0.0,
-        state="stress",
-        elements=(16, 4),
-        substructures=(2, 1),
-        instants=WHOLE,
-        duration=1.0,
-        support=Support(gap=np.zeros(17), friction=0.3),
-        friction_law=law,
-        sides=sides,
-    ).discretise()
+    return discrete.discretise(
+        Stack(
+            length=0.1,
+            height=0.02,
+            young=210e9,
+            poisson=0.0,
+            state="stress",
+            elements=(16, 4),
+            substructures=(2, 1),
+            instants=WHOLE,
+            duration=1.0,
+            support=Support(gap=np.zeros(17), friction=0.3),
+            friction_law=law,
+            sides=sides,
+        )
+    )
 
 
 TABLE = Strength((0.0, 5e-6, 2e-5), (1.0, 1.4, 0.5))

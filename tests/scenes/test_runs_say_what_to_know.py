@@ -241,7 +241,6 @@ def test_the_command_says_what_no_reference_would_save(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(costs, "LONG", 0.0)
-    monkeypatch.setattr(costs, "BEGINNING", 0.0)
     values = [
         "--set",
         "elements=96",

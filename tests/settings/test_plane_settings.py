@@ -94,9 +94,7 @@ def test_loads_that_contact_alone_cannot_hold_are_refused(values, word):
 
 @pytest.mark.parametrize("shear", [0.8e6, 1e6, 5e6])
 def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(shear):
-    """Its top is sheared more and more:
-    it tips at b/(2 h) of what presses, and slides at mu.
-    """
+    """A sheared block tips at b / (2 h) of the pressing force, and slides at mu."""
     tall = {
         "gap": "flat",
         "length": 0.05,

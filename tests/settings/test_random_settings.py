@@ -16,7 +16,8 @@ import param
 import pytest
 
 from solver.scenes import CATALOGUE
-from solver.study.random_runs import draw, log_uniform
+from solver.study.random_loads import log_uniform
+from solver.study.random_runs import draw
 from solver.study.stability import Verdict, judge, run
 
 RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "8"))

@@ -22,20 +22,17 @@ from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.random_runs import draw, random_case
 from solver.study.stability import (
     AT_ROUNDING,
-    COLUMNS,
     METHODS,
     Judge,
     Outcome,
     StabilityCase,
     Verdict,
-    counts,
     extreme_cases,
     judge,
     judged_runs,
-    judges,
-    last_lines,
     row_of,
 )
+from solver.study.stability_report import COLUMNS, counts, judges, last_lines
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,

@@ -44,7 +44,7 @@ CLAIM: dict[str, str] = {
 
 
 def written(parts: dict[str, str | None], claim: dict[str, str | None]) -> str:
-    """Give a small lesson with some parts changed, or left out where they are None."""
+    """A small lesson with some parts changed, or left out where they are None."""
     lines = [
         f"{key} = {value}"
         for key, value in (PARTS | parts).items()
@@ -195,7 +195,7 @@ each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))
 
 @functools.cache
 def outcomes(name: str) -> list[tuple[bool, str]]:
-    """Give all of a lesson's at once, because they share runs."""
+    """Outcomes of all claims of a lesson at once, since they share runs."""
     return list(check(LESSONS[name]))
 
 

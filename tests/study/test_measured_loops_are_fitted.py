@@ -195,7 +195,7 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
         # Nothing slips at the start.
         (SPRUNG, {"friction": 0.37}, {"friction": 50.0}),
         (
-            {**SPRUNG, **FEW},
+            SPRUNG | FEW,
             {"friction": 0.37, "contact_stiffness": 8.0},
             {"friction": 0.2, "contact_stiffness": 3.0},
         ),
@@ -211,10 +211,10 @@ def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> N
 
 
 def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
-    """Of three in four seeds at least; 95 % are expected."""
+    """At least three in four seeds are; 95 % are expected."""
     true = {"friction": 0.37, "contact_stiffness": 8.0}
     settings = scene_settings("bar").checked(
-        {**SPRUNG, **FEW, "friction": 0.3, "contact_stiffness": 6.0}
+        SPRUNG | FEW | {"friction": 0.3, "contact_stiffness": 6.0}
     )
     within = []
     for seed in range(4):
@@ -291,9 +291,7 @@ def flat_valley() -> tuple[Settings, dict[str, float], MeasuredLoop]:
 
 
 def test_margins_in_a_flat_valley_are_those_of_the_valley() -> None:
-    """Of a bar that slips in part its ends know E S mu p,
-    whatever a slope of the misfit says.
-    """
+    """The ends of a bar that slips in part tell E S mu p alone."""
     start, true, measured = flat_valley()
     found = fit(start, measured, list(true))
     values = np.array(list(true.values()))

@@ -106,7 +106,7 @@ def first_below(records, name, limit):
 
 
 def imbalance(problem, iterate):
-    """Give P^T F - P^T F_d, relative to the largest load."""
+    """Imbalance P^T F - P^T F_d, relative to the largest load."""
     basis, load = problem.macro
     return np.abs(basis.T @ iterate.boundary_force - load).max() / np.abs(load).max()
 

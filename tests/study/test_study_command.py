@@ -52,7 +52,7 @@ def rows(file):
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
-    """Give the folder that the command fills, and the curves behind it."""
+    """Folder that the command fills, and the curves behind it."""
     kept = []
     folder = tmp_path_factory.mktemp("study") / "made"
     with pytest.MonkeyPatch.context() as patch:

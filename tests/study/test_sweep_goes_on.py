@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from pebble import ProcessExpired
 from processes import is_alive, started, wait_for
-from sweeps import Here, rows_in_table, rows_of, tiny
+from sweeps import Here, rows_in_table, rows_of, sweep_of_bars, tiny
 
 from solver.commands import reports as report_commands
 from solver.commands.cli import main
@@ -250,15 +250,7 @@ def test_a_program_that_is_killed_leaves_no_process_whatever_these_do() -> None:
 def test_a_sweep_that_is_killed_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked = ["sweep", "bar", "--vary", "peak=300:900:24", "--of", "iterations"]
-    asked += [
-        "--set",
-        "elements=20",
-        "--set",
-        "substructures=2",
-        "--set",
-        "instants=21",
-    ]
+    asked = sweep_of_bars(24)
     asked += ["--on", "processes:2", "--out", str(tmp_path)]
     table = tmp_path / "sweep.csv"
     with started([sys.executable, "-m", "solver", *asked]):

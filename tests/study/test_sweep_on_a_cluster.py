@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from distributed import Client
 from processes import PATIENCE, wait_for
-from sweeps import rows_in_table, rows_of, tiny
+from sweeps import rows_in_table, rows_of, sweep_of_bars, tiny
 
 from solver.commands.cli import main
 from solver.settings.definitions import SettingError
@@ -159,15 +159,7 @@ def test_a_scheduler_that_is_gone_is_told(
     """The last of all, which ends the cluster."""
     monkeypatch.setattr("solver.study.sweep.executors.PATIENCE", 1.0)
     table = tmp_path / "sweep.csv"
-    asked = ["sweep", "bar", "--vary", "peak=300:900:2000", "--of", "iterations"]
-    asked += [
-        "--set",
-        "elements=20",
-        "--set",
-        "substructures=2",
-        "--set",
-        "instants=21",
-    ]
+    asked = sweep_of_bars(2000)
 
     def end() -> None:
         with suppress(AssertionError):

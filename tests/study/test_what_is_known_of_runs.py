@@ -13,7 +13,7 @@ from urllib.parse import parse_qsl
 import numpy as np
 import pytest
 
-from app.files.link import read as read_address
+from app.link import read as read_address
 from solver.commands.cli import main
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.incremental import reference_of
@@ -33,7 +33,7 @@ def read(folder: Path) -> list[dict[str, str]]:
 
 
 def wrong(case: KnownCase) -> KnownCase:
-    """Give a case that claims one more in a hundred than is true."""
+    """A case whose known number is one per cent too large."""
 
     def numbers(answer: Answer) -> Iterator[Number]:
         for quantity, unit, exact, found in case.numbers(answer):

@@ -144,6 +144,7 @@ def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
     for above, brick in enumerate(bricks):
         if brick.y == 0:
             joints.append(Joint(above, None, brick.x, brick.x + brick.columns))
+        # Upright joints are lying ones with both axes exchanged.
         for is_upright, (x, y, columns, rows) in enumerate((lying, upright)):
             ends = x + columns
             for below in np.flatnonzero(y + rows == y[above]).tolist():

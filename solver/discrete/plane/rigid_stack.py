@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from operator import itemgetter
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Indices
-
-if TYPE_CHECKING:
-    from solver.discrete.plane.stack import Given, Spring, Stack
+from solver.discrete.plane.sides import Given, Spring
+from solver.discrete.plane.stack import Stack
 
 SLACK = 1e-9
 """Largest rounding of the loads, as a share of them."""
@@ -39,20 +37,19 @@ def wrench(stack: Stack) -> tuple[Array, Array, Array]:
     moment = np.zeros(len(stack.instants))
     for name, side in stack.sides.items():
         size = height if name in ("left", "right") else length
-        x = {"left": 0.0, "right": length}.get(name)
-        y = {"bottom": 0.0, "top": height}.get(name)
-        loads = [_resultant(given, size) for given in side]
-        force += [total for total, _ in loads]
-        (along_x, first_x), (along_y, first_y) = loads
-        # Along a side the moment is that about its first end.
-        if x is None:
-            moment += first_y
-        else:
-            moment += x * along_y
-        if y is None:
+        along_x, first_x = _resultant(side.x, size)
+        along_y, first_y = _resultant(side.y, size)
+        force += [along_x, along_y]
+        # Along a side the moment is that about its first end, across it the force has
+        # the distance of the side as its arm.
+        if name in ("left", "right"):
+            arm = length if name == "right" else 0.0
+            moment += arm * along_y
             moment -= first_x
         else:
-            moment -= y * along_x
+            arm = height if name == "top" else 0.0
+            moment += first_y
+            moment -= arm * along_x
     if stack.body_force is not None:
         weight = stack.body_force * length * height
         force += weight
@@ -123,11 +120,10 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
         else:
             pushed = np.abs(x)
         losses.append((pushed > friction + slack, "friction cannot hold it"))
-    first = [
-        (float(stack.instants[np.argmax(is_lost)]), reason)
-        for is_lost, reason in losses
-        if is_lost.any()
-    ]
+    first = list[tuple[float, str]]()
+    for is_lost, reason in losses:
+        if is_lost.any():
+            first.append((float(stack.instants[np.argmax(is_lost)]), reason))
     return min(first, key=itemgetter(0), default=None)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,9 @@ from scipy import sparse
 from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.problem import Problem
+from solver.discrete.rods.rods import SIDES, End, Rods
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import (
     Elasticity,
     Substructure,
@@ -28,9 +30,6 @@ from solver.laws import (
     RodStiffness,
 )
 
-if TYPE_CHECKING:
-    from solver.discrete.rods.rods import End, Rods
-
 DEGREES = 2
 """Macro modes of the friction force on each piece of a contact between rods: resultant
 and first moment. Without them the forces of both sides balance only slowly: 1 % of the
@@ -39,8 +38,27 @@ with Anderson acceleration and automatic k). 4 modes save up to half of the iter
 with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires gain nothing."""
 NO_ROW = -1
 """Number of a boundary row that a node does not have."""
-SIDES = {"left": "support", "right": "load"}
-"""Interfaces of the ends, by their side."""
+
+
+def problem_of(rods: Rods) -> Problem:
+    """Make the discrete problem of rods.
+
+    The interface with a support is "friction"; "contact 1-2" lies between rods 1 and 2,
+    of which rod 2 is the body above. Its points run along the rods; at the break of
+    either there are two, one for each of the parts that have come apart.
+
+    Between rods, ends of prescribed displacement do not rub: nothing slips there, and
+    friction could not be told from the reactions.
+    """
+    if rods.wires == 1:
+        names = ["friction"]
+        rub_at_ends = (True, True)
+    else:
+        numbers = range(1, rods.wires)
+        names = [f"contact {number}-{number + 1}" for number in numbers]
+        rub_at_ends = (not rods.left.is_prescribed, not rods.right.is_prescribed)
+    places = [rods.nodes] * rods.wires
+    return CutRods([rods] * rods.wires, places, names, rub_at_ends).problem()
 
 
 def _pieces_of(rods: Rods) -> tuple[list[int], int]:
@@ -167,10 +185,10 @@ class CutRods:
         carried = None
         if rods.settlement is not None:
             carried = rods.settlement / scales.displacement
-        positions = [
-            np.repeat(positions, dofs)
-            for positions, dofs in zip(self._positions, self._dofs_at, strict=True)
-        ]
+        # Both degrees of freedom of a break stand at its node.
+        positions = []
+        for of_rod, dofs in zip(self._positions, self._dofs_at, strict=True):
+            positions.append(np.repeat(of_rod, dofs))
         # Pieces of equal operators share them, also those of different rods.
         shared: dict[tuple[object, ...], Elasticity] = {}
         substructures = list[Substructure]()
@@ -198,6 +216,7 @@ class CutRods:
         for number, size in enumerate(self._sizes):
             piece = _Piece(number, first, size)
             rows, nodes = self._boundary(rod, piece)
+            # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
             key = (
                 is_row.tobytes(),
@@ -208,12 +227,15 @@ class CutRods:
             if key not in shared:
                 shared[key] = self._operator(rods, piece, stiffness, nodes, is_row)
             first_of_piece = first_dof + first + int(self._beyond[rod, number])
+            pushing = None
+            if free_force is not None:
+                pushing = free_force[piece.elements]
             yield Substructure(
                 elasticity=shared[key],
                 dofs=np.arange(first_of_piece, first_of_piece + size + 1),
                 rows=rows[is_row],
                 body_force=self._body_force(rods, piece, inner_force),
-                free_force=None if free_force is None else free_force[piece.elements],
+                free_force=pushing,
             )
             first += size
 
@@ -301,6 +323,7 @@ class CutRods:
         whole = piece.size * element
         at_ends = 1.0 / whole / float(np.mean(1.0 / own_stiffness))
         direction = np.full(len(nodes), at_ends)
+        # The last two rows are the ends, all others the points that rub.
         direction[:-2] = at_ends * element / whole
         of_springs = own_stiffness * (rods.elements / length)
         at_nodes = np.append(of_springs, 0.0) + np.insert(of_springs, 0, 0.0)
@@ -363,6 +386,7 @@ class CutRods:
             component = Component(self._sides[rod, self._rubs])
         nodes = self._nodes[self._rubs]
         weights = rods.length * (self._shares[self._rubs] / rods.elements)
+        # The bound is per length: a pair has that of its tributary length.
         known = rods.bounds[nodes] * weights[:, None] / units[1]
         known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
         points = self._points(rod)
@@ -379,6 +403,7 @@ class CutRods:
 
     def _macro_basis(self) -> sparse.csr_array:
         """Macro basis of a contact between rods, (n_pairs, n_macro), piece by piece."""
+        # Macro forces balance on each piece, whose operator sees no others.
         counts = np.bincount(self._piece[self._rubs]).tolist()
         bases = list[Array]()
         for count in counts:

@@ -100,9 +100,9 @@ class CrossSection:
                     "above 0"
                 )
             if row > 1 and not LEAST_LAY <= abs(lay) < 90.0:
-                least = plain(LEAST_LAY)
+                smallest = plain(LEAST_LAY)
                 return (
-                    f"row {row}: give a lay angle of {least}° or more in size, less "
+                    f"row {row}: give a lay angle of {smallest}° or more in size, less "
                     "than 90°"
                 )
         for layer, (count, diameter, lay, _) in enumerate(self.rows[1:]):
@@ -134,24 +134,21 @@ class CrossSection:
         Cut across the strand a wire is an ellipse, wider by 1 / cos(alpha) (Costello,
         chapter 2).
         """
-        one = self.layers[layer]
-        if one.wires == 1:
+        wire = self.layers[layer]
+        if wire.wires == 1:
             return 0.0
-        beside = np.tan(0.5 * np.pi - np.pi / one.wires) / np.cos(one.lay)
-        return float(0.5 * one.diameter * np.sqrt(1.0 + beside**2))
+        beside = np.tan(0.5 * np.pi - np.pi / wire.wires) / np.cos(wire.lay)
+        return float(0.5 * wire.diameter * np.sqrt(1.0 + beside**2))
 
     @property
     def rows(self) -> tuple[tuple[float, float, float, float], ...]:
         """Wires, diameter, m, lay angle, degrees, modulus, Pa, inside out."""
-        return tuple(
-            (
-                float(layer.wires),
-                layer.diameter,
-                float(f"{np.degrees(layer.lay):.12g}"),
-                layer.young,
-            )
-            for layer in (self.core, *self.layers)
-        )
+        rows = []
+        for layer in (self.core, *self.layers):
+            # Rounded, as an angle that was given in degrees has no more digits.
+            lay = float(f"{np.degrees(layer.lay):.12g}")
+            rows.append((float(layer.wires), layer.diameter, lay, layer.young))
+        return tuple(rows)
 
     @property
     def diameter(self) -> float:
@@ -166,34 +163,34 @@ class CrossSection:
     @cached_property
     def stiffness(self) -> float:
         """Axial stiffness, N, of a strand that does not untwist."""
-        laid = (one.wires * one.stiffness * np.cos(one.lay) ** 3 for one in self.layers)
-        return self.core.stiffness + float(sum(laid))
+        laid = 0.0
+        for layer in self.layers:
+            laid += layer.wires * layer.stiffness * np.cos(layer.lay) ** 3
+        return self.core.stiffness + float(laid)
 
     @cached_property
     def slipping_bending(self) -> float:
         """Bending stiffness of slipping wires about own axes, E I cos(alpha), N m^2."""
-        return sum(
-            float(
-                one.wires * one.young * np.pi * one.diameter**4 / 64.0 * np.cos(one.lay)
-            )
-            for one in (self.core, *self.layers)
-        )
+        total = 0.0
+        for layer in (self.core, *self.layers):
+            bending = layer.wires * layer.young * np.pi * layer.diameter**4 / 64.0
+            total += float(bending * np.cos(layer.lay))
+        return total
 
     @cached_property
     def stuck_bending(self) -> float:
         """Bending stiffness while nothing slips, N m^2."""
-        together = (
-            0.5 * one.wires * one.stiffness * radius**2 * np.cos(one.lay) ** 3
-            for one, radius in zip(self.layers, self.radii, strict=True)
-        )
-        return self.slipping_bending + float(sum(together))
+        together = 0.0
+        for layer, radius in zip(self.layers, self.radii, strict=True):
+            stiffness = 0.5 * layer.wires * layer.stiffness
+            together += stiffness * radius**2 * np.cos(layer.lay) ** 3
+        return self.slipping_bending + float(together)
 
     def wire_tension(self, layer: int, tension: Array) -> Array:
         """Force in a wire of a layer under a tension of the strand, of its shape, N."""
-        one = self.layers[layer]
-        return np.asarray(
-            one.stiffness * np.cos(one.lay) ** 2 / self.stiffness * tension
-        )
+        wire = self.layers[layer]
+        share = wire.stiffness * np.cos(wire.lay) ** 2 / self.stiffness
+        return np.asarray(share * tension)
 
     def line_pressures(self, tension: Array) -> tuple[Array, Array]:
         """Line pressures on the inner and outer face of the wires of every layer.
@@ -206,14 +203,17 @@ class CrossSection:
         below = []
         above = []
         passed = np.zeros_like(tension)
+        # From the outside in, as each layer passes on all that presses on it.
         for number in reversed(range(len(self.layers))):
             layer = self.layers[number]
             radius = self.radii[number]
             # Per length of wire, of what acts per length of strand.
             share = np.cos(layer.lay) / layer.wires
             above.append(share * passed)
-            own = self.wire_tension(number, tension) * np.sin(layer.lay) ** 2 / radius
-            passed = passed + own / share
+            pressure = (
+                self.wire_tension(number, tension) * np.sin(layer.lay) ** 2 / radius
+            )
+            passed = passed + pressure / share
             below.append(share * passed)
         return np.array(below[::-1]), np.array(above[::-1])
 
@@ -231,11 +231,10 @@ class CrossSection:
 
 def laid(rows: Iterable[Sequence[float]]) -> CrossSection:
     """Cross-section from its rows, in the format of `CrossSection.rows`."""
-    core, *layers = (
-        WireLayer(int(wires), diameter, young, float(np.radians(lay)))
-        for wires, diameter, lay, young in rows
-    )
-    return CrossSection(core, tuple(layers))
+    layers = []
+    for wires, diameter, lay, young in rows:
+        layers.append(WireLayer(int(wires), diameter, young, float(np.radians(lay))))
+    return CrossSection(layers[0], tuple(layers[1:]))
 
 
 def seven_wire() -> CrossSection:
@@ -255,11 +254,10 @@ def mooring(layers: int) -> CrossSection:
     core wire is so much thicker that the wires of a layer have room beside each other.
     Three layers are 35 mm thick, and break at some 1100 kN.
     """
-    around = (
-        (6 * number, 5e-3, -17.0 * (-1) ** number, STEEL)
-        for number in range(1, layers + 1)
-    )
-    return laid([(1, 5.3e-3, 0.0, STEEL), *around])
+    rows = [(1, 5.3e-3, 0.0, STEEL)]
+    for number in range(1, layers + 1):
+        rows.append((6 * number, 5e-3, -17.0 * (-1) ** number, STEEL))
+    return laid(rows)
 
 
 def conductor() -> CrossSection:
@@ -273,9 +271,8 @@ def conductor() -> CrossSection:
     aluminium = 4.442e-3
     wires = np.array([steel, aluminium, aluminium])
     over = steel + 2.0 * np.cumsum(wires)
-    lays = np.degrees(
-        np.arctan(np.pi * (over - wires) / (np.array([25.0, 13.0, 11.0]) * over))
-    )
+    lay_lengths = np.array([25.0, 13.0, 11.0]) * over
+    lays = np.degrees(np.arctan(np.pi * (over - wires) / lay_lengths))
     return laid(
         [
             (1, steel, 0.0, STEEL),

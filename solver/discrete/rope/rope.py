@@ -17,7 +17,7 @@ interfaces, one a wire, "wire LAYER.NUMBER".
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,8 +39,6 @@ from solver.checks import (
 )
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem
-from solver.discrete.rods.cut_rods import CutRods
-from solver.discrete.rods.rods import End, Rods
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
 from solver.discrete.structure import (
     OUTWARD,
@@ -150,6 +148,7 @@ class RopeWire:
         """
         stuck = self._stuck_force(slice(None))
         arc = self.arc
+        # Half an element at both ends, where a node has one neighbour.
         force = np.concatenate([stuck[:1], 0.5 * (stuck[1:] + stuck[:-1]), stuck[-1:]])
         length = np.concatenate([arc[:1], 0.5 * (arc[1:] + arc[:-1]), arc[-1:]])
         return np.asarray(np.diff(force, axis=0) / np.diff(length)[:, None])
@@ -244,43 +243,6 @@ class Rope:
             return longest
         return 2.0 * longest
 
-    def discretise(self) -> Problem:
-        """Make the discrete problem: all wires as rods with the same cuts.
-
-        Positions are those along the strand. Where a wire represents its layer, over
-        half a turn, so does its interface, over the strand that is drawn.
-        """
-        problem = CutRods(
-            [self._rod(wire) for wire in self.wires],
-            [wire.along for wire in self.wires],
-            [wire.name for wire in self.wires],
-            rub_at_ends=(False, False),
-        ).problem()
-        if self.is_clamped:
-            return problem
-        interfaces = dict(problem.interfaces)
-        for wire in self.wires:
-            copies = wire.stands_for * self.seen_length / float(wire.along[-1])
-            interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
-        return replace(problem, interfaces=interfaces)
-
-    def _rod(self, wire: RopeWire) -> Rods:
-        """A wire as a rod that is held at both ends."""
-        held = End(displacement=np.zeros(len(self.instants)))
-        return Rods(
-            length=wire.length,
-            stiffness=wire.layer_data.stiffness,
-            elements=self.elements,
-            substructures=self.substructures,
-            bound=np.multiply.outer(np.ones(self.elements + 1), wire.bound),
-            left=held,
-            right=held,
-            instants=self.instants,
-            duration=self.duration,
-            body_force=wire.body_force(),
-            friction_law=self.friction_law,
-        )
-
     def moment(self) -> Probe:
         """Bending moment of the strand, N m, from the slip of its wires.
 
@@ -291,6 +253,8 @@ class Rope:
         stuck = self.section.slipping_bending * self.curvature
         for wire in self.wires:
             levers = wire.stands_for * wire.levers(at_beginning=self.is_clamped)
+            # The force of an element is its elongation by slip, so the moment is a sum
+            # of slips.
             spring = wire.layer_data.stiffness * levers / np.diff(wire.arc)
             weights.append(-np.diff(spring, prepend=0.0, append=0.0))
             stuck = stuck + levers @ wire.stuck_force()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.rope.rope import Rope
+from solver.discrete.rope.rope import Rope, RopeWire
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,23 +42,38 @@ def cut_at(rope: Rope, position: float) -> CutWires:
     """
     cuts = []
     for number, wire in enumerate(rope.wires):
-        lay = wire.layer_data.lay
-        starts = wire.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for
-        arc = position / np.cos(lay)
-        if rope.is_clamped:
-            arc = min(arc, wire.length)
-        angles = starts + arc * np.sin(lay) / wire.radius
-        arcs = np.full(len(angles), arc)
-        sides = np.ones(len(angles))
-        if not rope.is_clamped:
-            turned = np.sign(lay) * angles
-            sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
-            arcs = np.arccos(np.cos(turned)) / np.pi * wire.length
-        cuts.append((np.full(len(angles), number), angles, arcs, sides))
-    which, angle, arc, side = (np.concatenate(one) for one in zip(*cuts, strict=True))
-    radius = np.array([wire.radius for wire in rope.wires])[which]
-    centres = radius[:, None] * np.stack([np.sin(angle), np.cos(angle)], axis=1)
-    return CutWires(which, centres, arc, side)
+        angles, arcs, sides = _cut_wire(wire, position, is_clamped=rope.is_clamped)
+        around = np.stack([np.sin(angles), np.cos(angles)], axis=1)
+        numbers = np.full(len(angles), number)
+        cuts.append(CutWires(numbers, wire.radius * around, arcs, sides))
+    return CutWires(
+        wire=np.concatenate([cut.wire for cut in cuts]),
+        centres=np.concatenate([cut.centres for cut in cuts]),
+        arc=np.concatenate([cut.arc for cut in cuts]),
+        side=np.concatenate([cut.side for cut in cuts]),
+    )
+
+
+def _cut_wire(
+    wire: RopeWire, position: float, *, is_clamped: bool
+) -> tuple[Array, Array, Array]:
+    """Polar angles, rad, arc lengths, m, and sides of the wires that one stands for.
+
+    At a position along the strand, m; shape (stands_for,) each.
+    """
+    lay = wire.layer_data.lay
+    starts = wire.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for
+    arc = position / np.cos(lay)
+    if is_clamped:
+        arc = min(arc, wire.length)
+    angles = starts + arc * np.sin(lay) / wire.radius
+    if is_clamped:
+        return angles, np.full(len(angles), arc), np.ones(len(angles))
+    # Half a turn of the wire stands for both halves: angles are folded onto it.
+    turned = np.sign(lay) * angles
+    sides = np.where(np.sin(turned) < 0.0, -1.0, 1.0)
+    arcs = np.arccos(np.cos(turned)) / np.pi * wire.length
+    return angles, arcs, sides
 
 
 def wire_forces(rope: Rope, displacement: Array, columns: slice | Indices) -> Array:
@@ -97,14 +112,14 @@ def stress_at(rope: Rope, cut: CutWires, stress: Array) -> Array:
     return np.asarray((1.0 - share) * low + share * high)
 
 
-def stress_ranges(rope: Rope, displacement: Array, some: slice) -> Array:
+def stress_ranges(rope: Rope, displacement: Array, instants: slice) -> Array:
     """Largest range of the stress of every wire over instants, (n_wires,), Pa.
 
     At the fibre of the wire where its bending about its own axis adds to the mean
     stress. `displacement` is that of the problem's dofs, (n_dofs, n_instants), m.
     """
-    axial = wire_stresses(rope, displacement, some)
-    curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
+    axial = wire_stresses(rope, displacement, instants)
+    curvature = np.stack([wire.curvature[:, instants] for wire in rope.wires])
     outer = np.array(
         [0.5 * wire.layer_data.young * wire.layer_data.diameter for wire in rope.wires]
     )

@@ -1,6 +1,8 @@
-"""Certified solution as an iterate in which both stages agree."""
+"""The certified answer of a run, and how its fields follow from a solution."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +11,7 @@ from scipy import sparse
 from solver.arrays import Array, read_only
 from solver.discrete.problem import Problem
 from solver.latin.end.status_step import Certificate
-from solver.latin.iterate import Iterate
+from solver.latin.iterate import Checkpoint, Iterate
 from solver.reduction.basis import SharedBasis
 
 ENOUGH = 1e-14
@@ -19,13 +21,59 @@ MOST_STEPS = 60
 a dozen suffice."""
 
 
-def finished(
-    problem: Problem, k: Array, certificate: Certificate, last: Iterate | None = None
-) -> Iterate:
-    """Certified solution as an iterate.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Answer(Iterate):
+    """Certified answer of a run: an iterate whose fields obey all laws and equilibrium.
 
-    Its linear and its local stage are the same fields, a fixed point of the method for
-    every k. Its bases are those of the search, if it had any.
+    Both stages agree in it, so that it is a fixed point of the method for every k. Its
+    bases are those of the search that led to it, and do not hold all of it.
+
+    Attributes
+    ----------
+    residual
+        KKT residual relative to the contact force.
+    force
+        F of both stages, shape (n_rows, n_instants), scaled, read-only. Beside a body's
+        rigid motion the digits of F/k may be lost.
+    is_beside
+        Whether it stands beside the iterates of a search that came to its own end.
+        Otherwise it counts as the last iteration.
+    """
+
+    residual: float
+    force: Array
+    is_beside: bool = False
+
+    @property
+    def iterations(self) -> int:
+        """Number of iterations done, without an answer that stands beside them."""
+        return self.number - self.is_beside
+
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """State from which the iteration goes on, in full fields."""
+        return replace(super().checkpoint, bases=())
+
+    @property
+    def boundary_force(self) -> Array:
+        """F of the linear stage, shape (n_rows, n_instants), scaled."""
+        return self.force
+
+    @property
+    def boundary_local_force(self) -> Array:
+        """F^ of the local stage, shape (n_rows, n_instants), scaled."""
+        return self.force
+
+
+def certified_answer(
+    problem: Problem,
+    k: Array,
+    certificate: Certificate,
+    last: Iterate | None = None,
+    *,
+    is_beside: bool = False,
+) -> Answer:
+    """Answer of a run by the certified solution of a status step.
 
     Parameters
     ----------
@@ -37,6 +85,8 @@ def finished(
         The certified solution.
     last
         Last iterate of the run that led to the solution.
+    is_beside
+        Whether the answer stands beside the iterates.
     """
     scales = problem.scales
     solution = certificate.solution
@@ -52,7 +102,7 @@ def finished(
         number = last.number + 1
         seconds = last.seconds
         bases = last.bases
-    return Iterate(
+    return Answer(
         number=number,
         seconds=seconds,
         problem=problem,
@@ -64,6 +114,26 @@ def finished(
         bases=bases,
         residual=certificate.residual,
         force=_field(force),
+        is_beside=is_beside,
+    )
+
+
+def own_answer(iterate: Iterate, residual: float, *, is_beside: bool) -> Answer:
+    """Answer of a run whose iterate is a solution by itself, by its KKT residual."""
+    return Answer(
+        number=iterate.number + 1,
+        seconds=iterate.seconds,
+        problem=iterate.problem,
+        k=iterate.k,
+        outgoing=iterate.outgoing,
+        incoming=iterate.incoming,
+        local_displacement=iterate.local_displacement,
+        local_incoming=iterate.local_incoming,
+        bases=iterate.bases,
+        k_update=iterate.k_update,
+        residual=residual,
+        force=read_only(iterate.boundary_force),
+        is_beside=is_beside,
     )
 
 
@@ -139,8 +209,7 @@ def known_forces(
     for loaded in problem.given_forces:
         force[loaded.rows] = loaded.values
         is_known[loaded.rows] = True
-    for name, law in problem.rubbing.items():
-        forces = problem.contact_slices[name]
+    for law, _, _, forces in problem.rubbing.stacks:
         for numbers, component in zip(forces, law.components, strict=True):
             carried = law.shares[:, None] * contact_force[numbers][law.points]
             for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):

@@ -1,4 +1,4 @@
-"""Estimated costs of a status step, of the iterations that it saves, and of a run.
+"""Estimated costs of a status step, of an iteration, and of a run.
 
 All estimates come from counts and never from a clock, so that a run ends alike on every
 machine. `python tests/benchmarks/whole_cost.py` sets the estimates of runs beside
@@ -8,7 +8,6 @@ measurements.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -21,54 +20,29 @@ from solver.reference.contact import MOST_JUMPS, jumps_in
 from solver.reference.incremental import rubs_on_supports
 from solver.reference.rules import HELD, States
 
-WAIT = 2.0
-"""Seconds that a status step may take before a run is called converged, however long
-the iterations took."""
-SYSTEMS = 3
-"""Linear systems per instant that a status step may solve in any case."""
-ENDS_FOR_SURE = 40
-"""Linear systems per instant in any case for a step that ends for sure: with rods on
-supports of their own, and with friction that softens (it takes 2 to 35)."""
-AT_REST = 0.02
-"""Share of moving jumps up to which nothing counts as slipping."""
-SAVED = 10
-"""Iterations that a status step saves where nothing slips."""
-TRIED = 2.0
-"""Largest cost of a status step, over that of the iterations so far, at which it is
-tried however much the force changes."""
-WORTH = 0.5
-"""Largest cost of a proof, as a share of the cost of the iterations so far."""
 AFFORDABLE = 40
 """Iterations that a status step may cost in any case: about as many as it saves."""
-DENSE = 1e10
-"""Operations of dense products a second (measured)."""
-FACTOR = 2e10
-"""Operations of dense factors a second (measured)."""
-SPARSE = 6e9
-"""Operations with sparse matrices a second (measured)."""
-SQUARE = 5e-8
-"""Seconds per number of the condensed stiffness, everything included (measured)."""
-GATHER = 8e-9
-"""Seconds per number that a system gathers from the condensed stiffness (measured)."""
-READ = 1.5e-9
-"""Seconds per number of the condensed stiffness that a system only reads (measured)."""
+TRIED = 2.0
+"""Largest cost of the incremental solver, over that of the iterations so far, at which
+a status step is tried whatever the iterates are like."""
+SYSTEMS = 3
+"""Linear systems per instant that a status step or a reference takes (measured)."""
+OPERATIONS = 1e10
+"""Operations of products and factors a second (measured: sparse 6e9, factors 2e10)."""
+NUMBER = 3e-8
+"""Seconds per number of a boundary field in an iteration, or of a matrix that a system
+is made from (measured)."""
+OF_SYSTEM = 2e-4
+"""Seconds of a dense system, whatever its size (measured)."""
+OF_BAND = 3e-5
+"""Seconds of a system with a band matrix, whatever its size (measured)."""
+OF_ITERATION = 5e-4
+"""Seconds of an iteration, whatever its size (measured)."""
 MOVING = 1.0 / 3.0
 """Share of the jumps that move at an instant where contacts open or bodies bend
 (measured)."""
 NEXT = 2.0
 """Number of interfaces that slide where a load passes from body to body."""
-PASSES = 30
-"""Passes of an iteration over a boundary field."""
-PASS = 1e-9
-"""Seconds per number of a pass (measured)."""
-CALLS = 2e-4
-"""Seconds of a dense system, whatever its size (measured)."""
-OF_ITERATION = 5e-4
-"""Seconds of an iteration, whatever its size (measured)."""
-BAND = 6e-8
-"""Seconds per number of a system with a band matrix (measured)."""
-BAND_CALLS = 3e-5
-"""Seconds of a system with a band matrix, whatever its size (measured)."""
 ITERATIONS = 30
 """Iterations of a run, accelerated, without contact between cut bodies."""
 MORE = 2.5
@@ -78,13 +52,9 @@ PLAIN = 5.0
 WATCHED = 2.0
 """Time of an iteration with its indicators, estimate and errors, over that of its
 stages."""
-BEGINNING = 0.05
-"""Seconds before the first iteration, whatever the size (measured)."""
 FIELDS = 25
 """Boundary fields that a run holds at a time, besides those that the acceleration
 remembers."""
-NUMBER = 8
-"""Bytes of a number."""
 LONG = 20.0
 """Seconds from which a run says before it begins how long it takes."""
 LARGE = 1e9
@@ -109,7 +79,7 @@ class PricedMethod(Protocol):
 
 @dataclass(frozen=True)
 class Costs:
-    """Estimated times of the parts of a run, and the size of a status step.
+    """Estimated times of the parts of a run.
 
     Attributes
     ----------
@@ -121,49 +91,38 @@ class Costs:
         Time of an iteration, s.
     n_instants
         Number of instants; a status step solves at least one system for each.
-    is_at_rest
-        Whether nothing slips, so that one system per instant is enough.
-    in_any_case
-        Systems per instant that a status step may solve in any case.
     """
 
     condensing: float
     system: float
     iteration: float
     n_instants: int
-    is_at_rest: bool = False
-    in_any_case: int = SYSTEMS
 
     @property
     def step(self) -> float:
         """Time of a status step whose statuses are right, s."""
         return self.condensing + self.n_instants * self.system
 
-    def afford(self, iterations: float, allowed: float = 0.0) -> bool:
+    @property
+    def incremental(self) -> float:
+        """Time of the incremental solver, s."""
+        return self.condensing + SYSTEMS * self.n_instants * self.system
+
+    def afford(self, iterations: float) -> bool:
         """Check whether a status step is worth its cost after a number of iterations.
 
-        It may cost half of them, or those that it saves, or `allowed` seconds.
+        It may cost as much as these, or as those that it saves.
         """
-        affordable = max(WORTH * iterations, AFFORDABLE)
-        return self.step <= max(affordable * self.iteration, allowed)
+        return self.step <= max(iterations, AFFORDABLE) * self.iteration
 
-    @cached_property
-    def small_from(self) -> float:
-        """Iteration from which a step is worth a trial, even with wrong statuses."""
-        step = self.condensing + SYSTEMS * self.n_instants * self.system
-        number = step / (TRIED * self.iteration)
-        if self.is_at_rest:
-            return min(number, self.step / self.iteration - SAVED)
-        return number
+    def is_small(self, iterations: float) -> bool:
+        """Check whether even wrong statuses are worth a trial after some iterations."""
+        return self.incremental <= TRIED * iterations * self.iteration
 
     def systems(self, iterations: float) -> int:
-        """Number of linear systems that a status step may solve after some iterations.
-
-        They may take the time of the iterations. The step is tried again at twice as
-        many iterations, so that all trials together take twice as long as these.
-        """
+        """Number of linear systems that a step may solve instead of some iterations."""
         affordable = int(iterations * self.iteration / self.system)
-        return max(self.in_any_case * self.n_instants, affordable)
+        return max(SYSTEMS * self.n_instants, affordable)
 
 
 def costs_of(problem: Problem, states: States | None = None) -> Costs:
@@ -178,45 +137,24 @@ def costs_of(problem: Problem, states: States | None = None) -> Costs:
         before the first iterate.
     """
     n_jumps = jumps_in(problem)
-    iteration = _iteration_cost(problem)
-    in_any_case = _systems_in_any_case(problem)
-    if rubs_on_supports(problem):
-        return Costs(
-            condensing=0.0,
-            system=BAND_CALLS + BAND * n_jumps,
-            iteration=iteration,
-            n_instants=problem.n_instants,
-            in_any_case=in_any_case,
-        )
-    if states is None:
-        moving = _expected_share(problem)
-    else:
-        moving = float(np.mean(states != HELD))
-    return Costs(
-        condensing=_condensing_cost(problem, n_jumps),
-        system=_system_cost(n_jumps, moving * n_jumps),
-        iteration=iteration,
-        n_instants=problem.n_instants,
-        is_at_rest=states is not None and moving <= AT_REST,
-        in_any_case=in_any_case,
-    )
+    condensing = 0.0
+    system = OF_BAND + NUMBER * n_jumps
+    if not rubs_on_supports(problem):
+        if states is None:
+            moving = _expected_share(problem)
+        else:
+            moving = float(np.mean(states != HELD))
+        condensing = _condensing_cost(problem, n_jumps)
+        system = OF_SYSTEM + 2.0 / 3.0 * (moving * n_jumps) ** 3 / OPERATIONS
+    return Costs(condensing, system, _iteration_cost(problem), problem.n_instants)
 
 
 def _iteration_cost(problem: Problem) -> float:
     """Time of an iteration, s."""
     products = sum(2.0 * len(part.rows) ** 2 for part in problem.substructures)
     products = min(products, 200.0 * problem.n_rows)
-    passes = products / DENSE + PASSES * PASS * problem.n_rows
+    passes = products / OPERATIONS + NUMBER * problem.n_rows
     return OF_ITERATION + problem.n_instants * passes
-
-
-def _systems_in_any_case(problem: Problem) -> int:
-    """Linear systems per instant that a status step may solve in any case."""
-    softens = any(law.tangential.softens for law in problem.rubbing.values())
-    has_several_rods = rubs_on_supports(problem) and len(problem.rubbing) > 1
-    if softens or has_several_rods:
-        return ENDS_FOR_SURE
-    return SYSTEMS
 
 
 def _condensing_cost(problem: Problem, n_jumps: int) -> float:
@@ -228,13 +166,7 @@ def _condensing_cost(problem: Problem, n_jumps: int) -> float:
             entries += stiffness.size
         else:
             entries += stiffness.nnz
-    return 4.0 * entries * n_jumps / SPARSE + SQUARE * n_jumps**2
-
-
-def _system_cost(n_jumps: int, n_moving: float) -> float:
-    """Time of a dense linear system for the jumps that move, of all jumps, s."""
-    system = CALLS + 2.0 / 3.0 * n_moving**3 / FACTOR
-    return system + (GATHER * n_moving + READ * n_jumps) * n_moving
+    return 4.0 * entries * n_jumps / OPERATIONS + NUMBER * n_jumps**2
 
 
 def _expected_share(problem: Problem) -> float:
@@ -293,16 +225,15 @@ def run_cost(
     if not latin.acceleration:
         iterations *= PLAIN
     iterations = min(iterations, max_iterations)
-    is_worth_it = latin.finish is not None and costs.afford(iterations, WAIT)
+    is_worth_it = latin.finish is not None and costs.afford(iterations)
     # Bases need the proof of a status step whatever it costs.
     takes_step = has_solver and (isinstance(latin.linear, PGD) or is_worth_it)
-    incremental = costs.condensing + SYSTEMS * costs.n_instants * costs.system
-    seconds = BEGINNING + WATCHED * iterations * costs.iteration
+    seconds = WATCHED * iterations * costs.iteration
     if takes_step:
-        seconds += incremental
+        seconds += costs.incremental
     reference = 0.0
     if with_reference and has_solver:
-        reference = incremental
+        reference = costs.incremental
     memory = _memory(problem, takes_step=takes_step, has_reference=reference > 0.0)
     return RunCost(seconds + reference, memory, reference)
 
@@ -339,7 +270,7 @@ def _memory(problem: Problem, *, takes_step: bool, has_reference: bool) -> float
         numbers += condensation
     if has_reference:
         numbers = max(numbers, condensation)
-    return NUMBER * numbers
+    return np.dtype(float).itemsize * numbers
 
 
 def _duration(seconds: float) -> str:

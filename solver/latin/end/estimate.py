@@ -11,7 +11,7 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array, Flags
 from solver.discrete.problem import Problem
-from solver.latin.end.cost import WAIT, Costs, costs_of
+from solver.latin.end.cost import Costs, costs_of
 from solver.latin.end.status import Status, collapses, lost_jump
 from solver.latin.end.status_step import Certificate, states_of, status_step
 from solver.latin.indicators import ratio
@@ -25,15 +25,10 @@ SETTLED = 0.04
 """Relative change of the whole contact force at which most statuses are right. If
 friction and pressure each had to settle, four layers would wait for 22 iterations
 instead of 8 (measured)."""
-SOLVED = 1e-20
-"""LATIN indicator, a ratio of squares, of a run that begins with its solution."""
-LONG = 100
-"""Iterations from which on a status step is tried at every doubling, whatever has
-changed: the relative change of a contact force that dies out stays large for ever."""
-LAST = 10.0
-"""Factor on the cost that the last trial of a run may have: without the step the run
-has no answer."""
-AGAIN = 2.0
+OBEYED = 1e-10
+"""KKT residual up to which an iterate is a solution of the discrete problem by itself,
+and root of the LATIN indicator up to which the first iterate promises to be one."""
+AGAIN = 2
 """Ratio of the iterations at which a failed status step is tried again, and at which
 two rough numbers are computed anew, as both cost much beside a small iteration: the
 cost of the step, and the force that counts as none."""
@@ -43,14 +38,9 @@ SAFETY = 4.0
 """Factor on the error that is left if the changes go on to fall by the slower of their
 last two ratios, which a power of the iterations has as well as a power of a number. Of
 20 iterates of bars and strands one had a larger error, by five times (measured)."""
-SLOWEST = 0.97
-"""Largest ratio of changes that the estimate uses: that of a force that converges as
-the iterations to the power of -0.085."""
 FEW = 10
 """Iterations up to which changes foretell nothing: a nested start makes them small at
 once."""
-SPACING = 1.1
-"""Ratio of the iterations whose contact forces are kept for comparison."""
 
 
 class ErrorEstimate:
@@ -66,7 +56,7 @@ class ErrorEstimate:
     Parameters
     ----------
     accuracy
-        Relative error that the run asks for.
+        Relative error that the run asks for; infinite where it asks for none.
     needs_proof
         Whether only a certified solution counts, whatever it costs: bases that are too
         small converge to something else, which no change shows.
@@ -110,13 +100,9 @@ class ErrorEstimate:
         """Estimate the relative error of the next iterate of a run; NaN if unknown."""
         error = math.nan
         if self.certificate is None:
-            left = self._changes.left(iterate)
-            error = left.worst
+            error = self._changes.left(iterate)
             if self._is_trial_due(iterate):
-                allowed = 0.0
-                if error <= self._accuracy or left.whole <= self._accuracy:
-                    allowed = WAIT
-                self.try_step(iterate, least=allowed)
+                self.try_step(iterate)
         if self.certificate is None:
             return error
         return self.certificate.distance.of_friction_force(iterate)
@@ -124,13 +110,13 @@ class ErrorEstimate:
     def _is_trial_due(self, iterate: Iterate) -> bool:
         """Check whether a status step is due, as statuses or costs promise success."""
         number = iterate.number
-        # A run may begin with its solution, so that no change shows it.
-        begins_solved = number == 1 and iterate.indicator <= SOLVED
         if number < self._next_trial or iterate.problem.no_reference:
             return False
-        if begins_solved or self._changes.last.whole <= SETTLED or number >= LONG:
+        # A run may begin with its solution, so that no change shows it.
+        begins_solved = number == 1 and iterate.indicator <= OBEYED**2
+        if begins_solved or self._changes.whole <= SETTLED:
             return True
-        return number >= self._costs_of(iterate).small_from
+        return self._costs_of(iterate).is_small(number)
 
     @property
     def is_proven(self) -> bool:
@@ -149,28 +135,20 @@ class ErrorEstimate:
         of_displacement = distance.of_displacement(iterate)
         return max(of_force, of_displacement) <= share
 
-    def can_be_proven(
-        self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
-    ) -> bool:
-        """Check whether a status step is worth its cost by now.
-
-        It may cost `patience` times more than usual, and in any case `least` seconds.
-        """
+    def can_be_proven(self, iterate: Iterate) -> bool:
+        """Check whether a status step is worth its cost by now."""
         if iterate.problem.no_reference or not self._has_solver:
             return False
         costs = self._costs_of(iterate)
         if costs.step > self._left():
             return False
-        return self.needs_proof or costs.afford(patience * iterate.number, least)
+        return self.needs_proof or costs.afford(iterate.number)
 
-    def try_step(
-        self, iterate: Iterate, patience: float = 1.0, least: float = 0.0
-    ) -> None:
+    def try_step(self, iterate: Iterate) -> None:
         """Try the status step, unless it costs too much by `can_be_proven`."""
-        if not self.can_be_proven(iterate, patience, least):
+        if not self.can_be_proven(iterate):
             return
-        self._next_trial = math.ceil(AGAIN * iterate.number) + 1
-        systems = self._costs_of(iterate).systems(patience * iterate.number)
+        self._next_trial = AGAIN * iterate.number + 1
         try:
             if self._solver is None:
                 self._solver = incremental_solver(iterate.problem, self._stops)
@@ -178,8 +156,7 @@ class ErrorEstimate:
                 self._solver,
                 iterate.problem,
                 states_of(iterate),
-                systems,
-                self._stops,
+                stop=self._stops,
             )
         except NoReferenceError:
             self._has_solver = False
@@ -220,23 +197,6 @@ def _lost_equilibrium(problem: Problem, solution: Reference) -> Status | None:
     return None
 
 
-class Change(NamedTuple):
-    """Relative change of the contact forces, or relative error that is left.
-
-    The kinds of force are friction, pressure, and the forces of laws of one's own.
-
-    Attributes
-    ----------
-    worst
-        Change of the kind that changes most.
-    whole
-        Change of all forces together.
-    """
-
-    worst: float = math.nan
-    whole: float = math.nan
-
-
 class _Past(NamedTuple):
     """Contact forces of an earlier iterate.
 
@@ -246,51 +206,54 @@ class _Past(NamedTuple):
         Number of the iterate.
     force
         Forces on `Problem.sought_rows`, shape (n_instants, n_rows), scaled.
-    change
-        Change of the forces up to that iterate.
+    worst
+        Change of the forces up to that iterate, as `ForceChanges.worst`.
     """
 
     number: int
     force: Array
-    change: Change
+    worst: float
 
 
 class ForceChanges:
-    """Changes of the contact force along a run.
+    """Relative changes of the contact forces along a run.
 
-    `last` is the change up to the newest iterate, since the one at the share
-    `LOOK_BACK` of the iterations.
+    Attributes
+    ----------
+    worst, whole
+        Change up to the newest iterate, since that at the share `LOOK_BACK` of the
+        iterations: of the kind of force that changes most (friction, pressure, forces
+        of laws of one's own), and of all together; NaN if unknown.
     """
 
     def __init__(self) -> None:
         self._past: list[_Past] = []
         self._smallest_size = 0.0
-        self._next_size = 0.0
-        self.last = Change()
+        self._next_size = 0
+        self.worst = math.nan
+        self.whole = math.nan
 
-    def left(self, iterate: Iterate) -> Change:
+    def left(self, iterate: Iterate) -> float:
         """Relative error that is left if changes go on to fall; NaN if unknown."""
         number = iterate.number
         force = _force_of(iterate)
         before = self._at(LOOK_BACK * number)
         earlier = None
-        self.last = Change()
         if before is not None:
             earlier = self._at(LOOK_BACK * before.number)
-            self.last = _change(
-                iterate.problem, force - before.force, force, self._smallest_size
+            change = force - before.force
+            self.worst, self.whole = _change(
+                iterate.problem, change, force, self._smallest_size
             )
-        if not self._past or number >= SPACING * self._past[-1].number:
-            self._keep(_Past(number, force, self.last), earlier)
-            if number >= self._next_size:
-                self._smallest_size = _vanishing_size(iterate)
-                self._next_size = AGAIN * number
+        self._keep(_Past(number, force, self.worst), earlier)
+        if number >= self._next_size:
+            self._smallest_size = _vanishing_size(iterate)
+            self._next_size = AGAIN * number
+        if self.worst == 0.0:
+            return 0.0
         if before is None or earlier is None or number <= FEW:
-            return _left_early(self.last)
-        return Change(
-            worst=_left(self.last.worst, before.change.worst, earlier.change.worst),
-            whole=_left(self.last.whole, before.change.whole, earlier.change.whole),
-        )
+            return math.nan
+        return _left(self.worst, before.worst, earlier.worst)
 
     def _keep(self, newest: _Past, earlier: _Past | None) -> None:
         """Keep the forces of an iterate, and forget those before the `earlier` one."""
@@ -325,31 +288,18 @@ def _vanishing_size(iterate: Iterate) -> float:
     return max(hidden, rounding)
 
 
-def _left_early(last: Change) -> Change:
-    """Relative error that is left early in a run: 0 without a change, else NaN."""
-    worst = math.nan
-    whole = math.nan
-    if last.worst == 0.0:
-        worst = 0.0
-    if last.whole == 0.0:
-        whole = 0.0
-    return Change(worst, whole)
-
-
 def _left(last: float, before: float, earlier: float) -> float:
-    """Relative error that is left of a force, by its last three changes."""
+    """Relative error left by the last three changes; NaN if they do not fall."""
     fall = max(ratio(last, before), ratio(before, earlier))
-    if math.isnan(fall):
-        fall = SLOWEST
-    else:
-        fall = min(fall, SLOWEST)
+    if not fall < 1.0:
+        return math.nan
     return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
 
 
 def _change(
     problem: Problem, change: Array, force: Array, smallest_size: float
-) -> Change:
-    """Change of forces over the sizes in the errors of `solver.reference.distance`.
+) -> tuple[float, float]:
+    """Worst and whole change, over the sizes in the errors of `reference.distance`.
 
     Parameters
     ----------
@@ -373,4 +323,4 @@ def _change(
 
     hidden = max(smallest_size, LEAST_SHARE * math.sqrt(float(squares.sum())))
     worst = max((share(kind, hidden) for kind in kinds), default=0.0)
-    return Change(worst, share(slice(None), smallest_size))
+    return worst, share(slice(None), smallest_size)

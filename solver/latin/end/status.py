@@ -8,8 +8,8 @@ from enum import StrEnum
 
 from solver.discrete.drives import beyond, loads_at
 from solver.discrete.problem import Problem
+from solver.latin.end.certified import Answer
 from solver.latin.end.status_step import Certificate
-from solver.latin.iterate import Iterate
 from solver.reference.limit_analysis import Collapse
 
 AT_LIMIT = "The run has come to its limit"
@@ -62,15 +62,15 @@ class Decision:
     certificate
         The certified solution; None until a status step has found it.
     finished
-        Where the run ends with the certified solution: that solution as an iterate, and
-        the decision on it.
+        Where the run ends with the certified solution: the answer, and the decision on
+        it.
     """
 
     seconds: float
     estimated_error: float = math.nan
     status: Status | None = None
     certificate: Certificate | None = None
-    finished: tuple[Iterate, Decision] | None = None
+    finished: tuple[Answer, Decision] | None = None
 
 
 CANCELLED = Status(
@@ -85,7 +85,7 @@ PROVEN = Status(
 EXPECTED = Status(
     Ending.CONVERGED,
     "Accurate enough by estimate: the contact force hardly changes any more. Proof by "
-    "a status step would take half as long again, or longer.",
+    "a status step would take as long again, or longer.",
 )
 UNPROVABLE = Status(
     Ending.CONVERGED,
@@ -200,16 +200,14 @@ def diverged(iteration: int) -> Status:
 
 
 def certified(
-    finish: Iterate, certificate: Certificate, error: float = math.nan, advice: str = ""
+    answer: Answer, certificate: Certificate, error: float = math.nan, advice: str = ""
 ) -> Status:
     """Status of a run that ends with a certified solution.
 
     Parameters
     ----------
-    finish
-        The certified solution as an iterate.
-    certificate
-        Its proof.
+    answer, certificate
+        The certified solution, and its proof.
     error
         Relative error of the contact force of the last iterate before; NaN without one.
     advice
@@ -217,22 +215,22 @@ def certified(
     """
     message = f"{_CERTIFIED} (residual {certificate.residual:.0e})."
     if not math.isnan(error):
-        message += _way_to(finish, error)
+        message += _way_to(answer, error)
         if advice:
             message += f" {advice}"
-    return with_jump(Status(Ending.CONVERGED, message), finish.problem, certificate)
+    return with_jump(Status(Ending.CONVERGED, message), answer.problem, certificate)
 
 
-def _way_to(finish: Iterate, error: float) -> str:
+def _way_to(answer: Answer, error: float) -> str:
     """Sentence on the last iterate before a certified solution, by its error."""
-    before = finish.number - 1
+    before = answer.number - 1
     percent = float(f"{100.0 * error:.2g}")
     shown = f"{percent:g}"
     if error > 1.0:
         shown = "more than 100"
     if error > FAR:
         return _BY_INCREMENTS.format(before, shown)
-    if finish.is_answer:
+    if answer.is_beside:
         return _SEARCHED.format(percent)
     return _FOUND.format(before, shown)
 

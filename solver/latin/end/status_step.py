@@ -81,7 +81,7 @@ def status_step(
     solver: Incremental,
     problem: Problem,
     states: States,
-    max_systems: int,
+    max_systems: int | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> tuple[Reference, Certificate | None]:
     """Correct the states of an iterate to a solution, and certify that if it is one.
@@ -95,7 +95,7 @@ def status_step(
     states
         States to begin with, as of `states_of`, shape (n_forces, n_instants).
     max_systems
-        Largest number of linear systems.
+        Largest number of linear systems; None sets no limit.
     stop
         Called before each system; returns True where the step is to be given up.
 
@@ -132,12 +132,12 @@ def states_of(iterate: Iterate) -> States:
     components of open ones.
     """
     problem = iterate.problem
-    sizes = np.array([len(law.positions) for law in problem.rubbing.values()])
-    status = contact_status(iterate, np.minimum(STILL, FRONT / sizes**2))
-    states: list[States] = []
-    for name, law in problem.rubbing.items():
-        tangential = status[problem.contact_points[name]]
+    contacts = problem.rubbing
+    status = contact_status(iterate, np.minimum(STILL, FRONT / contacts.sizes**2))
+    states = np.empty((contacts.n_forces, problem.n_instants), dtype=np.int8)
+    for law, _, points, forces in contacts.stacks:
+        tangential = status[points]
         if law.normal is not None:
-            states.append(np.where(tangential == OPEN, OPEN, 0).astype(np.int8))
-        states.append(tangential)
-    return np.concatenate(states)
+            states[forces[0]] = np.where(tangential == OPEN, OPEN, 0)
+        states[forces[-1]] = tangential
+    return states

@@ -1,4 +1,8 @@
-"""Stop rules: criteria (`Stop`), and their state during a run (`StopState`)."""
+"""Stop rules: criteria (`Stop`), and their state during a run (`StopState`).
+
+A run is judged by one rule, at iterations that grow by a sixteenth. The rule, and what
+each constant of it buys, are in MATHEMATICS.md, 7.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +14,10 @@ from typing import Protocol
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.checks import Number, check
-from solver.latin.end.certified import finished
-from solver.latin.end.cost import WAIT
-from solver.latin.end.estimate import LAST, SOLVED, ErrorEstimate
+from solver.latin.end.certified import certified_answer, own_answer
+from solver.latin.end.estimate import AGAIN, OBEYED, ErrorEstimate
 from solver.latin.end.status import (
     ABOVE,
     AT_LIMIT,
@@ -41,27 +45,15 @@ from solver.latin.iterate import Iterate
 from solver.latin.stages.pgd import PGD
 from solver.reference.distance import HIDDEN, kkt_residual
 
-DEFAULT_ACCURACY = 0.01
-"""Accuracy of a status step in a run without a criterion on the accuracy."""
-LEAST_VIOLATION = 1e-12
 LARGEST_VIOLATION = 1e-2
-"""Bounds on the limit of the k-free indicator at the end. Between them the limit is the
-root of the tolerance on eta, which is a ratio of squares. By default the friction force
-is then within 0.1 % (block, layers) to 2 % (40 wires) of the reference; with a limit
-100 times as large it was up to 20 % off (measured).
-"""
-SHARE = 8
-"""Part of the iterations so far after which, at the latest, a number that may be low
-enough is computed again: the eighth part."""
-WINDOW = 200
-"""Iterations without a lower indicator after which a run is called stalled."""
-OBEYED = 1e-10
-"""KKT residual up to which an iterate is a solution of the discrete problem by
-itself."""
-FACTOR = 0.99
-"""Factor on the lowest indicator so far, below which an indicator counts as lower."""
-SELDOM = 16
-"""Iterations between two looks at a stall, and at an iterate that may be a solution."""
+"""Largest limit of the k-free indicator at the end; below it the limit is the root of
+the tolerance on eta, which is a ratio of squares. By default the friction force is then
+within 0.1 % (block, layers) to 2 % (40 wires) of the reference; with a limit 100 times
+as large it was up to 20 % off (measured)."""
+SHARE = 16
+"""Part of the iterations so far after which a run is judged again: the sixteenth."""
+LATE = 100
+"""Iterations before which no run is called stalled."""
 
 
 @dataclass(frozen=True)
@@ -140,8 +132,8 @@ class StopState:
     the accuracy of that solution. A run also ends when the LATIN indicator has stopped
     falling, or when fields are no longer finite.
 
-    Most of these numbers cost as much as an iteration. They are computed at the first
-    and the last iteration, and when they may be low enough.
+    Most of these numbers cost as much as an iteration. They are computed at iterations
+    that grow by a sixteenth, and at the last one.
 
     Parameters
     ----------
@@ -169,14 +161,12 @@ class StopState:
         self._remedies = remedies_of(
             may_finish=self._may_finish, has_bases=self._has_bases
         )
-        accuracy = DEFAULT_ACCURACY
-        if self._asks_accuracy:
-            accuracy = self._stop.accuracy
         self.estimate = ErrorEstimate(
-            accuracy, needs_proof=self._has_bases, interrupted=interrupted
+            self._stop.accuracy,
+            needs_proof=self._has_bases,
+            interrupted=interrupted,
         )
-        self._goal = NextCheck()
-        self._sufficient = NextCheck()
+        self._next = 1
         self._stall = StallCheck()
 
     def judge(self, iterate: Iterate) -> Decision:
@@ -192,31 +182,20 @@ class StopState:
             )
         error, status = self._ending(iterate)
         certificate = self.estimate.certificate
-        residual = self._residual(iterate, status)
+        residual = self._own_residual(iterate, status)
         is_solution = residual <= OBEYED
         if is_solution:
             status = obeyed(residual)
         decision = Decision(self._billed(iterate, began), error, status, certificate)
         if is_solution and self._may_finish:
-            return self._finished_by_itself(iterate, decision, residual)
+            answer = own_answer(iterate, residual, is_beside=self._searches)
+            last = replace(decision, estimated_error=residual)
+            return replace(decision, status=None, finished=(answer, last))
         # A search goes on though its answer is known, until it comes to its own end.
         goes_on = self._searches and status is None
         if certificate is None or not self._may_finish or goes_on:
             return decision
         return self._finished(iterate, decision, certificate)
-
-    def _finished_by_itself(
-        self, iterate: Iterate, decision: Decision, residual: float
-    ) -> Decision:
-        """End a run with an iterate that is a solution, by its KKT residual."""
-        answer = replace(
-            iterate,
-            number=iterate.number + 1,
-            residual=residual,
-            is_answer=self._searches,
-        )
-        last = replace(decision, estimated_error=residual)
-        return replace(decision, status=None, finished=(answer, last))
 
     def _finished(
         self, iterate: Iterate, decision: Decision, certificate: Certificate
@@ -224,8 +203,13 @@ class StopState:
         """End a run with its certified solution, as one more iterate."""
         began = time.perf_counter()
         error = certificate.distance.of_friction_force(iterate)
-        answer = finished(iterate.problem, iterate.k, certificate, iterate)
-        answer = replace(answer, is_answer=self._searches)
+        answer = certified_answer(
+            iterate.problem,
+            iterate.k,
+            certificate,
+            iterate,
+            is_beside=self._searches,
+        )
         advice = ""
         if decision.status is not None and _is_failure(decision.status):
             advice = decision.status.advice
@@ -236,22 +220,16 @@ class StopState:
             decision, estimated_error=error, status=None, finished=(answer, last)
         )
 
-    def _residual(self, iterate: Iterate, status: Status | None) -> float:
-        """KKT residual of an iterate that may be a solution, NaN if not computed.
+    def _own_residual(self, iterate: Iterate, status: Status | None) -> float:
+        """KKT residual of the iterate at which a run would fail; NaN at all others.
 
-        An iterate may be one where both stages agree up to rounding. The residual costs
-        much, so it is computed every `SELDOM` iterations, and where a run would end
-        without an answer.
+        That iterate may be one where both stages agree up to rounding.
         """
-        runs_to_answer = self._may_finish and not self._searches
-        is_turn = runs_to_answer and status is None and iterate.number % SELDOM == 0
-        is_due = is_turn or _is_failure(status)
-        if self.estimate.is_proven or not is_due or iterate.indicator > SOLVED:
-            return math.nan
         problem = iterate.problem
-        if problem.no_reference or problem.goes_on:
-            return math.nan
-        return kkt_residual(iterate, problem, HIDDEN)
+        has_rules = not (problem.no_reference or problem.goes_on)
+        if _is_failure(status) and has_rules and not self.estimate.is_proven:
+            return kkt_residual(iterate, problem, HIDDEN)
+        return math.nan
 
     def _billed(self, iterate: Iterate, began: float) -> float:
         """Bill the time since `began` to the rules; seconds of the whole run."""
@@ -262,18 +240,24 @@ class StopState:
         """Estimated error, NaN if not needed, and status, None if the run goes on."""
         estimate = self.estimate
         is_last = self._is_last(iterate)
-        is_due = is_last or iterate.number >= self._goal.next
-        error = math.nan
+        is_due = is_last or iterate.number >= self._next
         # The iterations of a search are counted, so its error is needed at each of
         # them; a distance costs a hundredth to a sixth of one (measured on the five
         # scenes).
-        if self._asks_accuracy and (is_due or self._searches):
+        counts = self._searches and estimate.is_proven
+        error = math.nan
+        if self._asks_accuracy and (is_due or counts):
             error = estimate(iterate)
-        status = self._reached(iterate, error, is_due=is_due, is_last=is_last)
+        status = None
+        if self._searches and estimate.is_proven and error <= self._stop.accuracy:
+            status = PROVEN
+        elif is_due:
+            self._next = iterate.number + 1 + iterate.number // SHARE
+            status = self._reached(iterate, error)
         gives_up = _is_failure(status) or (status is None and is_last)
         if gives_up and self._may_finish and not estimate.is_proven:
             # Without a certified solution the run would have no answer.
-            estimate.try_step(iterate, LAST)
+            estimate.try_step(iterate)
         if estimate.ending is not None:
             return error, estimate.ending
         if status is None and is_last:
@@ -291,18 +275,12 @@ class StopState:
         seconds = iterate.seconds + self.seconds
         return iterate.number >= self._stop.iterations or seconds >= self._stop.seconds
 
-    def _reached(
-        self, iterate: Iterate, error: float, *, is_due: bool, is_last: bool
-    ) -> Status | None:
+    def _reached(self, iterate: Iterate, error: float) -> Status | None:
         """Status of a run that has converged or stalled, None if neither."""
-        is_proven = self.estimate.is_proven
-        if self._searches and is_proven and error <= self._stop.accuracy:
-            return PROVEN
-        if is_due:
-            status = self._converged(iterate, error)
-            if status is not None:
-                return status
-        if self._is_sufficient(iterate, is_last=is_last):
+        status = self._converged(iterate, error)
+        if status is not None:
+            return status
+        if self._stop.sufficient > 0.0 and self._is_low(iterate, self._stop.sufficient):
             return BELOW
         if self._stall.has_stalled(iterate):
             is_low = self._stall.indicator <= self._stop.tolerance
@@ -312,11 +290,9 @@ class StopState:
     def _converged(self, iterate: Iterate, error: float) -> Status | None:
         """Status of a run that meets accuracy and tolerance, None if it does not."""
         asks_tolerance = math.isfinite(self._stop.tolerance)
-        if self._asks_accuracy and not self._is_accurate(iterate.number, error):
+        if self._asks_accuracy and not error <= self._stop.accuracy:
             return None
-        if asks_tolerance and not self._is_low(
-            iterate, self._stop.tolerance, self._goal
-        ):
+        if asks_tolerance and not self._is_low(iterate, self._stop.tolerance):
             return None
         if self._asks_accuracy:
             return self._status_of_accurate(iterate)
@@ -324,41 +300,19 @@ class StopState:
             return BELOW
         return None
 
-    def _is_accurate(self, number: int, error: float) -> bool:
-        """Compare an error with the accuracy, and set the next check."""
-        share = error / self._stop.accuracy
-        # Only the distance to a known solution foretells when it will be low enough.
-        if self.estimate.is_proven:
-            self._goal.update(number, share)
-        else:
-            self._goal.update(number, math.nan)
-        if not share <= 1.0:
-            return False
-        # The indicator says when to check again.
-        self._goal.next = number + 1
-        return True
-
     def _status_of_accurate(self, iterate: Iterate) -> Status | None:
         """Status of a run that is accurate enough, None if that needs a proof first."""
         estimate = self.estimate
         if estimate.is_proven:
             return PROVEN
         # An estimate counts for nothing on bases, or where a step is worth its cost.
-        if estimate.needs_proof or estimate.can_be_proven(iterate, least=WAIT):
+        if estimate.needs_proof or estimate.can_be_proven(iterate):
             return None
         if iterate.problem.no_reference:
             return UNPROVABLE
         return EXPECTED
 
-    def _is_sufficient(self, iterate: Iterate, *, is_last: bool) -> bool:
-        """Check whether the LATIN indicator is low enough to end the run by itself."""
-        sufficient = self._stop.sufficient
-        is_due = is_last or iterate.number >= self._sufficient.next
-        if sufficient > 0.0 and is_due:
-            return self._is_low(iterate, sufficient, self._sufficient)
-        return False
-
-    def _is_low(self, iterate: Iterate, tolerance: float, check: NextCheck) -> bool:
+    def _is_low(self, iterate: Iterate, tolerance: float) -> bool:
         """Check whether the LATIN indicator is low, and another measure agrees.
 
         That is the k-free indicator, or the distance to a certified solution. The LATIN
@@ -367,10 +321,9 @@ class StopState:
         indicator is relative to the contact forces, which vanish where all contacts
         open.
         """
-        check.update(iterate.number, iterate.indicator / tolerance)
         if iterate.indicator > tolerance:
             return False
-        enough = min(max(math.sqrt(tolerance), LEAST_VIOLATION), LARGEST_VIOLATION)
+        enough = min(math.sqrt(tolerance), LARGEST_VIOLATION)
         if iterate.violation <= enough:
             return True
         return self.estimate.is_proven_within(enough, iterate)
@@ -394,52 +347,27 @@ def _is_failure(status: Status | None) -> bool:
     return status is not None and status.ending is not Ending.CONVERGED
 
 
-class NextCheck:
-    """The next iteration at which a falling number is worth computing.
-
-    The number, over its limit, has to fall to 1. The next check is half way to the
-    iteration at which its last two values let expect that. While the number does not
-    fall, the next check comes after half of the longest wait, so that little is missed.
-    """
-
-    def __init__(self) -> None:
-        self.next = 0
-        self._last = (0, math.nan)
-
-    def update(self, iteration: int, value: float) -> None:
-        """Set the next check by a value at an iteration; NaN foretells nothing."""
-        before, last = self._last
-        self._last = iteration, value
-        half_way = 0.0
-        if 1.0 < value < last and iteration > before:
-            half_way = 0.5 * math.log(value) / math.log(last / value)
-            half_way *= iteration - before
-        shortest = iteration // (2 * SHARE)
-        if value <= 1.0:
-            shortest = 0
-        wait = int(min(half_way, iteration / SHARE))
-        self.next = iteration + 1 + max(wait, shortest)
-
-
 class StallCheck:
-    """Watch on a LATIN indicator that stops falling; `indicator` is the lowest."""
+    """Watch on a LATIN indicator that stops falling; `indicator` is the lowest.
+
+    It has stopped where it was lowest in the first half of the iterations.
+    """
 
     def __init__(self) -> None:
         self.indicator = math.inf
         self._number = 0
-        self._k = np.zeros(0)
+        self._k: Array | None = None
 
     def has_stalled(self, iterate: Iterate) -> bool:
         """Check whether the indicator has stopped falling."""
         number = iterate.number
+        if AGAIN * number < LATE:
+            return False
         if iterate.k is not self._k:
             # The indicator is measured by k, so values for another k do not compare.
             self.indicator = math.inf
-            self._number = number
             self._k = iterate.k
-        if number % SELDOM and number - self._number < WINDOW:
-            return False
-        if iterate.indicator < FACTOR * self.indicator:
+        if iterate.indicator < self.indicator:
             self.indicator = iterate.indicator
             self._number = number
-        return number - self._number >= WINDOW
+        return number >= max(AGAIN * self._number, LATE)

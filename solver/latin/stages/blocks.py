@@ -37,6 +37,7 @@ class Blocks:
     """
 
     def __init__(self, n_rows: int, n_instants: int, threads: int = 1) -> None:
+        # By the size alone: results must not depend on the machine.
         count = min(max(n_rows * n_instants // VALUES, 1), MOST, n_instants)
         ends = [number * n_instants // count for number in range(count + 1)]
         self.slices = [slice(first, last) for first, last in pairwise(ends)]

@@ -63,6 +63,7 @@ class CoarseProblem:
 
     def _add_at(self, instants: slice) -> None:
         """Add W~ to the targets of all groups, at some instants."""
+        # The macro forces of all groups first, as w~ couples them.
         targets = [member.target(instants) for member in self._members]
         forces = []
         for member, target in zip(self._members, targets, strict=True):
@@ -231,6 +232,7 @@ def _solver(
             return np.asarray(spread.T @ factor.solve(right))
 
         return solve
+    # Few macro unknowns: all products are made once, and an iteration has one.
     inverse = spread.T @ factor.solve(np.eye(system.shape[0]))
     shift = np.asfortranarray(inverse @ constant)
     product = np.asfortranarray(inverse @ spread)

@@ -66,6 +66,7 @@ class Group:
 
         `field` has shape (n_rows, n_instants), scaled.
         """
+        # One instant after the other in memory, so that each is gathered in one piece.
         flat = self.target.T.reshape(self._n_instants, -1)[instants]
         np.take(field.T[instants], self._order, axis=1, out=flat, mode="clip")
 
@@ -95,6 +96,7 @@ class Group:
         if relaxation == 1.0:
             np.copyto(old, target)
             return
+        # In place: new fields of this size would cost more than the arithmetic.
         np.subtract(target, old, out=target)
         np.multiply(target, relaxation, out=target)
         np.add(old, target, out=old)

@@ -59,12 +59,13 @@ class LinearStage:
     ) -> None:
         self.groups = [form.group(problem, alike, k) for alike in _alike(problem, k)]
         self.is_full = isinstance(form, Full)
+        # A basis spans all instants, so its groups cannot work on some of them.
         if self.is_full:
             self._blocks = blocks
         else:
             self._blocks = Blocks(1, problem.n_instants)
         self._coarse = None
-        has_macro = any(law.macro is not None for law in problem.rubbing.values())
+        has_macro = any(law.macro is not None for law in problem.rubbing.laws.values())
         if multiscale and (problem.cuts or has_macro):
             self._coarse = CoarseProblem(problem, self.groups, self._blocks)
         self._shape = (problem.n_rows, problem.n_instants)
@@ -123,6 +124,7 @@ def _alike(problem: Problem, k: Array) -> list[list[int]]:
     """Numbers of substructures with one elasticity and one k, (n_rows,), together."""
     groups: dict[tuple[int, bytes], list[int]] = {}
     for number, part in enumerate(problem.substructures):
+        # Equal bytes of k give the same operator, to the bit.
         operator = (id(part.elasticity), k[part.rows].tobytes())
         groups.setdefault(operator, []).append(number)
     return list(groups.values())

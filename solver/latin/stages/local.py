@@ -65,8 +65,11 @@ class LocalStage:
         if self._slide is not None:
             incoming = self._slide.balanced(incoming)
         self.incoming = incoming
+        # A new field, as iterates keep that of their own iteration.
         displacement = np.empty_like(self._outgoing)
         self.displacement = displacement
+        # Laws that remember walk through all instants, before these are divided in
+        # blocks.
         for rule in self._remembering:
             rule(incoming, displacement, ALL)
         self._blocks.each(lambda instants: self._at(incoming[:, instants], instants))

@@ -158,6 +158,8 @@ class PGDGroup(Group):
         # What was last reflected is read already, and its place is free.
         scratch = self._columns(shared.members, self._reflected)
         whole = basis.squared(target, scratch)
+        # By Pythagoras, as modes are orthonormal: the rest itself is made only if it
+        # counts.
         missed = whole - basis.squared_of(wanted)
         change = wanted - basis.time_functions
         basis = replace(
@@ -201,6 +203,8 @@ class PGDGroup(Group):
             if mode is None:
                 break
             time_function = (self.k * mode) @ residual
+            # The rest is orthogonal to the new mode, so the next pair adds something
+            # new.
             residual -= np.multiply.outer(mode, time_function)
             basis = basis.appended(mode, relaxation * time_function)
             explained += basis.squared_of(time_function[None])

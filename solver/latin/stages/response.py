@@ -90,6 +90,7 @@ class DenseResponse(Response):
         pulled = np.zeros((self._n_dofs, len(k)))
         pulled[self._trace, np.arange(len(k))] = 1.0
         compliance = self._solve(pulled)[self._trace]
+        # A compliance is symmetric; rounding of the solution is not.
         self._compliance = 0.5 * (compliance + compliance.T)
         self._reflection = 2.0 * self._compliance * k - np.eye(len(k))
 

@@ -33,8 +33,11 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
     """
     if problem.own_laws or problem.given_forces or problem.motions is None:
         return None
-    springs = [law.normal for law in problem.rubbing.values() if _is_spring(law)]
-    ground = [law for law in problem.rubbing.values() if not _is_spring(law)]
+    if len(problem.rubbing) != 2:
+        return None
+    laws = problem.rubbing.values()
+    springs = [law.normal for law in laws if _is_spring(law)]
+    ground = [law for law in laws if not _is_spring(law)]
     if len(ground) != 1 or len(springs) != 1:
         return None
     law = ground[0]
@@ -135,6 +138,7 @@ class Slide:
 
         Both z have shape (n_rows, n_instants), scaled.
         """
+        # Pressing forces do not depend on a slide along the support, so they are known.
         held = incoming[self._across]
         pressing = self._k * (np.maximum(held, self._closed) - held)
         slack = (self._bound + self._friction * pressing) * self._compliance
@@ -228,6 +232,7 @@ class Slide:
             # be a flat.
             if trial and is_balanced:
                 return step, held
+            # Points at a bound slip, and their friction does not change with the step.
             slope = float(pulled(held == wanted))
             if end > step:
                 slope += self._spring
@@ -255,6 +260,7 @@ class Slide:
         *unbalanced, at_mean = self._stiffness @ held + pulled + load
         if at_mean == 0.0:
             step = float(steps[-1])
+        # Before the first turn all points slip, and the spring alone changes its force.
         elif unbalanced[0] <= 0.0:
             step = float(turns[0] + unbalanced[0] / self._spring)
         else:
@@ -264,11 +270,10 @@ class Slide:
 
 def _load_along(problem: Problem, motion: Array) -> Array:
     """Load of body forces along a motion, (n_dofs,), of shape (n_instants,), scaled."""
-    loads = [
-        motion[part.dofs] @ part.body_force
-        for part in problem.substructures
-        if part.body_force is not None
-    ]
+    loads = []
+    for part in problem.substructures:
+        if part.body_force is not None:
+            loads.append(motion[part.dofs] @ part.body_force)
     if loads:
         return np.asarray(np.sum(loads, axis=0))
     return np.zeros(problem.n_instants)

@@ -17,15 +17,15 @@ class ExactCurve:
     Attributes
     ----------
     of
-        The quantity: friction on the body above and pressure, of the interface that all
-        of it is about; axial force in a rod; how far slip has spread; or the loop that
-        the scene shows.
+        The quantity: friction on the body above, or pressure, of the scene's main
+        interface; axial force in a rod; the front of slip; or the scene's loop.
     across
-        Places, shape (n_places,), m; of a front where it is, of a loop what it is over,
-        shape (n_instants,).
+        Horizontal axis. Of fields the positions, shape (n_positions,), m; of a front
+        its position, m, of a loop its abscissa, shape (n_instants,) both.
     up
-        Shape (n_places, n_instants), N/m or Pa of tractions, N of an axial force; of a
-        front the instants, s, of a loop its force, shape (n_instants,).
+        Vertical axis. Of tractions, N/m or Pa, and of an axial force, N, shape
+        (n_positions, n_instants); of a front the instants, s, of a loop its force, N,
+        shape (n_instants,) both.
     """
 
     of: Of

@@ -29,9 +29,9 @@ class BentWire:
     Attributes
     ----------
     wire
-        Its layer.
+        Layer of the wire.
     radius
-        Of its helix, m.
+        Radius of its helix, m.
     bound
         Friction bound mu q per length of wire, N/m, above 0.
     """
@@ -55,44 +55,49 @@ class BentWire:
         Parameters
         ----------
         curvature
-            Grown from zero, of any shape, 1/m.
+            Curvature, grown from zero, of any shape, 1/m.
+
+        Returns
+        -------
+        The moment, of the same shape.
         """
         wire = self.wire
         force = self.bound * self.radius / abs(np.sin(wire.lay))
-        share = np.array([self._share(float(kappa)) for kappa in np.ravel(curvature)])
-        moment = self.radius * np.cos(wire.lay) * force * share
-        return np.asarray(moment.reshape(np.shape(curvature)))
+        shares = np.vectorize(self._share, otypes=[float])(curvature)
+        return np.asarray(self.radius * np.cos(wire.lay) * force * shares)
 
     def _share(self, curvature: float) -> float:
-        """Moment over R cos(alpha) times the force that friction builds up in a radian."""
+        """Moment over R cos(alpha) times the friction force of a radian."""
         ratio = curvature / self.first_slip
         if ratio <= 1.0:
             return 0.5 * ratio
         phi = 0.5 * np.pi
+        # Zero solves the equation of phi, too, so the bracket leaves it out.
         if ratio < phi:
-            phi = float(
-                brentq(
-                    lambda angle: angle - ratio * np.sin(angle), 1e-9, phi, xtol=1e-14
-                )
-            )
+            phi = float(brentq(_beyond_slip, 1e-9, phi, args=(ratio,), xtol=1e-14))
         spread = 0.5 * phi * (0.5 * np.pi - phi) / np.sin(phi)
         return float(2.0 / np.pi * (spread + np.sin(phi) - 0.5 * phi * np.cos(phi)))
 
 
+def _beyond_slip(angle: float, ratio: float) -> float:
+    """Residual phi - (kappa / kappa_0) sin(phi), zero at the angle of the slip zone."""
+    return angle - ratio * float(np.sin(angle))
+
+
 @dataclass(frozen=True)
 class BentStrand:
-    """A strand under a tension that stays.
+    """A strand under constant tension.
 
     Attributes
     ----------
     section
-        Its core and layers.
+        Cross-section: its core and layers.
     friction
         Coefficient of friction mu, above 0.
     tension
-        N, above 0.
+        Tension of the strand, N, above 0.
     factors
-        On mu of every layer and what it lies on, shape (n_layers,), above 0.
+        Factors on mu between every layer and the one below, shape (n_layers,), above 0.
     """
 
     section: CrossSection
@@ -102,26 +107,23 @@ class BentStrand:
 
     @cached_property
     def layers(self) -> tuple[BentWire, ...]:
-        """One wire of each layer, inside out."""
+        """A wire of each layer, inside out."""
+        section = self.section
         tension = np.array([self.tension])
-        bounds = self.section.friction_bounds(tension, self.friction, self.factors)[
-            :, 0
-        ]
-        return tuple(
-            BentWire(
-                self.section.layers[number], self.section.radii[number], float(bound)
-            )
-            for number, bound in enumerate(bounds)
-        )
+        bounds = section.friction_bounds(tension, self.friction, self.factors)[:, 0]
+        wires = zip(section.layers, section.radii, bounds.tolist(), strict=True)
+        return tuple(BentWire(*wire) for wire in wires)
 
     def moment(self, curvature: Array) -> Array:
-        """Moment as the strand is first bent, N m; the curvature has grown from zero, 1/m."""
-        own = self.section.slipping_bending * np.asarray(curvature)
-        wires = zip(self.section.layers, self.layers, strict=True)
-        return np.asarray(
-            own + sum(layer.wires * wire.moment(curvature) for layer, wire in wires)
-        )
+        """Moment as the strand is first bent, N m, of the shape of the curvature.
+
+        The curvature has grown from zero, of any shape, 1/m.
+        """
+        moment = np.zeros(np.shape(curvature))
+        for layer, wire in zip(self.section.layers, self.layers, strict=True):
+            moment = moment + layer.wires * wire.moment(curvature)
+        return np.asarray(self.section.slipping_bending * curvature + moment)
 
     def along(self, path: Array) -> Array:
-        """Moment along any path of the curvature from zero, of its shape, N m."""
+        """Moment along a path of the curvature from zero, 1/m; (n_instants,), N m."""
         return masing(path, lambda curvature: float(self.moment(np.array(curvature))))

@@ -23,117 +23,141 @@ from scipy.special import erfc
 from solver.arrays import Array
 
 SHARES = np.cos((np.arange(500) + 0.5) * np.pi / 1000)
-"""Places in a zone, over its half-length, of one weight in integrals over ds / sqrt(a^2
-- s^2)."""
+"""Nodes of Gauss-Chebyshev quadrature over a zone, over its half-length: of equal
+weights in integrals over ds / sqrt(a^2 - s^2)."""
 DRY = 30.0
 """Diffusion lengths beyond which erfc has no digit."""
 EVEN = 1e-12
-"""Share of the interval, or of the largest bend, that rounding may make of none."""
+"""Share of the interval, or of the largest bend, up to which a difference is
+rounding."""
 
 
-def spread(place: Array, instants: Array, given: Array, diffusivity: float) -> Array:
-    """Pressure of the fluid along the line, (n_places, n_instants), Pa.
+def spread(
+    positions: Array, instants: Array, given: Array, diffusivity: float
+) -> Array:
+    """Pressure of the fluid along the line, (n_positions, n_instants), Pa.
 
     Parameters
     ----------
-    place, instants
-        Distance from the end, m, not negative; and instants from 0 on, s, at least two.
-        Where they are not evenly spaced, each bend of what is given is added on its
-        own.
+    positions
+        Distances from the end, shape (n_positions,), m, not negative.
+    instants
+        Instants from 0 on, at least two, shape (n_instants,), s.
     given
         Pressure at the end, shape (n_instants,), Pa: its first value from the very
         beginning, and linear in between.
     diffusivity
-        Alpha, m^2/s; positive.
+        Diffusivity alpha, m^2/s; positive.
     """
     steps = np.diff(instants)
     later = instants[1:] - instants[0]
     bends = np.diff(np.diff(given) / steps, prepend=0.0)
-    pressure = given[0] * erfc(_far(place, later, diffusivity))
+    pressure = given[0] * erfc(_diffusion_lengths(positions, later, diffusivity))
+    # Every bend of the pressure adds the same answer: at even steps a convolution.
     if np.ptp(steps) <= EVEN * later[-1]:
-        risen = _risen(place, later, diffusivity)
-        # The convolution in time; that of scipy.signal takes half a second to import.
+        risen = _risen(positions, later, diffusivity)
+        # That of scipy.signal takes half a second to import.
         shifted = (bends, np.zeros_like(bends))
         pressure += matmul_toeplitz(shifted, risen.T).T
     else:
         for number in np.flatnonzero(np.abs(bends) > EVEN * np.abs(bends).max()):
             after = instants[number + 1 :] - instants[number]
-            pressure[:, number:] += bends[number] * _risen(place, after, diffusivity)
+            risen = _risen(positions, after, diffusivity)
+            pressure[:, number:] += bends[number] * risen
     # At the end itself it is what is given, to the last digit.
-    pressure[place == 0.0] = given[1:]
-    return np.concatenate([np.zeros((len(place), 1)), pressure], axis=1)
+    pressure[positions == 0.0] = given[1:]
+    return np.concatenate([np.zeros((len(positions), 1)), pressure], axis=1)
 
 
-def _risen(place: Array, later: Array, diffusivity: float) -> Array:
-    """Pressure where that at the end rises by 1 Pa/s, shape (n_places, n_times)."""
-    far = _far(place, later, diffusivity)
-    steady = erfc(far)
-    return np.asarray(
-        later
-        * (
-            (1.0 + 2.0 * far**2) * steady
-            - 2.0 / np.sqrt(np.pi) * far * np.exp(-(far**2))
-        )
-    )
+def _risen(positions: Array, later: Array, diffusivity: float) -> Array:
+    """Pressure under one at the end that rises by 1 Pa/s, (n_positions, n_times), s."""
+    far = _diffusion_lengths(positions, later, diffusivity)
+    steady = (1.0 + 2.0 * far**2) * erfc(far)
+    flowing = 2.0 / np.sqrt(np.pi) * far * np.exp(-(far**2))
+    return np.asarray(later * (steady - flowing))
 
 
-def _far(place: Array, later: Array, diffusivity: float) -> Array:
-    """Places over the diffusion length."""
-    return np.minimum(place[:, None] / np.sqrt(4.0 * diffusivity * later), DRY)
+def _diffusion_lengths(positions: Array, later: Array, diffusivity: float) -> Array:
+    """Positions, m, over the diffusion lengths, (n_positions, n_times)."""
+    return np.minimum(positions[:, None] / np.sqrt(4.0 * diffusivity * later), DRY)
 
 
-def fronts(place: Array, lack: Array) -> Array:
-    """How far from its middle a zone slips that grows in both directions alike, (n_instants,), m.
+def fronts(positions: Array, lack: Array) -> Array:
+    """Half-length of a zone of slip that grows both ways alike, (n_instants,), m.
 
-    Nothing is singular at its ends: there what the stress lacks to the strength, times
-    ds / sqrt(a^2 - s^2), sums up to nothing over the zone. 0 where nothing slips,
-    infinite where all does.
+    Stress is finite at its ends, so the integral over the zone of what the stress lacks
+    to the strength, times ds / sqrt(a^2 - s^2), is zero. The half-length is 0 where
+    nothing slips, infinite where all does.
 
     Parameters
     ----------
-    place
-        Distance from the middle, increasing from 0, shape (n,), m; linear in between.
+    positions
+        Distances from the middle, increasing from 0, shape (n_positions,), m.
     lack
-        Strength less the stress far away, shape (n, n_instants), Pa; it grows along the
-        interface, and falls with time.
+        Strength less the stress far away, shape (n_positions, n_instants), Pa, linear
+        between positions; it grows along the interface, and falls with time.
     """
     half_lengths = np.zeros(lack.shape[1])
+    last = float(positions[-1])
     for instant, lacking in enumerate(lack.T):
-
-        def left(half: float, lacking: Array = lacking) -> float:
-            return float(np.interp(half * SHARES, place, lacking).mean())
-
-        if lacking[0] < 0.0:
-            last = float(place[-1])
-            if left(last) < 0.0:
-                half_lengths[instant] = np.inf
-            else:
-                half_lengths[instant] = brentq(left, 0.0, last)
+        if not lacking[0] < 0.0:
+            continue
+        if _mean_lack(last, positions, lacking) < 0.0:
+            half_lengths[instant] = np.inf
+        else:
+            half_lengths[instant] = brentq(
+                _mean_lack, 0.0, last, args=(positions, lacking)
+            )
     return half_lengths
 
 
-def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -> Array:
-    """Stress that such a zone adds ahead of it, at distances from the middle, Pa.
+def _mean_lack(half_length: float, positions: Array, lack: Array) -> float:
+    """Weighted mean of `lack` over a zone, as of `fronts`, at one instant."""
+    return float(np.interp(half_length * SHARES, positions, lack).mean())
 
-    `place` and `lack` are as of `fronts`, at one instant.
+
+def stress_ahead(
+    beyond: Array, positions: Array, lack: Array, half_length: float
+) -> Array:
+    """Stress that a zone of slip adds ahead of it, shape (n_beyond,), Pa.
+
+    Parameters
+    ----------
+    beyond
+        Distances from the middle of the zone, beyond its end, shape (n_beyond,), m.
+    positions, lack
+        As of `fronts`, at one instant, shape (n_positions,) each.
+    half_length
+        Half-length of the zone, m.
     """
-    lacking = np.interp(half_length * SHARES, place, lack)
+    lacking = np.interp(half_length * SHARES, positions, lack)
     square = beyond**2 - half_length**2
     near = square[:, None] + (half_length**2) * (1.0 - SHARES**2)
     return np.asarray(np.sqrt(square) * beyond * (lacking / near).mean(axis=1))
 
 
 def slip_under_growing_strength(
-    place: Array, half_length: float, drop: float, stiffness: float
+    positions: Array, half_length: float, drop: float, stiffness: float
 ) -> Array:
-    """Slip of a zone of given length, whose strength grows evenly from its middle, m; 0 outside.
+    """Slip of a zone whose strength grows evenly from its middle, (n_positions,), m.
 
-    Stress drops by `drop`, Pa, in the middle and by nothing at both ends, beyond which
-    nothing slips; the stiffness is G / (1 - nu), Pa (R. Buergmann, D. D. Pollard, S. J.
-    Martel, Slip distributions on faults, J. Struct. Geol. 16, 1675-1690, 1994).
+    The slip is zero beyond the ends of the zone. (R. Buergmann, D. D. Pollard, S. J.
+    Martel, Slip distributions on faults, J. Struct. Geol. 16, 1675-1690, 1994.)
+
+    Parameters
+    ----------
+    positions
+        Distances from the middle of the zone, shape (n_positions,), m.
+    half_length
+        Half-length of the zone, m.
+    drop
+        Drop of the stress in the middle, Pa; it is zero at both ends.
+    stiffness
+        Stiffness G / (1 - nu), Pa.
     """
-    share = np.clip(np.abs(place) / half_length, 0.0, 1.0)
+    share = np.clip(np.abs(positions) / half_length, 0.0, 1.0)
     root = np.sqrt(1.0 - share**2)
+    # In the middle arccosh is infinite, but its factor is zero.
     safe = np.maximum(share, np.finfo(float).tiny)
     grown = (root + share**2 * np.arccosh(1.0 / safe)) / np.pi
     return np.asarray(2.0 * drop / stiffness * half_length * (root - grown))

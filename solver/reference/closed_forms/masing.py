@@ -1,8 +1,8 @@
-"""Masing's rule: the answer to a load that turns from that to a load that grows.
+"""Masing's rule: answers to a load that turns, from that to a growing load.
 
-From a turning point on the answer is the first curve, doubled in both directions; a
-loop that closes is forgotten, and what went on before goes on (G. Masing, 1926, with
-Madelung's memory).
+From a turning point on the answer is the first curve, doubled in both directions. A
+loop that closes is forgotten, and the answer goes on as if it had not been (G. Masing,
+1926, with Madelung's memory).
 """
 
 from __future__ import annotations
@@ -15,23 +15,31 @@ from solver.arrays import Array
 
 
 def masing(load: Array, grown: Callable[[float], float]) -> Array:
-    """Answer to a load from rest on, (n_instants,), monotone between instants.
+    """Answer to a load from rest on, (n_instants,), in the unit of the first curve.
 
-    `grown` is that to a load which has grown from rest to a value, which is not
-    negative.
+    Parameters
+    ----------
+    load
+        The load, monotone between instants, shape (n_instants,).
+    grown
+        First curve: the answer to a load that has grown from rest to a value, which is
+        not negative.
     """
-    turns = [(0.0, 0.0)]  # loads, and the answers at them
+    # Loads at turning points that are remembered, and the answers there.
+    turns = [(0.0, 0.0)]
     now = turns[0]
     answers = np.zeros_like(load)
     for instant, value in enumerate(load.tolist()):
         if (value - now[0]) * (now[0] - turns[-1][0]) < 0.0:
             turns.append(now)
         while len(turns) > 1 and _closes(value, turns):
+            # A closed loop goes with both its turns; rest itself is never forgotten.
             del turns[-2 if len(turns) > 2 else -1 :]
         double = 2.0 if len(turns) > 1 else 1.0
         start, answer = turns[-1]
-        way = value - start
-        now = value, answer + double * float(np.copysign(grown(abs(way) / double), way))
+        change = value - start
+        step = float(np.copysign(grown(abs(change) / double), change))
+        now = value, answer + double * step
         answers[instant] = now[1]
     return answers
 

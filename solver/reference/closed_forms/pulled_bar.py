@@ -1,20 +1,20 @@
-"""Closed forms: a clamped bar pulled over its support, a broken wire (MATHEMATICS.md, 6, 8, 14).
+"""Closed forms of a pulled bar, and of a broken wire (MATHEMATICS.md, 6, 8, 14).
 
 Under Coulomb friction sliding needs the whole bound between a section and the free end,
 R(x) = integral of mu p from x to L. So the normal force N(x, t) follows the load F(t)
 with play R(x), for every bound mu p >= 0 along the bar and every load path from rest,
 full sliding included.
 
-Where the bound changes with time it holds as long as what it leaves stuck is within the
-bound, to an element's length: a bar that stuck beyond what its bound has fallen to
-slips in its middle, and this says nothing of it.
+Where the bound changes with time this holds as long as the friction force stays within
+the bound, to an element's length: a bar that stuck under more than its bound has fallen
+to slips in its middle, which is beyond this closed form.
 
 Unbroken, all wires carry the tension T and nothing slips. A break adds a force n to the
-broken wire, -T at its two new ends, which the neighbours take over in equal shares:
-with m of them, what they slip by is the displacement of a bar of stiffness ES m / (m +
-1), under m times the bound, that is clamped far away and pulled at the break. On a
-rising load the broken wire carries min(T, m mu p |x - x_break|): all of it after T / (m
-mu p).
+broken wire, -T at its two new ends, which the m neighbours take over in equal shares.
+The slip between them is the displacement of a bar of stiffness ES m / (m + 1), under m
+times the bound, that is clamped far away and pulled at the break. On a rising load the
+broken wire carries min(T, m mu p |x - x_break|): all of T from a distance T / (m mu p)
+on.
 """
 
 from __future__ import annotations
@@ -30,11 +30,12 @@ from solver.laws import FrictionLaw
 from solver.laws.play import play
 
 SECTIONS = 4096
-"""Sections, at least, over which the strain is integrated along the bar."""
+"""Smallest number of sections over which the strain is integrated along the bar."""
 AT_ONCE = 60_000
-"""Forces, at sections and instants, that are computed in one go: few enough to stay in
-a cache."""
+"""Number of forces, at sections and instants, computed at once: few enough for a
+cache."""
 STEPS = 100
+"""Largest number of steps to the tension under a rigid grip."""
 PRECISION = 1e-13
 """Change of the tension, as a share of the largest, at which it is accepted."""
 
@@ -53,9 +54,9 @@ class ClosedForm:
         Friction force on the bar over the tributary length of each node, same shape, N.
         A solution with a clamped node cannot tell it from the reaction there.
     displacement
-        Same shape, m. The integral over the strain has an error below 1.5e-8 (mu p L) L
-        / ES for each load reversal remembered: 1e-6 of the end's displacement from an
-        eighth of mu p L on.
+        Displacement, same shape, m. The integral over the strain has an error below
+        1.5e-8 (mu p L) L / ES for each load reversal remembered: 1e-6 of the end's
+        displacement from an eighth of mu p L on.
     """
 
     normal_force: Array
@@ -79,21 +80,19 @@ def closed_form(scene: Rods) -> ClosedForm | None:
         return None
     if scene.friction_law != FrictionLaw():
         return None
-    reach = np.concatenate([_grip_beyond(scene, 0.0), np.zeros_like(scene.bounds[:1])])
-    between = np.concatenate([reach[:1], _grip_beyond(scene, 0.5), reach[-1:]])
+    free_end = np.zeros_like(scene.bounds[:1])
+    slack = np.concatenate([_grip_beyond(scene, 0.0), free_end])
+    # Tributary lengths end in the middles of elements, so friction is the difference
+    # of the normal force between these.
+    between = np.concatenate([slack[:1], _grip_beyond(scene, 0.5), slack[-1:]])
     friction = -np.diff(_normal_force(scene, between), axis=0)
-    most = -np.diff(between, axis=0)
-    if np.any(
-        np.abs(friction) > most + ROUNDING * (reach.max() + np.abs(scene.load).max())
-    ):
+    bound = -np.diff(between, axis=0)
+    blurred = ROUNDING * (slack.max() + np.abs(scene.load).max())
+    if np.any(np.abs(friction) > bound + blurred):
         return None
-    nodal = _normal_force(scene, reach)
-    elongation = (
-        _mean_normal_force(scene, nodal)
-        * scene.length
-        / scene.elements
-        / scene.stiffness
-    )
+    nodal = _normal_force(scene, slack)
+    elongation = _mean_normal_force(scene, nodal) * scene.length / scene.elements
+    elongation /= scene.stiffness
     displacement = np.zeros_like(nodal)
     np.cumsum(elongation, axis=0, out=displacement[1:])
     return ClosedForm(nodal, friction, displacement)
@@ -110,24 +109,30 @@ def _grip_beyond(scene: Rods, share: float | Array) -> Array:
     whole = 0.5 * size * (left + right)
     beyond = np.cumsum(whole[::-1], axis=0)[::-1] - whole
     rest = 1.0 - share
-    return np.asarray(
-        beyond + 0.5 * size * rest * (rest * left + (1.0 + share) * right)
-    )
+    within = 0.5 * size * rest * (rest * left + (1.0 + share) * right)
+    return np.asarray(beyond + within)
 
 
-def _normal_force(scene: Rods, reach: Array) -> Array:
-    return play(np.broadcast_to(scene.load, (len(reach), len(scene.load))), reach)
+def _normal_force(scene: Rods, slack: Array) -> Array:
+    """Normal force N at sections of a slack R, (n_sections, n_instants), N.
+
+    The slack has the shape (n_sections, n_instants or 1), N.
+    """
+    return play(np.broadcast_to(scene.load, (len(slack), len(scene.load))), slack)
 
 
 def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
-    """Mean over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
+    """Mean normal force in each element, (n_elements, n_instants), N.
+
+    By the trapezoidal rule, from that at the nodes, shape (n_nodes, n_instants), N.
+    """
     parts = -(-SECTIONS // scene.elements)
     total = 0.5 * (nodal[:-1] + nodal[1:])
     shares = np.arange(1, parts)[:, None, None] / parts
     size = max(AT_ONCE // nodal.size, 1)
     for first in range(0, parts - 1, size):
-        reach = _grip_beyond(scene, shares[first : first + size])
-        forces = _normal_force(scene, reach.reshape(-1, reach.shape[-1]))
+        slack = _grip_beyond(scene, shares[first : first + size])
+        forces = _normal_force(scene, slack.reshape(-1, slack.shape[-1]))
         total += forces.reshape(-1, *total.shape).sum(axis=0)
     mean: Array = total / parts
     return mean
@@ -136,7 +141,7 @@ def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
 def pulled_compliant_bar(
     force: float, length: float, stiffness: float, bound: float, density: float
 ) -> tuple[float, float]:
-    """End displacement of a bar whose support gives way before it slips, and its zone of slip, m.
+    """End displacement of a bar on a compliant support, and its zone of slip, m.
 
     With beta the root of the springs' density over ES, a zone of length s at the end
     slips under F = q s + q / (beta tanh(beta (L - s))), and beyond it the bar stands on
@@ -157,18 +162,19 @@ def pulled_compliant_bar(
 
     if force <= carried(0.0):
         return float(force * np.tanh(beta * length) / (stiffness * beta)), 0.0
+    # A zone as long as the bar would carry an infinite force.
     zone = float(brentq(lambda s: carried(s) - force, 0.0, length * (1.0 - 1e-12)))
-    return float(
-        bound / density + (force * zone - 0.5 * bound * zone**2) / stiffness
-    ), zone
+    elongation = (force * zone - 0.5 * bound * zone**2) / stiffness
+    return float(bound / density + elongation), zone
 
 
 def pulled_changing_bar(
     force: float, stiffness: float, bound: float, ratio: float, slip_length: float
 ) -> float:
-    """End displacement where friction changes with slip, under a force grown from zero, m.
+    """End displacement, m, where friction changes with slip, under a grown force.
 
-    Before any point has slipped as far as its friction changes (MATHEMATICS.md, 14).
+    It holds while no point has slipped farther than friction changes (MATHEMATICS.md,
+    14).
 
     Parameters
     ----------
@@ -201,7 +207,7 @@ class BrokenWire:
         sides together, shape (n_nodes + 1, n_instants), N; the break has two nodes. At
         a held end it cannot be told from the reaction.
     slip
-        Displacement of the broken wire over its neighbours, same shape, m.
+        Slip: displacement of the broken wire relative to its neighbours, same shape, m.
     """
 
     force: Array
@@ -215,9 +221,10 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
 
     Returns
     -------
-    The solution, or None where no wire is broken, where its neighbours rub on others too and pass
-    on what they took over, where friction is not Coulomb's, or not the same between all wires, or
-    where the bound changes with time and the grip is rigid or wires slip away from the break.
+    The solution. None where no wire is broken; where its neighbours rub on others, too,
+    and pass on what they took over; where friction is not Coulomb's, or not the same
+    between all wires; or where the bound changes with time, and the grip is rigid or
+    wires slip away from the break.
     """
     if scene.friction_law != FrictionLaw() or np.any(scene.factors != 1.0):
         return None
@@ -270,10 +277,11 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
 
 
 def _tension(scene: Rods) -> Array:
-    """T under a rigid grip, where a neighbour's elongation is given.
+    """Tension T under a rigid grip, which gives the elongation, (n_instants,), N.
 
-    It is T L / ES, plus for each side of the break what has slipped there over m + 1:
-    which grows with T no faster than that, so halved steps halve the error at least.
+    The elongation is T L / ES, plus for each side of the break the slip there over
+    m + 1. That slip grows with T no faster than T L / ES, so a step of half the
+    residual halves the error at least.
     """
     tension = scene.load
     largest = float(np.abs(tension).max())

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from solver.arrays import Array, Flags
 from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import AxialForce, reaction
+from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.laws import OPEN
+from solver.laws import OPEN, Contact
 from solver.settings.scene import Settings
 from solver.study.quantities.cycles import instants_of
 from solver.study.quantities.finished import (
@@ -55,7 +56,8 @@ def peak_displacement(run: FinishedRun) -> float:
     if inside is None:
         return float(np.abs(absolute).max())
     vectors = inside.displacement(absolute, slice(None))
-    ratio = max(law.slip_ratio for law in run.problem.rubbing.values())
+    # On its image a body shows half of the slip.
+    ratio = max(law.slip_ratio for law in run.problem.rubbing.laws.values())
     if ratio > 1.0:
         return ratio * float(np.abs(vectors[:, 0]).max())
     return float(np.linalg.norm(vectors, axis=1).max())
@@ -178,7 +180,7 @@ bottom_force = _force_at("bottom")
 @quantity("Largest slip", "m")
 def peak_slip(run: FinishedRun) -> float:
     """Largest slip of any point in contact, at any instant, m."""
-    contacts = [run.iterate.contact(name) for name in run.problem.surfaces]
+    contacts = [run.iterate.contact(name) for name in run.problem.rubbing.surfaces]
     slips = [np.abs(each.slip * (each.status != OPEN)).max() for each in contacts]
     return float(max(slips))
 
@@ -186,11 +188,13 @@ def peak_slip(run: FinishedRun) -> float:
 @quantity("Largest friction, all points", "N")
 def peak_friction(run: FinishedRun) -> float:
     """Largest sum over all points of the size of the friction force, N."""
-    total = np.zeros(run.problem.n_instants)
-    for name, law in run.problem.rubbing.items():
-        force = run.iterate.contact(name).tangential_force
-        total += law.copies * np.abs(force).sum(axis=0)
-    return float(total.max())
+    contacts = run.problem.rubbing
+    sums = np.empty((len(contacts), run.problem.n_instants))
+    for law, numbers, _, forces in contacts.stacks:
+        size = np.abs(run.iterate.contact_force[forces[-1]])
+        for number, (points, _) in zip(numbers, law.ranges, strict=True):
+            sums[number] = law.copies * np.add.reduce(size[points])
+    return float(sums.sum(axis=0).max())
 
 
 def _pressing(run: FinishedRun, name: str) -> Array:
@@ -206,7 +210,8 @@ def _pressing(run: FinishedRun, name: str) -> Array:
 @quantity("Largest pressing force, all points", "N", applies=_opens)
 def peak_pressing(run: FinishedRun) -> float:
     """Largest sum over all points of the pressing force, N."""
-    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.surfaces]
+    # Instant by instant over all interfaces: their peaks may come at other times.
+    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.rubbing.surfaces]
     return float(np.sum(forces, axis=0).max())
 
 
@@ -233,9 +238,10 @@ def contact_width(run: FinishedRun) -> float:
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
     """Tributary lengths of the points of each surface by name, shape (n_points,), m."""
-    return {
-        name: law.by_point(law.weights) for name, law in run.problem.surfaces.items()
-    }
+    contacts = run.problem.rubbing
+    laws = contacts.laws.values()
+    lengths = contacts.of_points([law.by_point(law.weights) for law in laws])
+    return {name: lengths[contacts.points[name]] for name in contacts.surfaces}
 
 
 def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
@@ -285,6 +291,7 @@ def end_displacement(run: FinishedRun, instant: int) -> float:
 def residual_displacement(run: FinishedRun) -> float:
     """Displacement of the loop left at an unloaded end, m; NaN if the end is loaded."""
     size = np.abs(run.force)
+    # Under load the displacement is not what is left.
     if size[-1] > UNLOADED * size.max():
         return math.nan
     return float(run.displacement[-1])
@@ -330,8 +337,8 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
     """
     # Clamped points would count as sticking.
     length, statuses = _touching(run)
-    still = _stand_still(run)
-    length = length * ~np.concatenate([still[name] for name in _lengths(run)])
+    still = _stand_still(run)[run.problem.rubbing.on_surfaces]
+    length = length * ~still
     status = statuses[:, instant]
     touching = length[status != OPEN].sum()
     if touching:
@@ -345,23 +352,30 @@ def _slipped_shares(run: FinishedRun) -> Array:
     Only points of surfaces that can slip count.
     """
     problem = run.problem
+    # A point counts from its first slip on.
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
-    still = np.concatenate(list(_stand_still(run).values()))
-    counted = slipped[problem.on_surfaces & ~still]
+    still = _stand_still(run)
+    counted = slipped[problem.rubbing.on_surfaces & ~still]
     if not len(counted):
         return np.zeros(slipped.shape[1])
     return np.asarray(counted.mean(axis=0))
 
 
-def _stand_still(run: FinishedRun) -> dict[str, Flags]:
-    """Points of each interface that are held and never slip, shape (n_points,)."""
-    held = run.problem.is_held
-    still = {}
-    for name, law in run.problem.rubbing.items():
-        is_held = np.all([held[rows] for rows in law.tangent.sides], axis=0)
-        has_slipped = np.any(np.abs(run.iterate.contact(name).status) == 1, axis=1)
-        still[name] = (law.by_point(1.0 * ~is_held) == 0.0) & ~has_slipped
-    return still
+def _stand_still(run: FinishedRun) -> Flags:
+    """Mask of points that are held and never slip, shape (n_points,)."""
+    contacts = run.problem.rubbing
+    is_held = []
+    for law in contacts.laws.values():
+        is_free = ~are_clamped(run.problem, law)
+        is_held.append(law.by_point(is_free.astype(float)) == 0.0)
+    has_slipped = np.any(np.abs(run.iterate.status) == 1, axis=1)
+    return np.asarray(contacts.of_points(is_held) & ~has_slipped)
+
+
+def are_clamped(problem: Problem, law: Contact) -> Flags:
+    """Pairs whose tangential displacement is prescribed on all sides, (n_pairs,)."""
+    held = [problem.is_held[rows] for rows in law.tangent.sides]
+    return np.asarray(np.all(held, axis=0))
 
 
 def _at_first_slip(run: FinishedRun, values: Array, at: float | None) -> float:

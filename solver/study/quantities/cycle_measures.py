@@ -14,6 +14,7 @@ from solver.laws import OPEN, FrictionLaw
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.settings.scene import Settings
+from solver.study.quantities.contact_measures import are_clamped
 from solver.study.quantities.cycles import cycles_in, ends_of, instants_of, slips_of
 from solver.study.quantities.finished import FinishedRun, first_largest
 from solver.study.quantities.quantity import CYCLE, quantity
@@ -45,6 +46,7 @@ def has_a_limit(settings: Settings) -> bool:
     if not settings.opens or settings.has("spring") or law != FrictionLaw():
         return False
     holds = settings.structure().description().holds
+    # Open contacts make the set of slips that may stay another one.
     gaps = [hold.gap for hold in holds if hold.gap is not None]
     return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
@@ -83,7 +85,8 @@ def sliding_share(run: FinishedRun) -> float:
     left out.
     """
     length = _free_lengths(run)[:, None]
-    status = run.iterate.status[run.problem.on_surfaces]
+    status = run.iterate.status[run.problem.rubbing.on_surfaces]
+    # Points that are open carry nothing, and are no part of the contact then.
     status = status[:, instants_of(run.settings, cycles_in(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
@@ -94,12 +97,12 @@ def sliding_share(run: FinishedRun) -> float:
 
 def _free_lengths(run: FinishedRun) -> Array:
     """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
-    held = run.problem.is_held
+    contacts = run.problem.rubbing
     lengths = []
-    for law in run.problem.surfaces.values():
-        is_clamped = np.all([held[rows] for rows in law.tangent.sides], axis=0)
-        lengths.append(law.by_point(law.weights * ~is_clamped))
-    return np.concatenate(lengths)
+    for law in contacts.laws.values():
+        is_free = ~are_clamped(run.problem, law)
+        lengths.append(law.by_point(law.weights * is_free))
+    return np.asarray(contacts.of_points(lengths)[contacts.on_surfaces])
 
 
 @quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
@@ -203,7 +206,8 @@ def wire_work(run: FinishedRun) -> float:
     """
     last = instants_of(run.settings, cycles_in(run.settings) or None)
     largest = []
-    for law, _, work in slips_of(run.iterate):
+    for stacked, _, work in slips_of(run.iterate):
+        law = stacked.law
         of_cycle = law.by_point(work[:, last].sum(axis=1))
         largest.append(float((of_cycle / law.by_point(law.weights)).max()))
     return max(largest)
@@ -231,6 +235,7 @@ def recovery_length(run: FinishedRun, instant: int) -> float:
     share = forces[axial.wires == wire, 0] / run.force[instant]
     size = description.length / len(share)
     node = round(position / size)
+    # Both sides of the break recover, and the shorter length is that of the wire.
     after = size * _elements_to(share[node:], REGAINED) / REGAINED
     before = size * _elements_to(share[:node][::-1], REGAINED) / REGAINED
     return min(after, before)

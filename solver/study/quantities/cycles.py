@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.contacts import Stacked
 from solver.latin import Iterate
-from solver.laws import Contact
 from solver.settings.scene import Settings
 
 SMALLEST_SWING = 0.05
@@ -43,8 +43,8 @@ Word = Literal[
 ]
 
 
-def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
-    """Interfaces with friction, the slip of their pairs, m, and its friction work, J.
+def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
+    """Laws of contact, the slip of their pairs, m, and its friction work, J.
 
     Slip and work are increments since the instant before, shape (n_pairs, n_instants).
     They are those of the local stage, whose laws hold at every iterate. A point slips
@@ -53,12 +53,16 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
     scales = iterate.problem.scales
     displacement = iterate.local_displacement
     force = iterate.boundary_local_force
-    for law in iterate.problem.surfaces.values():
+    for stacked in iterate.problem.rubbing.stacks:
+        law = stacked.law
+        if law.is_spring:
+            continue
         # Slip is the motion of the slider, without the elastic part.
         slider = law.tangential.slider(displacement, force)
         slip = np.diff(slider, axis=1, prepend=0.0)
+        # On its image a body moves by half of the slip.
         slip *= law.slip_ratio * scales.displacement
-        yield law, slip, force[law.tangent.above] * slip * -scales.force
+        yield stacked, slip, force[law.tangent.above] * slip * -scales.force
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,14 +108,16 @@ class LoadCycles:
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     """Cycles of an iterate; the points are those of one interface after another."""
     ends = ends_of(settings)
-    slips = []
-    works = []
-    for law, slip, work in slips_of(iterate):
-        slips.append(law.mean_by_point(slip))
-        works.append(law.copies * law.by_point(work))
-    slip = np.concatenate(slips)
-    work = np.concatenate(works)
-    status = iterate.status[iterate.problem.on_surfaces]
+    contacts = iterate.problem.rubbing
+    slip = np.zeros((contacts.n_points, iterate.problem.n_instants))
+    work = np.zeros_like(slip)
+    for stacked, increments, works in slips_of(iterate):
+        law = stacked.law
+        slip[stacked.points] = law.mean_by_point(increments)
+        work[stacked.points] = law.copies * law.by_point(works)
+    slip = slip[contacts.on_surfaces]
+    work = work[contacts.on_surfaces]
+    status = iterate.status[contacts.on_surfaces]
     # An open point moves without friction.
     rubbed = np.where(np.abs(status) == 1, np.abs(slip), 0.0)
     if ends:
@@ -205,6 +211,7 @@ def _is_repeated(settings: Settings, ends: list[int]) -> bool:
     """Check whether all loads begin, end and peak alike in the last cycles."""
     for path in _paths(settings):
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
+        # Ends and extremes: what happens between them does not change the fate of slip.
         marks = [[part[0], part[-1], part.min(), part.max()] for part in parts]
         if marks and np.ptp(marks, axis=0).max() > REPEATED * np.ptp(path):
             return False
@@ -235,9 +242,11 @@ def fate_of(cycles: LoadCycles) -> Word | None:
         return None
     if not largest[-1]:
         return "elastic shakedown"
+    # The point that is farthest on at the end of the last cycle.
     net = cycles.net[np.abs(cycles.net[:, -1]).argmax()]
     if np.abs(net[-1]) > ONE_WAY * largest[-1] and _settled(net[None]):
         return "ratcheting"
+    # Slip that falls may still tend to a steady size: the limit decides.
     is_falling = largest[-1] <= DIES * largest[-2]
     if is_falling and _limit(largest[-3:]) <= TENDS * largest[-3]:
         return "shakedown with slip that dies"

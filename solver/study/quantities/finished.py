@@ -16,7 +16,7 @@ from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
 from solver.latin import Decision, Iterate, Solution, record, solve
-from solver.latin.end.certified import finished
+from solver.latin.end.certified import certified_answer
 from solver.latin.end.cost import costs_of
 from solver.latin.end.status import certified, jump_of, limit_of
 from solver.latin.end.status_step import status_step
@@ -135,10 +135,11 @@ class FinishedRun:
     @cached_property
     def dissipated(self) -> Array:
         """Energy dissipated since the instant before, shape (n_instants,), J."""
-        energy = np.zeros(self.problem.n_instants)
-        for law, _, work in slips_of(self.iterate):
-            energy = energy + law.copies * work.sum(axis=0)
-        return energy
+        energy = np.zeros((len(self.problem.rubbing), self.problem.n_instants))
+        for stacked, _, work in slips_of(self.iterate):
+            law = stacked.law
+            energy[stacked.numbers] = law.copies * law.sums(work)
+        return np.asarray(energy.sum(axis=0))
 
     @cached_property
     def cycles(self) -> LoadCycles:
@@ -288,6 +289,7 @@ def finished_run(
     distance = None
     if known.reference is not None:
         distance = distance_to(known.reference, problem)
+    # From a neighbour one status step may find the solution, without any iteration.
     if before is not None:
         near = neighbour(problem, settings, before, cancelled)
         if near is not None:
@@ -331,6 +333,7 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
         return Known(doubt=str(refusal))
     if not reference.converged.all():
         return _without_solution(problem, reference)
+    # A reference past a jump is one of several equilibria.
     if reference.jumps_at is not None:
         where = jump_of(problem, reference.jumps_at)
         return Known(reference, f"at {where} it jumps to another equilibrium")
@@ -385,10 +388,11 @@ def neighbour(
         return None
     if certificate is None or certificate.residual > settings.accuracy:
         return None
+    # The solution has fields of a run, too, with the k of its method.
     k = method_of(settings).direction.of(problem)
-    finish = finished(problem, k, certificate)
-    status = certified(finish, certificate)
+    answer = certified_answer(problem, k, certificate)
+    status = certified(answer, certificate)
     residual = certificate.residual
     seconds = time.perf_counter() - began
     decision = Decision(seconds, residual, certificate=certificate)
-    return Solution(finish, [record(finish, decision, None, watch=False)], status)
+    return Solution(answer, [record(answer, decision, None, watch=False)], status)

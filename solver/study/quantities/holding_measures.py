@@ -89,6 +89,7 @@ class _Hold:
         rate = (carried[before] - carried[before - 1]) / steps[before - 1]
         growth = rate * steps[before]
         reserve = friction * self.pressing[before] - carried[before]
+        # Friction grows towards a bound that moves by mu times the pressing force.
         closes = growth - friction * rise
         return np.divide(reserve, closes, np.ones_like(reserve), where=closes > 0.0)
 
@@ -98,8 +99,8 @@ def _holds(run: FinishedRun) -> list[_Hold]:
     # A point that a clamp holds, too, never slips: it counts as free.
     determinate = determinate_forces(run.problem)
     holds = []
-    for name in run.problem.surfaces:
-        *_, tangential = run.problem.contact_slices[name]
+    for name in run.problem.rubbing.surfaces:
+        *_, tangential = run.problem.rubbing.forces[name]
         holds.append(_hold(run, name, determinate[tangential]))
     return holds
 
@@ -126,12 +127,13 @@ def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
 
     Where the pressure is given, it follows from the friction bound.
     """
-    law = run.problem.surfaces[name]
+    law = run.problem.rubbing[name]
     contact = run.iterate.contact(name)
     friction = run.settings.friction
     if contact.normal_force is None:
         bound = law.by_point(law.tangential.bound) * run.problem.scales.force
         return np.broadcast_to(bound / friction, contact.status.shape)
+    # mu is that of the settings, and its profile a factor on the pressing force.
     share = law.mean_by_point(law.tangential.friction) / friction
     return np.asarray(share[:, None] * contact.normal_force)
 

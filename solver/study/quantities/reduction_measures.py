@@ -35,8 +35,9 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
     forces, which a moving support has to overcome.
     """
     problem = iterate.problem
-    laws = problem.rubbing.values()
-    lengths = np.concatenate([law.by_point(law.weights) for law in laws])
+    # Per length, so that a finer mesh has the same field.
+    laws = problem.rubbing.laws.values()
+    lengths = problem.rubbing.of_points([law.by_point(law.weights) for law in laws])
     return clips_of(
         iterate.friction_force / lengths[:, None],
         _friction_bounds(problem) / lengths[:, None],
@@ -49,17 +50,15 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
 def _friction_bounds(problem: Problem) -> Array:
     """Friction bounds of all points, (n_points, n_instants) or (n_points, 1), N."""
     bounds = []
-    for law in problem.rubbing.values():
+    for law in problem.rubbing.laws.values():
         bounds.append(law.by_point(law.tangential.highest) * problem.scales.force)
-    n_columns = max(bound.shape[1] for bound in bounds)
-    return np.concatenate(
-        [np.broadcast_to(bound, (len(bound), n_columns)) for bound in bounds]
-    )
+    return problem.rubbing.of_points(bounds)
 
 
 def _driving_load(settings: Settings, iterate: Iterate) -> Array:
     """Load at the loaded side, or else the sum of the friction, (n_instants,), N."""
     for act in settings.structure().description().acts:
+        # The force at the end that is pulled drives all slip.
         if act.where == LOADED:
             return act.values
     return np.asarray(iterate.friction_force.sum(axis=0))

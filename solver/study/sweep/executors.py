@@ -50,6 +50,7 @@ left_alone = ExitStack()
 
 def processors() -> int:
     """Number of processors that this process may use."""
+    # A container or a user may have fewer processors than the machine.
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -180,6 +181,7 @@ def _begin() -> None:
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     threadpool_limits(1)
+    # A parent that is killed cannot end its processes itself.
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -119,19 +119,20 @@ class Plan:
 
     def point(self, number: int) -> dict[str, Any]:
         """Values of the settings that vary, at a point, by their names."""
+        values = {}
         levels = np.unravel_index(number, self.shape)
-        return {
-            axis.name: axis.values[level]
-            for axis, level in zip(self.axes, levels, strict=True)
-        }
+        for axis, level in zip(self.axes, levels, strict=True):
+            values[axis.name] = axis.values[level]
+        return values
 
     def settings_at(self, number: int) -> Settings:
         """Settings of a point; settings that do not fit together are refused."""
-        return self.settings.checked({**self.fixed, **self.point(number)})
+        return self.settings.checked(self.fixed | self.point(number))
 
     def idle(self) -> list[str]:
         """Names of the settings that vary and have no effect at any point."""
         idle = {axis.name for axis in self.axes}
+        # At any point: a setting may apply under some values of the other one alone.
         for number in range(self.size):
             with contextlib.suppress(SettingError):
                 settings = self.settings_at(number)
@@ -208,6 +209,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
         raise SettingError("--vary", given, "two settings", "vary each of them once")
     # Numbers stand across, names are curves.
     axes.sort(key=lambda axis: not axis.is_numeric)
+    # Each quantity once, under its present name.
     names = dict.fromkeys(reading(name).name for name in of)
     plan = Plan(settings, tuple(axes), tuple(names))
     if plan.size > MOST_POINTS:

@@ -157,6 +157,7 @@ def is_map(plan: Plan) -> bool:
 
 def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
     """Finite values of a reading of converged runs, of the plan's shape, else NaN."""
+    # Points without a run yet are NaN, too, so that a chart can grow.
     good = np.full(plan.size, np.nan)
     for row in rows:
         if row.holds and math.isfinite(row.values[index]):
@@ -166,6 +167,7 @@ def grid(plan: Plan, rows: Sequence[Row], index: int) -> Array:
 
 def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
     """Ends of an axis: all values, (n,), with a margin, from zero if that is near."""
+    # What a logarithmic axis cannot show does not widen it.
     known = values[np.isfinite(values) & ((values > 0.0) | (not axis.logarithmic))]
     if not known.size:
         return (0.0, 1.0)
@@ -288,13 +290,14 @@ def growth(plan: Plan, rows: Sequence[Row]) -> list[str]:
 def _power(sizes: Array, values: Array) -> float:
     """Power of sizes with which values grow, (n,) each; only values above 0 count."""
     is_known = values > 0.0
+    # A power law is a straight line in logarithms.
     size, value = np.log([sizes[is_known], values[is_known]])
     return float(np.polyfit(size, value, 1)[0])
 
 
 def title_of(plan: Plan) -> str:
     """Title of a sweep: its readings over its settings."""
-    asked = ", ".join(_uncapitalised(one.title) for one in plan.readings)
+    asked = ", ".join(_uncapitalised(quantity.title) for quantity in plan.readings)
     over = " and ".join(_uncapitalised(axis.title) for axis in plan.axes)
     return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
 
@@ -325,7 +328,8 @@ def write_sweep(plan: Plan, rows: Sequence[Row], file: Path) -> None:
 
 def heads(plan: Plan) -> list[str]:
     """Names of the columns: the run, its settings, its readings, and its ending."""
-    return ["run", *(axis.name for axis in plan.axes), *plan.of, *AFTER]
+    varied = [axis.name for axis in plan.axes]
+    return ["run", *varied, *plan.of, *AFTER]
 
 
 def cells(plan: Plan, row: Row) -> list[object]:
@@ -368,11 +372,12 @@ def head(plan: Plan) -> list[str]:
         columns.append(_column(quantity))
     varied = {axis.name for axis in plan.axes}
     lines = dump(plan.settings).splitlines()
+    fixed = [line for line in lines if line.split(" ")[0] not in varied]
     return [
         f"Slipfront, {plan.settings.scene}: {plan.size} runs; SI units",
         *columns,
         "settings of all runs:",
-        *(line for line in lines if line.split(" ")[0] not in varied),
+        *fixed,
     ]
 
 

@@ -122,6 +122,7 @@ def _from_nearest(
     if sweep not in _kept:
         _kept.clear()
     kept = _kept.setdefault(sweep, deque(maxlen=KEPT))
+    # Distance on the grid, as settings have units of their own.
     point = tuple(np.unravel_index(number, plan.shape) / np.array(plan.shape))
     before = None
     if kept:
@@ -134,6 +135,7 @@ def _from_nearest(
         cancelled=lambda: time.perf_counter() > end,
         before=before,
     )
+    # States of a run that has not converged would mislead its neighbours.
     if warm and finished.solution.status.ending is Ending.CONVERGED:
         kept.append((point, states_of(finished.iterate)))
     return finished

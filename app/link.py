@@ -135,7 +135,9 @@ def link_of(state: PageState) -> tuple[str, str]:
     shown["room"] = state.room.partition(".")[0]
     shown["interface"] = state.selection.interface
     shown["instant"] = round(state.selection.phase, 4)
-    shown["iteration"] = frame.iteration if is_waiting else 0
+    shown["iteration"] = 0
+    if is_waiting:
+        shown["iteration"] = frame.iteration
     root = ""
     if pn.state.location is not None:
         root = pn.state.location.href.partition("?")[0]
