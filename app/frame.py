@@ -146,7 +146,7 @@ class Run:
         return [name for name, each in self.interfaces.items() if not each.is_spring]
 
     def x_title(self, name: str) -> str:
-        """Title of the positions along an interface, with its name if there are more."""
+        """Title of positions along an interface, with its name among several."""
         if len(self.surfaces) > 1:
             return f"{name}: x"
         return "x"

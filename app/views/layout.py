@@ -91,29 +91,13 @@ class Layout:
         """Fit the bodies and their largest motion between the margins."""
         description = self.description
         top = float(self.size[1])
-        left, right, below, above = _margins(
-            description, self.arrow, self.letter, self.deepest, self.surroundings
-        )
-        along = self.width
-        across = self.height
-        if not self.key_rows:
-            left += COLUMN
-        # Upright bodies have words in rows above them, and keys below them.
-        if self.angle:
-            along = self.height
-            across = self.width
-            left += self.row * len(description.acts)
-            right += FOOT * self.key_rows
-        else:
-            below += FOOT * self.key_rows
-        free = [along - left - right, across - below - above]
-        room = np.maximum(free, 24.0)
+        corner, room, figure = self._free()
         low, high = _extent(description.length, top, description.tilt)
         # Displacements get their room first: of long bodies more across, as they bend.
         share = 0.06
         if description.length > LONG * top:
             share = 0.12
-        motion = np.array([0.04 * along, share * across])
+        motion = figure * [0.04, share]
         if description.height is None:
             motion[1] = 0.0
         scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
@@ -127,11 +111,32 @@ class Layout:
         rest = room - (high - low) * scale
         motion[0] = min(motion[0], 0.12 * description.length * scale[0])
         self.scale = scale
-        x, y = np.array([left, below]) + 0.5 * rest - low * scale
-        self.origin = np.array([x, y])
+        self.origin = corner + 0.5 * rest - low * scale
         if self.angle:
-            self.origin = np.array([y, self.height - x])
+            along, across = self.origin
+            self.origin = np.array([across, self.height - along])
         self.motion = motion
+
+    def _free(self) -> tuple[Array, Array, Array]:
+        """Lower corner and size of the place between the margins; size of the figure.
+
+        All are along and across the bodies, (2,), px.
+        """
+        left, right, below, above = _margins(
+            self.description, self.arrow, self.letter, self.deepest, self.surroundings
+        )
+        figure = np.array([self.width, self.height])
+        if not self.key_rows:
+            left += COLUMN
+        # Upright bodies have words in rows above them, and keys below them.
+        if self.angle:
+            figure = figure[::-1]
+            left += self.row * len(self.description.acts)
+            right += FOOT * self.key_rows
+        else:
+            below += FOOT * self.key_rows
+        room = np.maximum(figure - [left + right, below + above], 24.0)
+        return np.array([left, below]), room, figure
 
     def local(self, positions: Array) -> Array:
         """Positions, px, from the middle of the foot, for positions, m, (..., 2)."""

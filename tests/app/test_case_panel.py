@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import panel as pn
 import pytest
-
 from app.files.link import query_of, read
+
 from app.frame import Frame, Selection
 from app.lessons.catalogue import (
     CASES,
