@@ -193,7 +193,8 @@ class CycleEnergy(CyclePlot):
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
-        self.y.hold(frame.stage, [0.0], energy, 1.1 * energy)
+        # Room for the name of a known number.
+        self.y.hold(frame.stage, [0.0], 1.5 * energy)
         self.fill(
             "bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count)
         )

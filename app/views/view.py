@@ -192,8 +192,8 @@ class View:
         self.fill("level", y=levels)
         self.fill("flag", x=x[: len(x) - len(levels)], y=y[: len(y) - len(levels)])
         # The text stands where the plot has room.
-        is_right = x > _middle(self._figure.x_range)
-        is_above = y > _middle(self._figure.y_range)
+        is_right = x > _within(self._figure.x_range, 0.5)
+        is_above = y > _within(self._figure.y_range, 0.8)
         self.fill(
             "flag text",
             x=x,
@@ -384,9 +384,9 @@ class ExtraView(View):
         raise NotImplementedError
 
 
-def _middle(axis: Range1d) -> float:
-    """Value in the middle of an axis."""
-    return 0.5 * float(axis.reset_start + axis.reset_end)
+def _within(axis: Range1d, share: float) -> float:
+    """Value at a share of the length of an axis."""
+    return float((1.0 - share) * axis.reset_start + share * axis.reset_end)
 
 
 def bare(
