@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import panel as pn
 import pytest
-from app.files.link import query_of, read
 
 from app.frame import Frame, Selection
 from app.lessons.catalogue import (
@@ -22,6 +21,7 @@ from app.lessons.catalogue import (
     settings_of,
 )
 from app.lessons.guide import Guide
+from app.link import query_of, read
 from app.live import Card
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
