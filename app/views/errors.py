@@ -10,7 +10,7 @@ from bokeh.core.properties import value
 from bokeh.events import Tap
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
-from app.frame import Floats, Frame, Selection
+from app.frame import LOCAL, Floats, Frame, Selection
 from app.units import percent
 from app.views.axis import extent, rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
@@ -101,7 +101,8 @@ class Convergence(ErrorPlot):
             text_font=value("Roboto, sans-serif"),
             text_font_size=self.words,
         )
-        self.legend(ghost="ghost")
+        self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
+        self.legend(stage="local stage", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
         self._inner_height = HEIGHT
@@ -117,8 +118,12 @@ class Convergence(ErrorPlot):
         self.draw("newest", errors["x"][-1:], errors["y"][-1:])
         self._show_ghost(ghost, has_errors=len(errors["x"]) > 0)
         self._scale(newest)
+        is_local = selection.stage == LOCAL
         is_back = frame is not newest and not frame.is_answer
-        self.fill("shown", x=[frame.iteration] if is_back else [])
+        # The local stage lies between two whole iterates.
+        at = frame.iteration - 0.5 * is_local
+        self.fill("shown", x=[at] if is_back or is_local else [])
+        self.show("stage", is_local)
         # The answer, whose error is nearly zero, stands at the foot.
         answers = []
         if newest.is_answer:
