@@ -26,6 +26,9 @@ TYPED = re.compile(
 """Pattern of a typed number, and of the unit behind it."""
 OTHER_SIZES = {"Pa": 1e6, "m": 1e-3}
 """Typical values, in SI, of a path whose default points are of another quantity."""
+ROUNDING = 1e-7
+"""Share of the largest value of its kind below which a value is rounding: frames have
+seven digits."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -116,6 +119,13 @@ def typed(text: str, unit: Unit, si: str) -> float:
     if size is None:
         raise ValueError(f"write a number in {unit.name or 'no unit'}")
     return float(f"{float(match[1].replace(',', '.')) * size:.15g}")
+
+
+def settled(value: float, size: float) -> float:
+    """A value, or 0 where it is rounding beside a size of its kind, both in SI."""
+    if abs(value) <= ROUNDING * abs(size):
+        return 0.0
+    return value
 
 
 def number(value: float, digits: int = 3) -> str:
