@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from app.files.export import history_table, offers, offline_page, plot_table, program
-from app.frame import Frame, Selection
+from app.frame import Frame
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
@@ -107,10 +107,11 @@ def test_every_plot_of_every_kind_of_scene_is_a_table(scene: str) -> None:
 
 
 def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
-    _, frame = ended("bar")
     # As many plots as a page has in sight.
-    views = page("bar")[1][:6]
-    text = offline_page(frame, views, Selection(), None)
+    state, views = page("bar")
+    views = views[:6]
+    before = [view.figure.height for view in views]
+    text = offline_page(state, views)
     assert "<script src" not in text
     assert "<link" not in text
     match = re.search(
@@ -118,11 +119,22 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     )
     assert match is not None
     kept = json.dumps(json.loads(match[1]))
-    assert kept.count('"svg"') >= len(views)
-    captions = set(re.findall(r" At ([\d.]+) s of 1 s\.", kept))
-    assert captions == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
+    instants = set(re.findall(r"At ([\d.]+) s of 1 s\.", kept))
+    assert instants == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
+    for view in views[2:]:
+        assert f"<figcaption>{view.name}</figcaption>" in text
     # The page's own figures are as they were.
-    assert {view.figure.output_backend for view in views} == {"canvas"}
+    assert [view.figure.height for view in views] == before
+
+
+def test_the_offline_page_tells_status_and_all_settings_as_the_page_does() -> None:
+    state, views = page("bar")
+    text = offline_page(state, views[:2])
+    assert "certified" in text
+    for name in state.settings.definitions():
+        assert (f"<code>{name}</code>" in text) == state.settings.applies(name), name
+    row = "<td>Peak load</td><td>900 N</td><td><code>peak</code></td>"
+    assert row in text
 
 
 def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
