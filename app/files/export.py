@@ -21,7 +21,7 @@ from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider
 from bokeh.resources import INLINE
 
 from app.charts import library
-from app.frame import Frame, Run, Selection
+from app.frame import OPEN, Frame, Run, Selection
 from app.state import PageState
 from app.status import figures_line, status_line
 from app.units import unit_for, unit_of
@@ -34,6 +34,7 @@ from app.worker.references import has_reference
 from solver.files.saved import dump
 from solver.settings.definitions import Parameter, title_of
 from solver.settings.scene import Settings
+from solver.study.comparison import PER
 
 LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\
@@ -48,6 +49,8 @@ for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)
 print(solution.status.ending)
 """
+STATUSES = {-1: "slip backward", 0: "stick", 1: "slip forward", OPEN: "open"}
+"""Words for the status of a point in tables."""
 MOST_INSTANTS = 60
 """Largest number of instants on the page that is saved."""
 WIDE = {"Scene": "scene", "Load path": "timeline"}
@@ -80,19 +83,37 @@ def program(settings: Settings) -> str:
 
 
 def history_table(frame: Frame) -> str:
-    """Scalars of every iteration of a run (CSV, with comments that begin with #)."""
-    head = ["one line an iteration; seconds of run time"]
-    return _csv(frame, head, pd.DataFrame(dict(frame.history)))
+    """Scalars of every iteration of a run, a line each (CSV with one line of heads)."""
+    table = pd.DataFrame(dict(frame.history)).rename(columns={"seconds": "seconds, s"})
+    return table.to_csv(index=False)
 
 
-def plot_table(view: View, frame: Frame) -> str:
-    """Points of a plot's curves, a line each (CSV, with comments that begin with #).
+def contact_table(frame: Frame, selection: Selection) -> str:
+    """Contact at all points and instants of the selected interface.
+
+    CSV with one line of heads, in SI: position x, time t, friction force on the body
+    above, pressure where it is found, and status. It can be opened as the results of
+    another program.
+    """
+    run = frame.run
+    name = selection.interface_of(run)
+    fields = frame.contact[name]
+    unit = PER[run.settings.kind]
+    x, t = np.meshgrid(run.interfaces[name].positions, run.instants, indexing="ij")
+    columns = {"x, m": x, "t, s": t, f"friction force, {unit}": fields.friction}
+    if fields.pressure is not None:
+        columns["pressure, Pa"] = fields.pressure
+    table = pd.DataFrame({head: field.ravel() for head, field in columns.items()})
+    table["status"] = pd.Series(fields.status.ravel()).map(STATUSES)
+    return table.to_csv(index=False)
+
+
+def plot_table(view: View) -> str:
+    """Points of a plot's curves, a line each (CSV with one line of heads).
 
     Columns are those of the plot's sources, in the units of its axes; paths are
     numbered, and a curve has the name of its source.
     """
-    axes = [*view.figure.xaxis[:1], *view.figure.yaxis[:1]]
-    names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
     tables = []
     for key, source in view.sources.items():
         columns = {name: list(column) for name, column in source.data.items()}
@@ -104,22 +125,13 @@ def plot_table(view: View, frame: Frame) -> str:
             table = table.explode(paths).rename_axis("path").reset_index()
         table.insert(0, "curve", key)
         tables.append(table)
-    return _csv(frame, [view.name, *names], pd.concat(tables))
-
-
-def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
-    settings = frame.run.settings
-    at = f"iteration {frame.iteration}"
-    if frame.is_answer:
-        at = "answer"
-    first = [
-        f"Slipfront, {settings.scene}, {at}",
-        *head,
-        "settings:",
-        *dump(settings).splitlines(),
-    ]
-    comments = "".join([f"# {line}\n" for line in first])
-    return comments + table.to_csv(index=False)
+    heads = {}
+    # The title of the figure is that of its x axis.
+    if view.figure.title is not None and view.figure.title.text:
+        heads["x"] = view.figure.title.text
+    for axis in view.figure.yaxis[:1]:
+        heads["y"] = (axis.axis_label or "y").replace("\n", " ")
+    return pd.concat(tables).rename(columns=heads).to_csv(index=False)
 
 
 def offline_page(state: PageState, views: Sequence[View]) -> str:
@@ -286,7 +298,12 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
         "The run as a program (.py)": (".py", partial(program, frame.run.settings)),
     }
     tables = {"All iterations": partial(history_table, frame)}
-    tables |= {view.name: partial(plot_table, view, frame) for view in views}
+    if state.selection.interface_of(frame.run) in frame.contact:
+        contact = partial(contact_table, frame, state.selection)
+        tables["Contact over x and t"] = contact
+    # A picture of bodies has no curves.
+    plots = [view for view in views if not isinstance(view, Scene)]
+    tables |= {view.name: partial(plot_table, view) for view in plots}
     for title, make in tables.items():
         slug = title.lower().replace(" ", "-").replace("/", "-")
         files[f"{title} (.csv)"] = f"-{slug}.csv", make

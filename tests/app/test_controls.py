@@ -321,6 +321,10 @@ def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
     assert typed("2 d", Unit("s"), "s") == 172800.0
     assert typed("2 min", Unit("h", 3600.0), "s") == 120.0
     assert typed("3 N/mm2", Unit("kPa", 1e3), "Pa") == 3e6
+    newton = Unit("N")
+    assert typed("2 lbf", newton, "N") == 2 * 4.4482216152605
+    assert typed("1 200", newton, "N") == 1200.0
+    assert typed("1\u202f200,5 kN", newton, "N") == 1200500.0
 
 
 def test_a_number_in_another_unit_is_refused() -> None:
