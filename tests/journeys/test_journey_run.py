@@ -36,6 +36,12 @@ WHOLE = """() => {
   })
 }"""
 """Whether the time line has the whole interval."""
+PIECES = """() => {
+  const models = Bokeh.documents.flatMap((document) => [...document.all_models])
+  const arrows = models.find((model) => model.name == "macro above")
+  return arrows?.data_source.get_array("x").length > 2
+}"""
+"""Whether the pieces of the structure have forces."""
 
 
 def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_once(
@@ -90,7 +96,7 @@ def has_plots_beside(page: Page) -> bool:
 def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
     visit: Visit,
 ) -> None:
-    page = visit("?pace=fastest")
+    page = visit("?pace=fastest&plots=Pieces")
     told = [""]
     sentence = page.locator(".sentence div").first
     for scene in CATALOGUE:
@@ -100,6 +106,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
         told.append(sentence.inner_text())
         wait_for(lambda scene=scene: has_plots_beside(page) == (scene in HIGH))
         page.wait_for_function(WHOLE)
+        page.wait_for_function(PIECES)
     assert len(set(told)) == 1 + len(CATALOGUE)
 
 
@@ -193,17 +200,21 @@ def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
 def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(
     visit: Visit,
 ) -> None:
-    page = visit(f"?{ENDLESS}")
+    page = visit(f"?{ENDLESS}&plots=Zigzag")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
     button(page, "Run or pause").click()
     expect(status(page)).to_contain_text("paused")
     button(page, "From the start").click()
     expect(status(page)).to_contain_text("iteration 1 ")
-    button(page, "One iteration").click()
-    expect(status(page)).to_contain_text("iteration 2 ")
+    # A step is a stage.
+    button(page, "One stage").click()
+    expect(status(page)).to_contain_text("iteration 2 · local stage")
     page.locator(".sentence").click()
     page.keyboard.press("s")
-    expect(status(page)).to_contain_text("iteration 3 ")
+    expect(status(page)).to_contain_text("iteration 2 · ")
+    expect(status(page)).not_to_contain_text("local stage")
+    page.keyboard.press("s")
+    expect(status(page)).to_contain_text("iteration 3 · local stage")
     page.keyboard.press("r")
     expect(status(page)).to_contain_text("iteration 1 ")
     page.keyboard.press(" ")
