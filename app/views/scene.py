@@ -156,6 +156,10 @@ class Scene(View):
         self.fill("ghost", **past)
         self._show_keys(frame, layout, selection.stage)
 
+    def lay_out(self, width: float, height: float) -> None:
+        """Lay the picture out for a size of the figure, px."""
+        self._size = {"inner_width": width, "inner_height": height}
+
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
         width, height = self._size.values()
