@@ -11,7 +11,7 @@ from app.frame import Frame
 from app.messages import WHOLE, Needs, Start
 from app.worker.references import ReferenceCache, has_reference
 from app.worker.sampling import Sampler
-from solver.latin import Ending, Iterate, Record, Status, judged, record
+from solver.latin import Answer, Ending, Iterate, Record, Status, judged, record
 from solver.latin.end.cost import RunCost, run_cost
 from solver.latin.end.status import collapses
 from solver.reference.assembly import Interrupted
@@ -26,6 +26,9 @@ FIRST = 0.25
 """Time of a search at the pace `WHOLE`, and time before its second iterate, s.
 Intervals shrink by one ratio: the first iterates are seen one by one, and a hundred
 iterations last as long as thirty."""
+KEPT = 48_000_000
+"""Largest memory of the iterates of a run that are kept to be shown again, bytes;
+beyond, every other one is dropped."""
 LATE = 0.1
 """Longest delay, s, that iterations make up for. Pictures are painted between them."""
 
@@ -113,6 +116,7 @@ class Runner:
         self.history: list[Record] = []
         self.status: Status | None = None
         self.has_news = False
+        self._kept: dict[int, Iterate] = {}
         self.pacing = Pacing(start.pace, start.steps)
         self._iterates = judged(problem, latin, spent=spent, interrupted=halted)
         self._references = references
@@ -158,6 +162,23 @@ class Runner:
         self.has_news = False
         return self.sampler.frame(self.iterate, self.history, self.status, needs)
 
+    def earlier(self, iteration: int, needs: Needs) -> Frame | None:
+        """Frame of an earlier iteration as it was; None where it is not kept."""
+        iterate = self._kept.get(iteration)
+        if iterate is None:
+            return None
+        history = self.history[:iteration]
+        return self.sampler.frame(iterate, history, None, needs)
+
+    def _keep(self, iterate: Iterate) -> None:
+        """Keep an iterate of the search, to be shown again."""
+        self._kept[iterate.number] = iterate
+        # An iterate has four fields of this size.
+        most = max(KEPT // (4 * iterate.outgoing.nbytes), 2)
+        if len(self._kept) > most:
+            for number in list(self._kept)[1::2]:
+                del self._kept[number]
+
     def _iterate(self) -> None:
         """Do an iteration, and record it unless it diverged."""
         iterate, decision = next(self._iterates)
@@ -168,6 +189,8 @@ class Runner:
             # The iterate before stays, whose numbers can be drawn.
             return
         self.iterate = iterate
+        if not isinstance(iterate, Answer):
+            self._keep(iterate)
         self.history.append(record(iterate, decision, self._distance))
 
     def _compare(self) -> None:
