@@ -187,10 +187,15 @@ class Page:
 
     def _read(self) -> None:
         """Have the text beside the plots as large as they are."""
-        zoom = 1.0
+        styles = {}
         if self.state.view == "present":
-            zoom = LARGE * self.state.height / READ
-        self._guide.view.styles = {"zoom": f"{zoom:.2f}", "--zoom": f"{zoom:.2f}"}
+            zoom = f"{LARGE * self.state.height / READ:.2f}"
+            styles = {
+                "zoom": zoom,
+                "--zoom": zoom,
+                "--above": "4px",
+            }
+        self._guide.view.styles = styles
 
     def _put(self, event: Any) -> None:
         """Put a dialog on the page when it is first opened."""
