@@ -59,8 +59,13 @@ CLOSE = """
 """Style sheet by which a legend of seven entries stands in one line; the theme keeps
 entries farther apart."""
 WRAPPED = """
-:host { max-width: calc(100% - 2em); }
-.bk-grid { display: flex !important; flex-wrap: wrap; gap: 0 5px !important; }
+:host { max-width: calc(100% + 60px); }
+.bk-grid {
+  display: flex !important;
+  flex-wrap: wrap;
+  width: auto !important;
+  gap: 0 5px !important;
+}
 """
 """Style sheet by which a legend above a plot takes a second line where the first has no
 room."""
