@@ -270,7 +270,7 @@ class Card:
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; the figure is made when first seen."""
         state = self._state
-        figure = view.figure
+        figure = view.layout
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
         return pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=0)

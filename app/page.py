@@ -16,8 +16,8 @@ from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
 from app.files.export import LOOK, offers
-from app.files.link import Link, read, show
 from app.lessons.guide import Guide
+from app.link import Link, read, show
 from app.live import LARGE, STYLE, Live, column
 from app.server import PAGES
 from app.state import TABS, PageState
@@ -28,7 +28,7 @@ COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
     # On a phone the buttons are moved by a finger.
     "@media (max-width: 600px)": {
-        "& header h3": {"display": "none"},
+        "& header .title": {"display": "none"},
         "& header": {"overflowX": "auto"},
     },
     # In a narrow window the controls are a sheet below the picture, which stays in
@@ -58,6 +58,18 @@ LOADING = """
 READ = 15.0
 """Type size of the text beside the plots, px."""
 WORDS = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
+HEADINGS = {
+    "components": {
+        # The page's title; spacers of the template.
+        "MuiTypography": {
+            "defaultProps": {"variantMapping": {"h3": "h1", "h5": "div"}}
+        },
+        "MuiAccordion": {
+            "defaultProps": {"slotProps": {"heading": {"component": "h2"}}}
+        },
+    }
+}
+"""Elements of headings in the theme: else the page would have none of first rank."""
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 
 
@@ -83,7 +95,7 @@ class Page:
         transport = self._live.transport
         open_counts = self._member.open_counts
         self._guide = Guide(state, transport, self._dress, open_counts)
-        self._class = ClassDialog(self._member)
+        self._class = ClassDialog(self._member, self._link.join)
         self._guide.view.stylesheets = [STYLE]
         self._class.view.stylesheets = [STYLE]
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
@@ -114,6 +126,7 @@ class Page:
             # As `theme` in the address has it.
             dark_theme=pn.config.theme == "dark",
             sx=COMPACT,
+            theme_config=HEADINGS,
         )
         follow_itself(self.template)
         keys = transport.keys() | {"p": self._present, "?": self._help}

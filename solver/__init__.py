@@ -8,7 +8,16 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-__all__ = ["End", "Latin", "Problem", "Rods", "Stack", "iterations", "solve"]
+__all__ = [
+    "End",
+    "Latin",
+    "Problem",
+    "Rods",
+    "Stack",
+    "discretise",
+    "iterations",
+    "solve",
+]
 
 
 def __getattr__(name: str) -> Any:

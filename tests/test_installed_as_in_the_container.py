@@ -31,7 +31,7 @@ from processes import PATIENCE, wait_for
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = """
-from solver import End, Latin, Rods, solve
+from solver import End, Latin, Rods, discretise, solve
 import numpy as np, solver
 t = np.linspace(0.0, 1.0, 21)
 rods = Rods(
@@ -45,7 +45,7 @@ rods = Rods(
     instants=t,
     duration=1.0,
 )
-print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
+print(solve(discretise(rods), Latin()).status.ending, solver.__file__)
 """
 
 

@@ -87,7 +87,8 @@ def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats]
     space = _slip_space(sampled)
     if space is None:
         return None
-    ((law, slip, _),) = slips_of(iterate)
+    ((stacked, slip, _),) = slips_of(iterate)
+    law = stacked.law
     ends = ends_of(sampled.settings)
     if len(ends) > 1:
         room = room_of_two(space, slice(ends[-2], ends[-1] + 1))
@@ -105,8 +106,7 @@ def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats]
 @lru_cache(maxsize=1)
 def _slip_space(sampled: Sampled) -> SlipSpace | None:
     problem = sampled.problem
-    points = [len(law.positions) for law in problem.rubbing.values()]
-    if points != [2] or problem.motions is not None:
+    if problem.rubbing.sizes.tolist() != [2] or problem.motions is not None:
         return None
     try:
         space = slip_space(problem)

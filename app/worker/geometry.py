@@ -45,8 +45,9 @@ def floats(values: NDArray[np.generic]) -> Floats:
 
 def thinned(size: int, limit: int) -> Indices:
     """Indices of a thinned axis, (n,), first and last included, n up to a limit."""
-    count = min(size, limit)
-    return np.unique(np.linspace(0, size - 1, count).round().astype(np.intp))
+    if size <= limit:
+        return np.arange(size)
+    return np.unique(np.linspace(0, size - 1, limit).round().astype(np.intp))
 
 
 class Drawn:
@@ -66,26 +67,23 @@ class Drawn:
     ) -> None:
         # Numbers of the shown contact points among all, their degrees of freedom along
         # and across the interface, and numbers of their interfaces.
-        chosen = []
+        contacts = problem.rubbing
+        kept = [thinned(size, MOST_POINTS) for size in contacts.sizes.tolist()]
+        chains = np.repeat(np.arange(len(kept)), [len(some) for some in kept])
+        firsts = np.cumsum(contacts.sizes) - contacts.sizes
         dofs = []
-        chains = []
-        first = 0
-        for number, law in enumerate(problem.rubbing.values()):
-            points, pairs = np.unique(law.points, return_index=True)
-            kept = thinned(len(points), MOST_POINTS)
-            chosen.append(first + kept)
-            dofs.append(_dofs_of(problem, law, pairs[kept]))
-            chains.append(np.full(len(kept), number))
-            first += len(points)
+        for law in contacts.laws.values():
+            _, pairs = np.unique(law.points, return_index=True)
+            dofs.append(_dofs_of(problem, law, pairs))
         self._problem = problem
         self._columns = columns
-        self._points = np.concatenate(chosen)
-        self._dofs = np.concatenate(dofs)
+        self._points = firsts[chains] + np.concatenate(kept)
+        self._dofs = contacts.of_points(dofs)[self._points]
         points = floats(positions[self._dofs[:, 0]])
         self.geometry = Geometry(
             description=description,
             points=points,
-            chains=np.concatenate(chains),
+            chains=chains,
             **mesh,
         )
 
@@ -261,42 +259,48 @@ class DrawnMesh(Drawn):
         to the middle of the other, (n_joints, 3, 2, n_instants), m; on a support they
         end there. "forces" are their sizes, (n_joints, n_instants), N.
         """
-        middles = self._middles()
-        lines = []
-        forces = []
-        for name, law in self._problem.rubbing.items():
-            point, force = self._resultant(iterate, name, law)
-            _, pairs = np.unique(law.points, return_index=True)
-            above, *below = law.tangent.sides
-            start = middles[self._problem.row_dofs[above[pairs[0]]]]
-            end = point
-            if below:
-                end = middles[self._problem.row_dofs[below[0][pairs[0]]]]
-            lines.append(np.stack(np.broadcast_arrays(start, point, end)))
-            forces.append(force)
-        return {"lines": floats(np.stack(lines)), "forces": floats(np.stack(forces))}
+        contacts = self._problem.rubbing
+        lines = np.zeros((len(contacts), 3, 2, len(self._columns)))
+        forces = np.zeros((len(contacts), len(self._columns)))
+        for stacked in contacts.stacks:
+            normal, tangential = [
+                iterate.contact_force[numbers][:, self._columns]
+                for numbers in stacked.forces
+            ]
+            sizes = stacked.law.sizes
+            firsts = np.cumsum(sizes) - sizes
+            pressed = np.maximum(normal, 0.0)
+            whole = np.add.reduceat(pressed, firsts)
+            sheared = np.add.reduceat(tangential, firsts)
+            # The resultant acts at the mean of the points by their pressure; in the
+            # middle of a joint that is open.
+            share = pressed / np.repeat(
+                np.where(whole > 0.0, whole, 1.0), sizes, axis=0
+            )
+            even = np.repeat(1.0 / sizes, sizes)[:, None]
+            is_closed = np.repeat(whole > 0.0, sizes, axis=0)
+            weights = np.where(is_closed, share, even)
+            lines[stacked.numbers] = self._lines(stacked.law, firsts, weights)
+            forces[stacked.numbers] = np.hypot(whole, sheared)
+        return {"lines": floats(lines), "forces": floats(forces)}
 
-    def _resultant(
-        self, iterate: Iterate, name: str, law: Contact
-    ) -> tuple[Array, Array]:
-        """Point at which the resultant of a joint acts, (2, n_shown), m; its size, N.
+    def _lines(self, law: Contact, firsts: Indices, weights: Array) -> Array:
+        """Lines of thrust over joints, (n_joints, 3, 2, n_shown), m.
 
-        The point is the mean of the contact points by their pressure, and the middle of
-        a joint that is open.
+        `firsts` are the first points of the joints, (n_joints,), `weights` those with
+        which each point counts, (n_points, n_shown).
         """
         problem = self._problem
-        rows, across = problem.contact_slices[name]
-        normal = iterate.contact_force[rows][:, self._columns]
-        tangential = iterate.contact_force[across][:, self._columns]
-        pressed = np.maximum(normal, 0.0)
-        whole = pressed.sum(axis=0)
-        is_closed = whole > 0.0
-        share = pressed / np.where(is_closed, whole, 1.0)
-        weights = np.where(is_closed, share, 1.0 / len(pressed))
+        middles = self._middles()
         _, pairs = np.unique(law.points, return_index=True)
-        dofs = problem.row_dofs[law.tangent.above[pairs]]
-        point = problem.positions[dofs].T @ weights
-        return point, np.hypot(whole, tangential.sum(axis=0))
+        above, *below = [problem.row_dofs[rows[pairs]] for rows in law.tangent.sides]
+        moments = problem.positions[above][:, :, None] * weights[:, None]
+        points = np.add.reduceat(moments, firsts)
+        ends = points
+        if below:
+            ends = middles[below[0][firsts]]
+        begins = middles[above[firsts]]
+        return np.stack(np.broadcast_arrays(begins, points, ends), axis=1)
 
     def _middles(self) -> Array:
         """Middle of the body of each degree of freedom, shape (n_dofs, 2, 1), m."""

@@ -13,13 +13,16 @@ from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
 from app.worker.extras import EXTRAS, Sampled
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
+from app.worker.pieces import Cutter
 from app.worker.strand import DrawnRope
-from solver.arrays import Array
+from app.worker.zigzag import Trail, zigzag
+from solver.arrays import Array, Indices
 from solver.discrete import Problem
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import nothing_acts
-from solver.discrete.structure import LoopFields
 from solver.latin import Answer, Iterate, Record, Solution, Status
 from solver.latin.end.status import CANCELLED
+from solver.laws import Contact
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.limit_analysis import Collapse
 from solver.reference.solution import Reference
@@ -53,30 +56,45 @@ class Sampler:
         self.problem = problem
         self.settings = settings
         self.columns = thinned(problem.n_instants, MOST_INSTANTS)
+        contacts = problem.rubbing
+        laws = contacts.laws.values()
+        # Length, m, or area, m², of each point.
+        lengths = contacts.of_points([law.by_point(law.weights) for law in laws])
         self.rows = {
-            name: thinned(len(law.positions), MOST_POINTS)
-            for name, law in problem.rubbing.items()
+            name: thinned(size, MOST_POINTS)
+            for name, size in zip(contacts, contacts.sizes.tolist(), strict=True)
+        }
+        self._lengths = {
+            name: lengths[points][self.rows[name], None]
+            for name, points in contacts.points.items()
         }
         self.loop = settings.structure().loop(problem)
+        self._trail = Trail()
         self._sampled = Sampled(problem, settings, self.loop, self.columns)
         kind = {"plane": DrawnMesh, "helices": DrawnRope}.get(settings.kind, DrawnRods)
         self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(
             problem, settings, self.columns
         )
+        self._cutter = Cutter(problem, settings, self.columns)
         self.run = Run(
             number=number,
             settings=settings,
             sentence=settings.sentence(),
             instants=floats(problem.instants[self.columns]),
-            interfaces={name: self._interface(name) for name in problem.rubbing},
+            interfaces=self._interfaces(),
             geometry=self.drawn.geometry,
             across=self.loop.across,
             up=self.loop.up,
             is_idle=nothing_acts(problem),
         )
 
+    def keep(self, iterate: Iterate) -> None:
+        """Keep an iterate for extras that show past ones."""
+        self._trail.keep(iterate)
+
     def complete(self, reference: Reference | None) -> None:
         """Add the reference and the closed forms to the run."""
+        self._trail.reference = reference
         curves = self.settings.exact(self.problem, reference)
         exact = tuple(self._at_columns(curve) for curve in curves)
         known: dict[str, Any] = {"exact": exact, "is_compared": True}
@@ -134,6 +152,8 @@ class Sampler:
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}
         known |= self.drawn.extras
+        known["pieces"] = self._cutter.pieces
+        known["zigzag"] = partial(zigzag, self._sampled, self._trail)
         return {
             name: known[name](iterate, needs) for name in needs.extras & known.keys()
         }
@@ -152,29 +172,41 @@ class Sampler:
             return tuple(self.rows)
         return (needs.interface,)
 
-    def _interface(self, name: str) -> FrictionInterface:
-        law = self.problem.rubbing[name]
-        rows = self.rows[name]
-        bound = coefficient = None
-        if law.opens:
-            coefficient = floats(law.mean_by_point(law.tangential.friction)[rows, None])
-        else:
-            highest = law.by_point(law.tangential.highest)[rows]
-            # A bound that does not change has a single column.
-            if highest.shape[1] > 1:
-                highest = highest[:, self.columns]
-            force = highest * self.problem.scales.force
-            bound = floats(force / self._lengths(name)[:, None])
-        cuts = law.positions[np.bincount(law.points) > 1]
-        positions = floats(law.positions[rows])
-        return FrictionInterface(
-            positions, floats(cuts), bound, coefficient, law.is_spring
-        )
+    def _interfaces(self) -> dict[str, FrictionInterface]:
+        """Interfaces by name, in the order in which they are stacked."""
+        contacts = self.problem.rubbing
+        found = {}
+        for law, numbers, _, _ in contacts.stacks:
+            is_cut = np.bincount(law.points) > 1
+            bound = coefficient = None
+            if law.opens:
+                coefficient = law.mean_by_point(law.tangential.friction)[:, None]
+            else:
+                bound = self._bound_of(law)
+            for number, (points, _) in zip(numbers, law.ranges, strict=True):
+                name = contacts.names[number]
+                positions = law.positions[points]
+                rows = self.rows[name]
+                found[name] = FrictionInterface(
+                    positions=floats(positions[rows]),
+                    cuts=floats(positions[is_cut[points]]),
+                    bound=_shown(bound, points, rows),
+                    coefficient=_shown(coefficient, points, rows),
+                    is_spring=law.is_spring,
+                )
+        return {name: found[name] for name in contacts.names}
 
-    def _lengths(self, name: str) -> Array:
-        """Length, m, or area, m², of each shown point of an interface, (n_points,)."""
-        law = self.problem.rubbing[name]
-        return np.asarray(law.by_point(law.weights)[self.rows[name]])
+    def _bound_of(self, law: Contact) -> Array:
+        """Friction bound at the points of a law, N/m or Pa.
+
+        Shape (n_points, n_shown), or (n_points, 1) where it does not change.
+        """
+        highest = law.by_point(law.tangential.highest)
+        # A bound that does not change has a single column.
+        if highest.shape[1] > 1:
+            highest = highest[:, self.columns]
+        force = highest * self.problem.scales.force
+        return np.asarray(force / law.by_point(law.weights)[:, None])
 
     def _contact(
         self, shown: Iterate | Reference, names: Iterable[str]
@@ -182,22 +214,29 @@ class Sampler:
         contact = {}
         for name in names:
             nodal = shown.contact(name)
+            rows = self.rows[name]
             # Forces at nodes depend on the mesh; over their lengths they do not.
-            lengths = self._lengths(name)[:, None]
-            kept = np.ix_(self.rows[name], self.columns)
+            lengths = self._lengths[name]
             pressure = None
             if nodal.normal_force is not None:
-                pressure = floats(nodal.normal_force[kept] / lengths)
+                pressure = floats(nodal.normal_force[rows][:, self.columns] / lengths)
             contact[name] = InterfaceFields(
-                floats(nodal.tangential_force[kept] / lengths),
+                floats(nodal.tangential_force[rows][:, self.columns] / lengths),
                 pressure,
-                np.ascontiguousarray(nodal.status[kept]),
+                np.ascontiguousarray(nodal.status[rows][:, self.columns]),
             )
         return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
         """Displacement and force of the loop at shown instants, (2, n_shown), SI."""
         return floats(np.stack(self.loop.along(shown))[:, self.columns])
+
+
+def _shown(field: Array | None, points: slice, rows: Indices) -> Floats | None:
+    """Shown rows of a field of an interface, (n_rows, n), from that of its law."""
+    if field is None:
+        return None
+    return floats(field[points][rows])
 
 
 def _scalars(history: Sequence[Record]) -> dict[str, Floats]:

@@ -1,10 +1,19 @@
 """From a structure as plain data to a discrete problem."""
 
-from solver.discrete.plane.stack import Given, Side, Spring, Stack, Support
+from __future__ import annotations
+
+from functools import singledispatch
+
+from solver.discrete.plane import stack_problem
+from solver.discrete.plane.sides import Given, Side, Spring, Support
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
+from solver.discrete.rods import cut_rods
 from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rope import cut_rope
 from solver.discrete.rope.rope import Rope
 from solver.discrete.structure import Structure
+from solver.refusal import RefusedError, Words
 
 __all__ = [
     "End",
@@ -17,4 +26,30 @@ __all__ = [
     "Stack",
     "Structure",
     "Support",
+    "discretise",
 ]
+
+
+@singledispatch
+def discretise(structure: Structure) -> Problem:
+    """Make the discrete problem of a structure.
+
+    Data of a structure does not know its mesher; a structure of one's own is added by
+    `discretise.register`.
+
+    Raises
+    ------
+    RefusedError
+        For a structure without a mesher, or one that its mesher refuses.
+    """
+    raise RefusedError(
+        "structure",
+        Words(f"of type {type(structure).__name__}"),
+        "Rods, Rope, Stack, or a type whose mesher is registered",
+        "register a function that makes its problem by discretise.register",
+    )
+
+
+discretise.register(Rods, cut_rods.problem_of)
+discretise.register(Rope, cut_rope.problem_of)
+discretise.register(Stack, stack_problem.problem_of)

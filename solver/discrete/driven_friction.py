@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array, Indices
+from solver.discrete.contacts import Contacts
 from solver.laws import Component, Contact, Friction
 from solver.laws.play import Play, follow
 
@@ -108,6 +109,30 @@ class DrivenFriction:
         else:
             slider = follow(self.jump, slack, along.strength)
         return np.asarray((slider - self.jump) / compliance)
+
+
+def driven_contacts(
+    contacts: Contacts,
+    row_dofs: Indices,
+    prescribed: tuple[Indices, Array],
+    largest: float,
+) -> list[DrivenFriction]:
+    """Friction of driven points, interface by interface; arguments as those below."""
+    is_held = np.isin(row_dofs, prescribed[0])
+    numbers = [np.zeros(0, dtype=np.intp)]
+    for stacked in contacts.stacks:
+        law = stacked.law
+        pairs = np.logical_and.reduce([is_held[rows] for rows in law.tangent.sides])
+        numbers.append(stacked.numbers[np.unique(law.interface_of_pairs[pairs])])
+    found = list[DrivenFriction]()
+    for number in np.sort(np.concatenate(numbers)):
+        name = contacts.names[number]
+        driven = driven_friction(
+            contacts[name], contacts.forces[name], row_dofs, prescribed, largest
+        )
+        if driven is not None:
+            found.append(driven)
+    return found
 
 
 def driven_friction(

@@ -9,17 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, without_residue
+from solver.discrete.contacts import ContactFields
 from solver.discrete.inside import Inside
 from solver.discrete.problem import Problem
-
-if TYPE_CHECKING:
-    from solver.discrete.structure import LoopFields
 
 AXES = {
     "left": 0,
@@ -28,6 +26,17 @@ AXES = {
     "top": 1,
 }
 """Axis normal to each side: 0 is x, 1 is y."""
+
+
+class LoopFields(Protocol):
+    """Fields of an iterate or a reference, SI, shape (n, n_instants)."""
+
+    @property
+    def displacement(self) -> Array:
+        """Displacement of the problem's degrees of freedom, m."""
+
+    def contact(self, name: str) -> ContactFields:
+        """Fields of one interface with friction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,8 +207,9 @@ def _contacts_at(
     `held` has shape (n_dofs,), weights of normal forces, or None, and of tangential
     forces have (n_points,).
     """
-    contacts: dict[str, tuple[Array | None, Array]] = {}
-    for name, law in problem.rubbing.items():
+    found: dict[str, tuple[Array | None, Array]] = {}
+    names = problem.rubbing.names
+    for law, numbers, _, _ in problem.rubbing.stacks:
         # All pairs of a point are at one node, so one of them tells its weight.
         _, pairs = np.unique(law.points, return_index=True)
         weights = []
@@ -208,9 +218,12 @@ def _contacts_at(
             if component.below is not None:
                 weight = weight - held[problem.row_dofs[component.below[pairs]]]
             weights.append(weight)
-        if any(weight.any() for weight in weights):
-            contacts[name] = (weights[0] if law.opens else None, weights[-1])
-    return contacts
+        for number, (points, _) in zip(numbers, law.ranges, strict=True):
+            normal = weights[0][points]
+            tangential = weights[-1][points]
+            if normal.any() or tangential.any():
+                found[names[number]] = (normal if law.opens else None, tangential)
+    return {name: found[name] for name in names if name in found}
 
 
 class AxialForce:

@@ -9,54 +9,35 @@ time.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices, as_slice
 from solver.checks import (
     ALIKE,
     INSTANTS,
-    POSITIVE,
     Each,
     Named,
     Numbers,
     Part,
     check,
 )
-from solver.discrete.contacts import ContactGroup
-from solver.discrete.driven_friction import DrivenFriction, driven_friction
+from solver.discrete.contacts import Contacts
+from solver.discrete.driven_friction import DrivenFriction, driven_contacts
 from solver.discrete.drives import Drive
+from solver.discrete.inside import Inside
+from solver.discrete.no_reference import Numbering, reason_against_reference
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
-from solver.laws import Contact, Interface, Strength
+from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
-from solver.laws.play import PLAIN
 from solver.refusal import RefusedError, Words
-
-if TYPE_CHECKING:
-    from solver.discrete.inside import Inside
-
-
-@dataclass(frozen=True)
-class Scales:
-    """Units of scaled displacement, m, force, N, and time, s.
-
-    With them the results of a method do not depend on the units of the input.
-    """
-
-    displacement: float
-    force: float
-    time: float
-
-    def __post_init__(self) -> None:
-        check(self, displacement=POSITIVE, force=POSITIVE, time=POSITIVE)
 
 
 @dataclass(frozen=True)
@@ -84,6 +65,9 @@ class Problem:
     has_short_joints
         Whether upright joints of bodies have no pair at their ends, so that these
         bodies carry less than rigid ones.
+    order
+        Names of all interfaces with friction, in the order in which their points and
+        forces are stacked; by default that of `interfaces`.
     drives
         Loads and motions by the settings that give them, for messages only; empty for a
         problem without a scene.
@@ -105,6 +89,7 @@ class Problem:
     rest: Array | None = None
     carried: Array | None = None
     has_short_joints: bool = False
+    order: tuple[str, ...] = ()
     drives: tuple[Drive, ...] = ()
 
     def __post_init__(self) -> None:
@@ -124,8 +109,20 @@ class Problem:
         _check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
         _check_cover("substructures", "row", self.n_rows, rows, once=True)
         _check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
+        self._check_names()
         self._check_instants()
         self._check_prescribed()
+
+    def _check_names(self) -> None:
+        """Refuse names that interfaces share, and an order without some of them."""
+        names = self.rubbing.names_of_laws
+        if len(set(names)) < len(names) or sorted(self.rubbing.names) != sorted(names):
+            raise RefusedError(
+                "Problem.order",
+                Words(f"of {len(self.rubbing.names)} names"),
+                f"all {len(names)} interfaces with friction once",
+                "give each a name of its own, and all of them a place",
+            )
 
     def _check_instants(self) -> None:
         """Refuse laws and body forces with values for another number of instants."""
@@ -221,36 +218,13 @@ class Problem:
         Joined laws have no macro bases.
         """
         kinds: dict[type[Interface], list[Interface]] = {}
-        for name, law in self.interfaces.items():
-            if name not in self.rubbing:
+        for law in self.interfaces.values():
+            if not isinstance(law, Contact):
                 kinds.setdefault(type(law), []).append(law)
-        joined: list[Interface] = [group.law for group in self.contact_groups]
+        joined: list[Interface] = [group.law for group in self.rubbing.groups]
         for kind, laws in kinds.items():
             joined.extend(kind.together(laws))
         return joined
-
-    @cached_property
-    def contact_groups(self) -> list[ContactGroup]:
-        """Groups of interfaces with friction that have the same kind of law."""
-        laws = list(self.rubbing.values())
-        alike = dict[Hashable, list[int]]()
-        for number, (name, law) in enumerate(self.rubbing.items()):
-            # A user's law may differ from others in more than its fields: it is a group
-            # of its own.
-            key = law.kind if name in self.incremental_forms else name
-            alike.setdefault(key, []).append(number)
-        return [ContactGroup(laws, numbers) for numbers in alike.values()]
-
-    @cached_property
-    def contact_points(self) -> dict[str, slice]:
-        """Range of the points of each interface among those of all, by name."""
-        ranges = dict[str, slice]()
-        first = 0
-        for name, law in self.rubbing.items():
-            last = first + len(law.positions)
-            ranges[name] = slice(first, last)
-            first = last
-        return ranges
 
     @cached_property
     def incremental_forms(self) -> dict[str, IncrementalForm]:
@@ -299,7 +273,7 @@ class Problem:
         kind_of = np.full(self.n_rows, -1)
         for law in self.own_laws.values():
             kind_of[law.rows] = 2
-        for law in self.rubbing.values():
+        for law in self.rubbing.laws.values():
             kind_of[law.tangent.above] = 1
             if law.normal is not None:
                 kind_of[law.normal.component.above] = 0
@@ -311,87 +285,12 @@ class Problem:
 
     @cached_property
     def no_reference(self) -> str:
-        """Reason that the problem has no incremental reference, with a remedy, or "".
-
-        The incremental solvers read the incremental forms of all laws, one degree of
-        freedom where rows are glued, and the mean of the pairs of a point: they would
-        leave out anything else.
-        """
-        for name, law in self.own_laws.items():
-            return (
-                f'The law {type(law).__name__} of the interface "{name}" does not say '
-                "how it enters the incremental problem, so that there is no reference: "
-                f"{_OF_ONES_OWN}."
-            )
-        for name, form in self.incremental_forms.items():
-            if form.contact is not None and form.contact is not self.interfaces[name]:
-                return (
-                    f'The interface "{name}" enters as a contact that it is not: '
-                    f"{_OF_ONES_OWN}."
-                )
-        if not self.rubbing:
-            return (
-                "No interface is one of contact, so that there is nothing to solve "
-                f"instant by instant: add a contact, or {_BY_ESTIMATE}."
-            )
-        if not self._is_glued_as_numbered:
-            return (
-                "Rows of one degree of freedom are not glued, or glued rows have two, "
-                "so that no matrix of the whole structure says what holds: number them "
-                f"alike, or {_BY_ESTIMATE}."
-            )
-        for name, contact in self.rubbing.items():
-            if not self._has_points(contact):
-                return (
-                    f'Pairs of one point of the interface "{name}" differ in their '
-                    "degrees of freedom, gap or friction: give each a point of its "
-                    f"own, or {_BY_ESTIMATE}."
-                )
-        if len(self._strengths) > 1:
-            return (
-                "Slip changes friction otherwise on one interface than on another: "
-                f"give all of them the same strength, or {_BY_ESTIMATE}."
-            )
-        return ""
-
-    @property
-    def _is_glued_as_numbered(self) -> bool:
-        """Check whether just those rows share a degree of freedom that laws glue."""
-        owner = np.empty(self.n_rows, dtype=np.intp)
+        """Reason that the problem has no reference, with a remedy, or ""."""
+        owners = np.empty(self.n_rows, dtype=np.intp)
         for number, part in enumerate(self.substructures):
-            owner[part.rows] = number
-        # All rows of one substructure at one degree of freedom are one node.
-        keys = owner * self.n_dofs + self.row_dofs
-        nodes, node_of_row = np.unique(keys, return_inverse=True)
-        sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *self.cuts], axis=1)
-        first, second = node_of_row[sides]
-        ones = np.ones(len(first))
-        links = sparse.coo_array((ones, (first, second)), shape=(len(nodes),) * 2)
-        n_glued, glued = connected_components(links, directed=False)
-        # Each group of glued nodes has one degree of freedom, and no other group has
-        # it.
-        dofs = nodes % self.n_dofs
-        n_pairs = len(np.unique(glued * self.n_dofs + dofs))
-        return bool(n_pairs == n_glued == len(np.unique(dofs)))
-
-    def _has_points(self, law: Contact) -> bool:
-        """Check whether pairs of one point agree in degrees of freedom, gap and mu."""
-        if len(law.points) == len(law.positions):
-            return True
-        fields: list[NDArray[Any]] = [law.tangential.friction]
-        for component in law.components:
-            fields.extend([self.row_dofs[rows] for rows in component.sides])
-        if law.normal is not None:
-            fields.append(law.normal.gap)
-        _, first = np.unique(law.points, return_index=True)
-        same = first[law.points]
-        return all(np.array_equal(field, field[same]) for field in fields)
-
-    @property
-    def _strengths(self) -> set[Strength]:
-        """Slip-dependent factors of all interfaces on which there is any friction."""
-        laws = [law.tangential for law in self.rubbing.values()]
-        return {law.strength or PLAIN for law in laws if law.rubs}
+            owners[part.rows] = number
+        numbering = Numbering(self.row_dofs, owners)
+        return reason_against_reference(self.interfaces, self.rubbing, numbering)
 
     @cached_property
     def friction(self) -> Contact:
@@ -400,35 +299,25 @@ class Problem:
         return contact
 
     @cached_property
-    def rubbing(self) -> dict[str, Contact]:
-        """The interfaces with friction, by name."""
-        return {
+    def rubbing(self) -> Contacts:
+        """The interfaces with friction, by name and stacked."""
+        laws = {
             name: law
             for name, law in self.interfaces.items()
             if isinstance(law, Contact)
         }
-
-    @cached_property
-    def surfaces(self) -> dict[str, Contact]:
-        """The interfaces with friction that are surfaces, not springs, by name."""
-        return {name: law for name, law in self.rubbing.items() if not law.is_spring}
-
-    @cached_property
-    def on_surfaces(self) -> NDArray[np.bool_]:
-        """Mask of contact points that are on surfaces, shape (n_points,)."""
-        laws = self.rubbing.values()
-        is_surface = [not law.is_spring for law in laws]
-        return np.repeat(is_surface, [len(law.positions) for law in laws])
+        return Contacts(laws, self.order)
 
     @cached_property
     def goes_on(self) -> bool:
         """Check whether sliders begin at given positions, not at rest."""
-        return any(law.tangential.start is not None for law in self.rubbing.values())
+        laws = self.rubbing.laws.values()
+        return any(law.tangential.start is not None for law in laws)
 
     @cached_property
     def opens(self) -> bool:
         """Check whether any interface may open."""
-        return any(law.opens for law in self.rubbing.values())
+        return any(law.opens for law in self.rubbing.laws.values())
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
@@ -479,31 +368,9 @@ class Problem:
     def sum_of_contact(self) -> sparse.csr_array:
         """Sum over the rows of each point and component of interfaces with friction.
 
-        Shape (n_forces, n_rows). The forces on the body above are stacked interface by
-        interface: all normal forces, where it may open, and then all friction forces.
+        Shape (n_forces, n_rows): contact forces are stacked as `Contacts` says.
         """
-        blocks = [sparse.csr_array((0, self.n_rows))]
-        for law in self.rubbing.values():
-            size = len(law.positions), self.n_rows
-            ones = np.ones(len(law.points))
-            blocks += [
-                sparse.csr_array((ones, (law.points, component.above)), shape=size)
-                for component in law.components
-            ]
-        return sparse.csr_array(sparse.vstack(blocks))
-
-    @cached_property
-    def contact_slices(self) -> dict[str, tuple[slice, ...]]:
-        """Ranges of each interface's components in stacked contact forces, by name."""
-        ranges = dict[str, tuple[slice, ...]]()
-        first = 0
-        for name, law in self.rubbing.items():
-            size = len(law.positions)
-            last = first + size * len(law.components)
-            starts = range(first, last, size)
-            ranges[name] = tuple([slice(start, start + size) for start in starts])
-            first = last
-        return ranges
+        return self.rubbing.sum_of_rows(self.n_rows)
 
     @cached_property
     def _driven(self) -> list[DrivenFriction]:
@@ -511,15 +378,7 @@ class Problem:
         largest = float(np.abs(self.prescribed[1]).max(initial=0.0))
         if self.carried is not None:
             largest = max(largest, float(np.abs(self.carried).max(initial=0.0)))
-        found = list[DrivenFriction]()
-        for name, law in self.rubbing.items():
-            slices = self.contact_slices[name]
-            driven = driven_friction(
-                law, slices, self.row_dofs, self.prescribed, largest
-            )
-            if driven is not None:
-                found.append(driven)
-        return found
+        return driven_contacts(self.rubbing, self.row_dofs, self.prescribed, largest)
 
     def with_driven_friction(self, forces: Array, displacement: Array) -> Array:
         """Contact forces in which the friction of driven points is that of the law.
@@ -557,53 +416,6 @@ class Problem:
         if self.inside is None:
             return None
         return self.inside.rigid_motions(self.prescribed[0])
-
-    @property
-    def is_loose(self) -> bool:
-        """Check whether bodies can move though all contacts are closed and stick.
-
-        False along rods, and beside a user's law, which may hold what it likes.
-        """
-        if self.inside is None or self.own_laws:
-            return False
-        bodies = self.inside.body_of_dofs
-        ground = int(bodies.max()) + 1
-        joined = [np.zeros((2, 0), dtype=np.intp)]
-        jumps = list[tuple[Indices, Indices]]()
-        for law in self.rubbing.values():
-            pairs = self._pairs_that_hold(law)
-            # Two points in contact leave no motion of one body beside the other.
-            if law.opens and len(law.positions) > 1:
-                with_ground = np.append(bodies, ground)
-                joined += [with_ground[np.stack(pair)] for pair in pairs]
-            else:
-                jumps += pairs
-        first, second = np.concatenate(joined, axis=1)
-        size = ground + 1
-        links = sparse.coo_array((np.ones(len(first)), (first, second)), (size, size))
-        _, groups = connected_components(links, directed=False)
-        group_of_dofs = groups[bodies]
-        group_of_dofs[group_of_dofs == groups[ground]] = -1
-        fixed, _ = self.prescribed
-        return not self.inside.hold_still(group_of_dofs, fixed, jumps)
-
-    def _pairs_that_hold(self, law: Contact) -> list[tuple[Indices, Indices]]:
-        """Degrees of freedom above and below that a closed contact that sticks ties.
-
-        Shape (n_pairs,) each, by components; -1 is a support. A spring ties one
-        component.
-        """
-        components = law.components
-        if law.is_spring:
-            components = law.components[:1]
-        pairs = list[tuple[Indices, Indices]]()
-        for component in components:
-            above = self.row_dofs[component.above]
-            below = np.full_like(above, -1)
-            if component.below is not None:
-                below = self.row_dofs[component.below]
-            pairs.append((above, below))
-        return pairs
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
@@ -670,14 +482,11 @@ def nothing_acts(problem: Problem) -> bool:
 
     A user's law without an incremental form may act, too.
     """
-    if problem.own_laws or any(law.is_moved for law in problem.rubbing.values()):
+    laws = problem.rubbing.laws.values()
+    if problem.own_laws or any(law.is_moved for law in laws):
         return False
     given = problem.given_forces + problem.given_displacements
     forces = [part.body_force for part in problem.substructures]
     acts_on_rows = any(each.values.any() for each in given)
     acts_inside = any(force.any() for force in forces if force is not None)
     return not acts_on_rows and not acts_inside
-
-
-_BY_ESTIMATE = "judge the run by its estimate alone"
-_OF_ONES_OWN = f"define its incremental_form, or {_BY_ESTIMATE}"

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solver.arrays import Array
-from solver.discrete.contacts import ContactFields
-from solver.discrete.probes import Probe
+from solver.discrete.probes import LoopFields, Probe
 from solver.discrete.problem import Problem
 
 OUTWARD = {
@@ -137,17 +136,6 @@ class Description:
         object.__setattr__(self, "acts", acts)
 
 
-class LoopFields(Protocol):
-    """Fields of an iterate or a reference, SI, shape (n, n_instants)."""
-
-    @property
-    def displacement(self) -> Array:
-        """Displacement of the problem's dofs, shape (n_dofs, n_instants), m."""
-
-    def contact(self, name: str) -> ContactFields:
-        """Fields of one interface with friction."""
-
-
 Axes = tuple[tuple[str, str], tuple[str, str]]
 """Titles and units of a loop's displacement and force."""
 
@@ -190,9 +178,6 @@ class Loop:
 
 class Structure(Protocol):
     """Bodies, supports and loads as plain data: `Rods`, `Rope`, `Stack`."""
-
-    def discretise(self) -> Problem:
-        """Make the discrete problem."""
 
     @property
     def axes(self) -> Axes:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver import End, Rods, solve
+from solver import End, Rods, discretise, solve
 
 TENSION = 600.0
 BOUND = 1500.0
@@ -24,7 +24,7 @@ strand = Rods(
     instants=times,
     duration=1.0,
 )
-solution = solve(strand.discretise())
+solution = solve(discretise(strand))
 
 # Points stand wire after wire, and the break has two of them: the second wire has one
 # more.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver import End, Latin, Rods, solve
+from solver import End, Latin, Rods, discretise, solve
 from solver.latin import PGD, Anderson, Auto, Paper, StatusStep, Stop
 
 PEAK = 900.0
@@ -22,7 +22,7 @@ bar = Rods(
     instants=times,
     duration=1.0,
 )
-problem = bar.discretise()
+problem = discretise(bar)
 stop = Stop(accuracy=0.01, tolerance=1e-3, iterations=3000)
 accelerated = Latin(Auto(), acceleration=Anderson(), finish=None, stop=stop)
 METHODS = {

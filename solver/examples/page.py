@@ -5,7 +5,7 @@ import panel as pn
 from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
-from solver import End, Latin, Rods, iterations
+from solver import End, Latin, Rods, discretise, iterations
 from solver.latin import Iterate, Paper
 
 PEAK = 900.0
@@ -47,7 +47,7 @@ class LoopView:
 
 view = LoopView()
 run = iterations(
-    BAR.discretise(), Latin(direction=Paper(), acceleration=None, finish=None)
+    discretise(BAR), Latin(direction=Paper(), acceleration=None, finish=None)
 )
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver import Stack, solve
+from solver import Stack, discretise, solve
 from solver.discrete import Given, Side
 from solver.discrete.plane.bricks import Brick
 
@@ -28,7 +28,7 @@ pile = Stack(
     duration=1.0,
     sides={"bottom": Side(still, still), "top": Side(moved, pressed)},
 )
-problem = pile.discretise()
+problem = discretise(pile)
 solution = solve(problem)
 (joint,) = problem.rubbing
 shear = solution.iterate.contact(joint).tangential_force.sum(axis=0)

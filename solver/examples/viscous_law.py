@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver import End, Latin, Rods, solve
+from solver import End, Latin, Rods, discretise, solve
 from solver.latin import Stop
 from solver.laws import Interface
 
@@ -51,7 +51,7 @@ bar = Rods(
     instants=times,
     duration=1.0,
 )
-problem = bar.discretise()
+problem = discretise(bar)
 load = problem.interfaces["load"]
 scales = problem.scales
 per_step = DAMPING / times[1] * scales.displacement / scales.force

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver import Latin, Stack, solve
+from solver import Latin, Stack, discretise, solve
 from solver.discrete import Given, Side, Support
 from solver.latin import Auto, Stop
 
@@ -23,7 +23,7 @@ block = Stack(
     sides={"top": Side(x=sheared, y=pressed)},
 )
 method = Latin(direction=Auto(scale=0.5), stop=Stop(accuracy=0.001, iterations=200))
-solution = solve(block.discretise(), method)
+solution = solve(discretise(block), method)
 support = solution.iterate.contact("support")
 shear = np.abs(support.tangential_force.sum(axis=0))
 bound = 0.3 * support.normal_force.sum(axis=0)

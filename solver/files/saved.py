@@ -356,14 +356,17 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     """
     arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
-    for name, law in iterate.problem.rubbing.items():
-        # A single rod on its support has its fields under short names at the top level.
-        if law.is_plain and len(iterate.problem.rubbing) == 1:
-            continue
+    contacts = iterate.problem.rubbing
+    positions = contacts.of_points([law.positions for law in contacts.laws.values()])
+    # A single rod on its support has its fields under short names at the top level.
+    is_plain = all(law.is_plain for law in contacts.laws.values())
+    if is_plain and len(contacts) == 1:
+        return arrays
+    for name in contacts:
         fields = iterate.contact(name)
-        *_, tangential = iterate.problem.contact_slices[name]
+        *_, tangential = contacts.forces[name]
         entries = {
-            "points": law.positions,
+            "points": positions[contacts.points[name]],
             "determinate": determinate[tangential],
             "normal_force": fields.normal_force,
             "tangential_force": fields.tangential_force,

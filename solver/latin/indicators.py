@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,51 @@ from solver.discrete.problem import Problem
 from solver.laws.contact import Violation
 from solver.laws.interface import beyond, squared
 
-if TYPE_CHECKING:
-    from solver.latin.iterate import Iterate
+
+class Stages(Protocol):
+    """Fields of both stages of an iterate, (n_rows, n_instants) each, scaled.
+
+    Their names are those of `Iterate`.
+    """
+
+    @property
+    def problem(self) -> Problem:
+        """The problem that is solved."""
+
+    @property
+    def k(self) -> Array:
+        """Search direction of the rows, shape (n_rows,)."""
+
+    @property
+    def outgoing(self) -> Array:
+        """W + F/k of the linear stage."""
+
+    @property
+    def incoming(self) -> Array:
+        """W - F/k of the linear stage."""
+
+    @property
+    def local_displacement(self) -> Array:
+        """W^ of the local stage."""
+
+    @property
+    def local_incoming(self) -> Array:
+        """W^ - F^/k of the local stage."""
+
+    @property
+    def boundary_displacement(self) -> Array:
+        """W of the linear stage."""
+
+    @property
+    def boundary_force(self) -> Array:
+        """F of the linear stage."""
+
+    @property
+    def boundary_local_force(self) -> Array:
+        """F^ of the local stage."""
 
 
-def latin_indicator(iterate: Iterate) -> float:
+def latin_indicator(iterate: Stages) -> float:
     """LATIN indicator eta: relative squared distance of both stages (paper, eq. 2).
 
     With ||s||^2 = integral of k W^2 + F^2/k = 1/2 integral of k [(W + F/k)^2 + (W -
@@ -42,7 +82,7 @@ CREEP = 1e-2
 however far the stages are apart, so that an early iterate shows where it slips."""
 
 
-def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np.int8]:
+def contact_status(iterate: Stages, creep: Array | float = CREEP) -> NDArray[np.int8]:
     """Contact status of the local stage, shape (n_points, n_instants).
 
     The values are those of `Iterate.status`. A point that comes to rest goes on
@@ -59,9 +99,9 @@ def contact_status(iterate: Iterate, creep: Array | float = CREEP) -> NDArray[np
     force = iterate.boundary_local_force
     linear_moved = iterate.boundary_displacement
     linear_force = iterate.boundary_force
-    groups = iterate.problem.contact_groups
+    groups = iterate.problem.rubbing.groups
     creep = np.broadcast_to(creep, len(iterate.problem.rubbing))
-    n_points = sum(len(group.points) for group in groups)
+    n_points = iterate.problem.rubbing.n_points
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
     for group in groups:
         slip = group.slip(moved, force)
@@ -132,7 +172,7 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
 
 def _known_groups(problem: Problem) -> list[ContactGroup]:
     """Groups of contacts whose laws are those of `Contact.violation`."""
-    groups = problem.contact_groups
+    groups = problem.rubbing.groups
     return [group for group in groups if group.law.incremental_form() is not None]
 
 
@@ -179,7 +219,7 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
     `force` has shape (n_rows, n_instants), scaled.
     """
     largest = float(np.abs(force).max())
-    laws = [group.law for group in problem.contact_groups]
+    laws = [group.law for group in problem.rubbing.groups]
     carried = max((law.carried(force) for law in laws), default=0.0)
     by_friction = sum(law.capacity(problem.is_held) for law in laws)
     capacity = max(by_friction, SMALL_CONTACT * carried)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, read_only
-from solver.discrete.contacts import ContactFields, contact_fields
+from solver.discrete.contacts import ContactFields
 from solver.discrete.problem import Problem
 from solver.latin.indicators import contact_status, latin_indicator, violation_of
 from solver.reduction.basis import SharedBasis
@@ -184,17 +184,26 @@ class Iterate:
         Shape (n_points, n_instants), N: points of all interfaces with friction, one
         interface after the other.
         """
-        forces = [np.zeros((0, self.problem.n_instants))]
-        for components in self.problem.contact_slices.values():
+        contacts = self.problem.rubbing
+        force = np.empty((contacts.n_points, self.problem.n_instants))
+        for stacked in contacts.stacks:
             # The tangential component is the last one.
-            forces.append(self.contact_force[components[-1]])
-        return np.concatenate(forces)
+            force[stacked.points] = self.contact_force[stacked.forces[-1]]
+        return force
 
     def contact(self, name: str) -> ContactFields:
         """Fields of an interface with friction, with the status of the local stage."""
-        status = self.status[self.problem.contact_points[name]]
-        moved = self.boundary_displacement
-        return contact_fields(self.problem, name, self.contact_force, moved, status)
+        return self.contacts[name]
+
+    @cached_property
+    def contacts(self) -> dict[str, ContactFields]:
+        """Fields of all interfaces with friction, by name."""
+        return self.problem.rubbing.fields(
+            self.contact_force,
+            self.boundary_displacement,
+            self.status,
+            self.problem.scales.displacement,
+        )
 
     @cached_property
     def status(self) -> NDArray[np.int8]:

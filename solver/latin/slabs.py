@@ -150,7 +150,9 @@ def _during(
     interfaces = {name: law.during(some) for name, law in problem.interfaces.items()}
     if start is not None:
         for name, slider in start.items():
-            interfaces[name] = problem.rubbing[name].during(some).with_start(slider)
+            interfaces[name] = (
+                problem.rubbing.laws[name].during(some).with_start(slider)
+            )
     return replace(
         problem,
         substructures=tuple(parts),
@@ -173,7 +175,7 @@ def next_slab(
     moved = solved.local_displacement
     force = solved.boundary_local_force
     ends = {}
-    for name, law in solved.problem.rubbing.items():
+    for name, law in solved.problem.rubbing.laws.items():
         # Pairs of one point that stand apart could never stick together again.
         slider = law.tangential.slider(moved, force)[:, -1]
         ends[name] = law.mean_by_point(slider)[law.points]

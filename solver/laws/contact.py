@@ -24,13 +24,14 @@ from solver.laws.interface import (
     Component,
     Gaps,
     IncrementalForm,
-    Interface,
     MacroPart,
     Rule,
     beyond,
     joined,
+    restricted,
     squared,
 )
+from solver.laws.pairs import Pairs
 from solver.laws.play import Strength
 from solver.laws.stiffness import BodyStiffness, RodStiffness
 from solver.laws.unilateral import ContactRule, Unilateral
@@ -90,20 +91,13 @@ class Violation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact(Interface):
+class Contact(Pairs):
     """Pairs that stick and slip, and may open.
 
-    A pair is a point of the body above and what lies below it; the pairs of one point
-    (two, where a cut crosses the interface, or ends at it) share its force.
+    The pairs of one point share its force.
 
     Attributes
     ----------
-    points
-        Point of the interface that each pair belongs to, shape (n_pairs,).
-    positions
-        Positions of the points along the interface, shape (n_points,), m.
-    weights
-        Tributary length or area of each pair, shape (n_pairs,), m or m^2.
     tangential
         Friction law along the interface.
     normal
@@ -113,7 +107,7 @@ class Contact(Interface):
     macro
         Macro basis of each component between two bodies, shape (n_pairs, n_macro), in
         which the forces on both are in equilibrium in the coarse problem. None on a
-        rigid support.
+        rigid support. Columns of one interface follow those of the other.
     slip_ratio
         Slip between both sides over the tangential displacement of the rows: 2 where
         the image of the body lies below, which has no rows and moves the other way.
@@ -121,39 +115,28 @@ class Contact(Interface):
         Number of interfaces for which this one stands in sums over the structure that
         is shown, as one wire of a layer stands for all: forces and energies of its
         points count as many times.
-    is_spring
-        Whether the contact is a spring at a point, and no surface.
     """
 
-    points: Indices
-    positions: Array
-    weights: Array
     tangential: Friction
     normal: Unilateral | None = None
     stiffness_beside: RodStiffness | BodyStiffness = field(default_factory=RodStiffness)
     macro: sparse.csr_array | None = None
     slip_ratio: float = 1.0
     copies: float = 1.0
-    is_spring: bool = False
 
     remembers = True
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         check(
             self,
             tangential=Part(Friction),
             normal=Part(Unilateral),
             stiffness_beside=Part(RodStiffness, BodyStiffness),
-            positions=Numbers(((None,),)),
         )
         # The parts are known to be laws now, so that their sizes may be read.
         size = len(self.tangential.component.above)
-        last = len(self.positions) - 1
-        check(
-            self,
-            points=Numbers(((size,),), low=0, high=last, whole=True),
-            weights=Numbers(((size,),), low=0.0, above=True),
-        )
+        check(self, points=Numbers(((size,),), whole=True))
         # Friction of a pressing force that no law provides would silently be zero.
         if self.normal is None and self.tangential.friction.any():
             raise RefusedError(
@@ -199,24 +182,6 @@ class Contact(Interface):
         return (self.normal.component, along)
 
     @property
-    def rows(self) -> Indices:  # type: ignore[override]  # others are given them
-        """Rows of all components, of both sides, (n_rows_of_interface,)."""
-        rows = list[Indices]()
-        for component in self.components:
-            rows.extend(component.sides)
-        return np.concatenate(rows)
-
-    @property
-    def tangent(self) -> Component:
-        """The component along the interface."""
-        return self.tangential.component
-
-    @property
-    def is_on_support(self) -> bool:
-        """Check whether a rigid support lies below."""
-        return self.tangent.below is None
-
-    @property
     def opens(self) -> bool:
         """Check whether contact may be lost."""
         return self.normal is not None
@@ -257,7 +222,7 @@ class Contact(Interface):
 
     @classmethod
     def concatenated(cls, laws: Sequence[Self]) -> Self:
-        """Concatenate interfaces of one kind, without macro bases."""
+        """Concatenate interfaces of one kind, without macro bases and names."""
         sizes = [len(law.positions) for law in laws]
         firsts = np.cumsum([0, *sizes[:-1]])
         points = [first + law.points for first, law in zip(firsts, laws, strict=True)]
@@ -269,40 +234,49 @@ class Contact(Interface):
             weights=joined([law.weights for law in laws]),
             points=np.concatenate(points),
             macro=None,
+            names=(),
+            interfaces=None,
         )
+
+    def interface(self, number: int) -> Self:
+        """The law of one of several interfaces."""
+        if self.interfaces is None:
+            return self
+        points, pairs = self.ranges[number]
+        return replace(
+            self,
+            tangential=restricted(self.tangential, pairs),
+            normal=restricted(self.normal, pairs),
+            stiffness_beside=restricted(self.stiffness_beside, pairs),
+            positions=self.positions[points],
+            weights=self.weights[pairs],
+            points=self.points[pairs] - points.start,
+            macro=self._macro_of(number, pairs),
+            names=(),
+            interfaces=None,
+        )
+
+    def _macro_of(self, number: int, pairs: slice) -> sparse.csr_array | None:
+        """Macro basis of one interface, (n_pairs, n_macro), or None."""
+        if self.macro is None:
+            return None
+        columns = np.flatnonzero(self._interface_of_macro == number)
+        if not columns.size:
+            return None
+        return sparse.csr_array(self.macro[pairs][:, columns])
+
+    @cached_property
+    def _interface_of_macro(self) -> Indices:
+        """Number of the interface of each column of the macro basis, (n_macro,)."""
+        assert self.macro is not None
+        entries = sparse.coo_array(self.macro)
+        owners = np.zeros(self.macro.shape[1], dtype=np.intp)
+        owners[entries.coords[1]] = self.interface_of_pairs[entries.coords[0]]
+        return owners
 
     def rule(self, k: Array, n_instants: int) -> Rule:
         """Local stage for k of all rows, (n_rows,), scaled."""
         return ContactRule(self.normal, self.tangential, k, n_instants)
-
-    def by_point(self, values: Array) -> Array:
-        """Sum over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
-        return np.asarray(self._pairs_of_points @ values)
-
-    @cached_property
-    def _pairs_of_points(self) -> sparse.csr_array:
-        """Matrix with 1 where a pair belongs to a point, shape (n_points, n_pairs)."""
-        size = len(self.points)
-        entries = self.points, np.arange(size)
-        return sparse.csr_array(
-            (np.ones(size), entries), shape=(len(self.positions), size)
-        )
-
-    def mean_by_point(self, values: Array) -> Array:
-        """Mean over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
-        # Pairs of a point share its force, but each has its displacement and gap.
-        counts = np.bincount(self.points, minlength=len(self.positions))
-        trailing = [1] * (values.ndim - 1)
-        return np.asarray(self.by_point(values) / counts.reshape(-1, *trailing))
-
-    def in_parallel(self, compliance: Array | None) -> Array:
-        """Compliance of every point from that of its pairs in parallel, (n_points,).
-
-        Zero without compliances of the pairs, (n_pairs,).
-        """
-        if compliance is None:
-            return np.zeros(len(self.positions))
-        return np.asarray(1.0 / self.by_point(1.0 / compliance))
 
     @cached_property
     def shares(self) -> Array:
@@ -322,13 +296,32 @@ class Contact(Interface):
         return np.asarray(weights / self.by_point(weights)[self.points])
 
     def macro_parts(self) -> Iterator[MacroPart]:
-        """Macro forces of both sides, in equilibrium, component by component."""
+        """Macro forces of both sides, in equilibrium, interface by interface."""
         if self.macro is None:
             return
         # The same basis on both sides, whose macro forces add up to zero.
         basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
-        for component in self.components:
-            yield MacroPart(np.concatenate(component.sides), basis)
+        numbers, columns = basis.coords
+        # Of every interface the columns of one component follow those of the other.
+        owners = self._interface_of_macro
+        counts = np.bincount(owners, minlength=len(self.sizes))
+        firsts = np.cumsum(counts) - counts
+        n_components = len(self.components)
+        within = columns - firsts[owners[columns]]
+        begins = n_components * firsts[owners[columns]] + within
+        rows = []
+        places = []
+        for number, component in enumerate(self.components):
+            rows.append(np.concatenate(component.sides))
+            places.append(begins + number * counts[owners[columns]])
+        n_rows = len(rows[0])
+        all_numbers = [number * n_rows + numbers for number in range(n_components)]
+        entries = (
+            np.tile(basis.data, n_components),
+            (np.concatenate(all_numbers), np.concatenate(places)),
+        )
+        shape = (n_components * n_rows, n_components * basis.shape[1])
+        yield MacroPart(np.concatenate(rows), sparse.coo_array(entries, shape=shape))
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Violation of the balance of both sides' forces, as `Interface.gaps`.

@@ -5,16 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, cast
+from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice, in_rows
 from solver.refusal import RefusedError
-
-if TYPE_CHECKING:
-    from solver.laws.contact import Contact
 
 
 class Component(NamedTuple):
@@ -147,7 +144,7 @@ class IncrementalForm:
     force: PrescribedRows | None = None
     displacement: PrescribedRows | None = None
     glued: Glued | None = None
-    contact: Contact | None = None
+    contact: Interface | None = None
 
 
 class Interface(ABC):
@@ -261,6 +258,25 @@ def joined(parts: Sequence[Any]) -> Any:
     values = dict[str, Any]()
     for field in fields(first):
         values[field.name] = joined([getattr(part, field.name) for part in parts])
+    return kind(**values)
+
+
+def restricted(whole: Any, pairs: slice) -> Any:
+    """A law, or a field of it, restricted to a range of pairs.
+
+    Arrays, (n_pairs, ...), are cut; other values stay as they are.
+    """
+    if isinstance(whole, np.ndarray):
+        return whole[pairs]
+    if isinstance(whole, Component):
+        sides = [restricted(side, pairs) for side in whole]
+        return Component(*sides)
+    if not is_dataclass(whole):
+        return whole
+    kind = cast(Any, type(whole))
+    values = dict[str, Any]()
+    for field in fields(whole):
+        values[field.name] = restricted(getattr(whole, field.name), pairs)
     return kind(**values)
 
 

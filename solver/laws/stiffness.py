@@ -7,14 +7,12 @@ Small k converges fast globally and slowly locally, large k the reverse
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from solver.arrays import Array
-
-if TYPE_CHECKING:
-    from solver.laws.contact import Contact
+from solver.laws.pairs import Pairs
 
 FRICTION_FACTOR = 2.0
 """k of a friction point over the geometric mean of the two stiffnesses ES/s and ES/h.
@@ -72,14 +70,15 @@ class RodStiffness:
     """1 % of friction force takes 16 to 17 iterations, and 16 to 31 with 1
     (measured)."""
 
-    def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of an interface into that of all rows, (n_rows,), scaled.
+    def choose(self, law: Pairs, k: Array, parts: float) -> None:
+        """Write the k of interfaces into that of all rows, (n_rows,), scaled.
 
         `parts` is the number of interfaces over the share of one that slides, `k` that
         of all rows, which is changed in place.
         """
-        length = law.weights.sum()
-        spacing = length / max(len(law.positions) - 1, 1)
+        pairs = law.interface_of_pairs
+        length = law.sums(law.weights)[pairs]
+        spacing = length / np.maximum(law.sizes - 1, 1)[pairs]
         stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
         for rows in law.components[-1].sides:
             k[rows] = stiffness * law.weights / spacing
@@ -97,43 +96,53 @@ class BodyStiffness:
 
     Attributes
     ----------
-    moduli
-        Young's moduli above and below, scaled; infinite for a rigid support.
+    above, below
+        Young's moduli of the body above and of that below at each pair, shape
+        (n_pairs,), or one for all pairs, scaled; infinite for a rigid support.
     depth
-        Depth of the bodies across the interface, m; infinite where nothing limits it.
+        Depth of the bodies across the interface at each pair, shape (n_pairs,), or one
+        for all pairs, m; infinite where nothing limits it.
     """
 
-    moduli: tuple[float, float] = (1.0, float("inf"))
-    depth: float = float("inf")
+    above: Array | float = 1.0
+    below: Array | float = float("inf")
+    depth: Array | float = float("inf")
 
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
 
-    def choose(self, law: Contact, k: Array, parts: float) -> None:
-        """Write the k of an interface into that of all rows, as `RodStiffness.choose`.
+    def choose(self, law: Pairs, k: Array, parts: float) -> None:
+        """Write the k of interfaces into that of all rows, as `RodStiffness.choose`.
 
         A thin body on a rigid support is squeezed, with the stiffness E / d of its
         depth d.
         """
         if law.is_spring:
-            k[law.rows] = AT_A_POINT * self.moduli[0]
+            k[law.rows] = AT_A_POINT * np.max(self.above)
             return
-        length = law.weights.sum()
+        pairs = law.interface_of_pairs
+        length = law.sums(law.weights)[pairs]
         if law.is_on_support:
             # A support sees the depth of a thin body, or the local stiffness of a deep
             # one.
-            finer = max((len(law.positions) - 1) / RESOLVED, 1.0) ** FINER
-            pressing = sliding = max(CONTACT_STIFFNESS * finer, length / self.depth)
+            finer = [
+                max((size - 1) / RESOLVED, 1.0) ** FINER for size in law.sizes.tolist()
+            ]
+            stiffness = CONTACT_STIFFNESS * np.array(finer)[pairs]
+            pressing = np.maximum(stiffness, length / self.depth)
+            sliding = pressing
         else:
-            pressing = CONTACT_STIFFNESS * self._slender(law)
+            pressing = CONTACT_STIFFNESS * self._slender(law, length)
             sliding = SLIDING_BETWEEN_BODIES * pressing
         share = law.weights / length
         for component in law.components:
             stiffness = sliding if component is law.tangent else pressing
-            for rows, modulus in zip(component.sides, self.moduli, strict=False):
+            for rows, modulus in zip(
+                component.sides, (self.above, self.below), strict=False
+            ):
                 k[rows] = modulus * stiffness * share
 
-    def stick(self, law: Contact, k: Array) -> None:
+    def stick(self, law: Pairs, k: Array) -> None:
         """Write the k of two bodies that nowhere slip on each other, as `choose`.
 
         They bend and stretch as one body, except for deformations as short as their
@@ -143,21 +152,23 @@ class BodyStiffness:
         """
         if law.is_on_support:
             return
-        squeezed = min(self.moduli) * law.weights / self.depth
+        squeezed = np.minimum(self.above, self.below) * law.weights / self.depth
         for component in law.components:
             for rows in component.sides:
                 # Only ever stiffer: where the k of `choose` is larger it stays.
                 k[rows] = np.maximum(k[rows], squeezed)
 
-    def _slender(self, law: Contact) -> float:
+    def _slender(self, law: Pairs, length: Array) -> Array:
         """Factor on k between two bodies that are thin beside their length.
 
         Layers slide like rods, of stiffness E d / l^2 per area as a whole, with the
         depth d along the contact's length l; and E d / (l h) from point to point, h
         apart, or d where that is larger. This is their geometric mean over E / l. Macro
         forces see to long waves of bending.
+
+        `length` is that of the interface of each pair, m; shape (n_pairs,) both.
         """
-        length = float(law.weights.sum())
-        spacing = length / max(len(law.positions) - 1, 1)
-        resolved = min(self.depth / spacing, 1.0)
-        return float(np.sqrt(min(SLENDER * self.depth / length * resolved, 1.0)))
+        steps = np.maximum(law.sizes - 1, 1)[law.interface_of_pairs]
+        resolved = np.minimum(self.depth / (length / steps), 1.0)
+        slender = SLENDER * self.depth / length * resolved
+        return np.asarray(np.sqrt(np.minimum(slender, 1.0)))

@@ -60,12 +60,10 @@ def external_force(problem: Problem) -> Array:
 
 def points_dofs(problem: Problem) -> Indices:
     """Degree of freedom of every point that rubs, by interfaces, shape (n_points,)."""
-    dofs = []
-    for law in problem.rubbing.values():
-        under = np.zeros(len(law.positions), dtype=np.intp)
-        under[law.points] = problem.row_dofs[law.tangent.above]
-        dofs.append(under)
-    return np.concatenate(dofs)
+    dofs = np.zeros(problem.rubbing.n_points, dtype=np.intp)
+    for law, _, points, _ in problem.rubbing.stacks:
+        dofs[points[law.points]] = problem.row_dofs[law.tangent.above]
+    return dofs
 
 
 def jumps(problem: Problem) -> sparse.csr_array:
@@ -73,19 +71,18 @@ def jumps(problem: Problem) -> sparse.csr_array:
     rows = []
     columns = []
     values = []
-    first = 0
-    for law in problem.rubbing.values():
+    for law, _, _, forces in problem.rubbing.stacks:
         # All pairs of a point make the same jump, so its first pair stands for it.
         points, pairs = np.unique(law.points, return_index=True)
-        for component in law.components:
+        for numbers, component in zip(forces, law.components, strict=True):
             for side, value in zip(component.sides, (1.0, -1.0), strict=False):
-                rows.append(first + points)
+                rows.append(numbers[points])
                 columns.append(problem.row_dofs[side[pairs]])
                 values.append(np.full(len(points), value))
-            first += len(law.positions)
     entries = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array(
-        (np.concatenate(values), entries), shape=(first, problem.n_dofs)
+        (np.concatenate(values), entries),
+        shape=(problem.rubbing.n_forces, problem.n_dofs),
     )
 
 

@@ -46,7 +46,7 @@ BALANCED = 1e-6
 
 def rubs_on_supports(problem: Problem) -> bool:
     """Check that rods rub by known bounds, on one rigid support at every point."""
-    laws = problem.rubbing.values()
+    laws = problem.rubbing.laws.values()
     if not laws or not problem.is_chain or not all(law.is_plain for law in laws):
         return False
     dofs = points_dofs(problem)

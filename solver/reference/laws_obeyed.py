@@ -227,7 +227,7 @@ def _interface_fields(
     found = []
     held, _ = _prescribed(problem)
     for name, law in problem.rubbing.items():
-        slices = problem.contact_slices[name]
+        slices = problem.rubbing.forces[name]
         friction = force[slices[-1]]
         jump = _jump(problem, law, law.tangent, displacement)
         largest = largest_size(jump)
@@ -287,7 +287,7 @@ def _contact_force(problem: Problem, force: Array) -> Array:
     total = np.zeros((problem.n_dofs, problem.n_instants))
     for name, law in problem.rubbing.items():
         pairs = np.bincount(law.points)[law.points]
-        slices = problem.contact_slices[name]
+        slices = problem.rubbing.forces[name]
         for stacked, component in zip(slices, law.components, strict=True):
             # The pairs of a point share its force, which acts on both sides oppositely.
             carried = force[stacked][law.points] / pairs[:, None]

@@ -182,30 +182,33 @@ def rules_of(problem: Problem) -> Rules:
     """
     strengths = set[Strength]()
     parts = list[Rules]()
-    first = 0
-    for law in problem.rubbing.values():
-        parts += _components(law, first)
-        first += len(law.components) * len(law.positions)
+    places = list[Indices]()
+    for law, _, _, forces in problem.rubbing.stacks:
+        parts += _components(law, forces[0])
+        places += forces
         if not parts[-1].is_frictionless.all():
             # Without friction it does not matter how slip would change it.
             strengths.add(law.tangential.strength or PLAIN)
     if len(strengths) > 1:
         raise NoReferenceError(problem.no_reference)
+    order = np.argsort(np.concatenate(places))
     stacked = {}
     for name in OF_JUMPS:
-        stacked[name] = in_rows([getattr(part, name) for part in parts])
+        rows = in_rows([getattr(part, name) for part in parts])
+        stacked[name] = rows[order]
     return Rules(**stacked, strength=next(iter(strengths), PLAIN))
 
 
-def _components(law: Contact, first: int) -> list[Rules]:
-    """Rules of the components of one interface, whose stack starts at a place."""
+def _components(law: Contact, places: Indices) -> list[Rules]:
+    """Rules of the components of a law, by the places of its partners, (n_points,).
+
+    The normal component, which is the first, is the partner of both.
+    """
     size = len(law.positions)
     along = law.tangential
     zeros = np.zeros(size)
     endless = np.full(size, np.inf)
     is_normal = np.ones(size, dtype=bool)
-    # The normal component is the first: its places are those of the partners.
-    places = first + np.arange(size)
     bound = law.by_point(along.bound)
     friction = law.mean_by_point(along.friction)
     compliance = law.in_parallel(along.compliance)
@@ -226,8 +229,8 @@ def _components(law: Contact, first: int) -> list[Rules]:
         rules.append(normal)
         # Without friction what is in series along changes nothing, and tells the jump
         # from others.
-        if not bound.any() and not friction.any():
-            compliance = normal.compliance
+        rubs = (bound > 0.0).any(axis=1) | (friction > 0.0)
+        compliance = np.where(law.holds_on(rubs), compliance, normal.compliance)
     tangential = Rules(
         normal=~is_normal,
         gap=zeros,

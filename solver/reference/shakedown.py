@@ -120,7 +120,7 @@ def _forces_of_slips(
 
 def _count(problem: Problem) -> int:
     """Number of points that rub."""
-    return sum(len(law.positions) for law in problem.rubbing.values())
+    return problem.rubbing.n_points
 
 
 def _limit_of_points(elastic: Array, bound: Array) -> float:

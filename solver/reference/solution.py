@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from hashlib import blake2b
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solver.arrays import Array
-from solver.discrete.contacts import ContactFields, contact_fields
+from solver.discrete.contacts import ContactFields
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force, jumps
 from solver.reference.limit_analysis import Collapse
@@ -87,10 +88,15 @@ class Reference:
 
     def contact(self, name: str) -> ContactFields:
         """Forces, status and motion of an interface with friction."""
+        return self.contacts[name]
+
+    @cached_property
+    def contacts(self) -> dict[str, ContactFields]:
+        """Fields of all interfaces with friction, by name."""
         problem = self.problem
-        status = self.status[problem.contact_points[name]]
-        rows = self.displacement[problem.row_dofs] / problem.scales.displacement
-        return contact_fields(problem, name, self.contact_force, rows, status)
+        scale = problem.scales.displacement
+        rows = self.displacement[problem.row_dofs] / scale
+        return problem.rubbing.fields(self.contact_force, rows, self.status, scale)
 
 
 def fingerprint(problem: Problem) -> bytes:
@@ -107,7 +113,7 @@ def fingerprint(problem: Problem) -> bytes:
     force = external_force(problem)
     scales = problem.scales
     rules = rules_of(problem)
-    laws = problem.rubbing
+    laws = problem.rubbing.laws
     entries: list[ArrayLike] = []
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         # Equal matrices may store their entries in another order.
@@ -117,6 +123,7 @@ def fingerprint(problem: Problem) -> bytes:
     positions = [law.positions for law in laws.values()]
     parts: list[ArrayLike] = [
         [f"{name} {law.opens} {law.is_on_support}" for name, law in laws.items()],
+        list(problem.rubbing),
         [scales.displacement, scales.force, scales.time],
         problem.instants,
         problem.positions,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from solver import discrete
 from solver.discrete.problem import Problem
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
@@ -32,4 +33,5 @@ CATALOGUE: dict[str, type[Settings]] = {
 
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem of checked settings, with their loads and motions."""
-    return replace(settings.structure().discretise(), drives=settings.drives())
+    problem = discrete.discretise(settings.structure())
+    return replace(problem, drives=settings.drives())

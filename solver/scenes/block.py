@@ -13,9 +13,10 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.drives import Drive, loads_at
 from solver.discrete.plane.rigid_stack import loss_of_equilibrium
-from solver.discrete.plane.stack import Given, Side, Spring, Stack, Support
+from solver.discrete.plane.sides import Given, Side, Spring, Support
+from solver.discrete.plane.stack import Stack
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_on_spring, exact_parabola

@@ -10,9 +10,9 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.plane.rigid_stack import rigid_slide, wrench
 from solver.discrete.plane.stack import Stack
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw, Strength
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.elastic_bodies import (

@@ -14,10 +14,12 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.plane.stack import Given, Side, Stack, Support
-from solver.discrete.probes import Probe
+from solver.discrete import discretise
+from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.stack import Stack
+from solver.discrete.probes import LoopFields, Probe
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Act, Axes, Description, Hold, Loop, LoopFields
+from solver.discrete.structure import Act, Axes, Description, Hold, Loop
 from solver.laws import FrictionLaw
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
@@ -92,10 +94,6 @@ class Fault:
     stress: float
     fluid: Array
 
-    def discretise(self) -> Problem:
-        """Make the discrete problem."""
-        return self.body.discretise()
-
     @property
     def axes(self) -> Axes:
         """Titles and units of the loop."""
@@ -128,6 +126,12 @@ class Fault:
         stress = np.full_like(self.fluid, self.stress)
         yield Act("top x", "τ", np.array([[0.5, 1.0]]), along, stress, "Pa")
         yield Act("left x", "p", np.zeros((1, 2)), along, self.fluid, "Pa")
+
+
+@discretise.register
+def problem_of(fault: Fault) -> Problem:
+    """Make the discrete problem of a fault, which is that of its quarter."""
+    return discretise(fault.body)
 
 
 class FaultSettings(PlaneSettings):

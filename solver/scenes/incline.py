@@ -14,9 +14,10 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.discrete.plane.rigid_stack import loss_of_equilibrium
-from solver.discrete.plane.stack import Spring, Stack, Support
+from solver.discrete.plane.sides import Spring, Support
+from solver.discrete.plane.stack import Stack
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
 from solver.laws.play import play
 from solver.reference.closed_forms import ExactCurve

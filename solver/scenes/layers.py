@@ -12,9 +12,10 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.plane.bricks import Brick
 from solver.discrete.plane.cut_stack import ends_along
-from solver.discrete.plane.stack import Given, Side, Stack
+from solver.discrete.plane.sides import Given, Side
+from solver.discrete.plane.stack import Stack
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields
 from solver.reference.closed_forms import ExactCurve
 from solver.scenes.exact import exact_layers
 from solver.scenes.plane import PlaneSettings

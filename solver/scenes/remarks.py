@@ -106,14 +106,17 @@ def contact_growth(iterate: Iterate) -> int:
     The first closing of a contact does not count.
     """
     growth = 0
-    for name, law in iterate.problem.rubbing.items():
-        if law.normal is None or not np.any(law.tangential.friction):
+    for law, _, points, _ in iterate.problem.rubbing.stacks:
+        if law.normal is None:
             continue
-        is_closed = iterate.contact(name).status != OPEN
+        rubs = law.by_point(law.tangential.friction) > 0.0
+        is_closed = iterate.status[points] != OPEN
         before = is_closed[:, :-1]
-        gained = (is_closed[:, 1:] & ~before).sum(axis=0)
-        counted = gained * before.any(axis=0)
-        growth = max(growth, int(counted.max(initial=0)))
+        gained = is_closed[:, 1:] & ~before
+        for some, _ in law.ranges:
+            if rubs[some].any():
+                counted = gained[some].sum(axis=0) * before[some].any(axis=0)
+                growth = max(growth, int(counted.max(initial=0)))
     return growth
 
 

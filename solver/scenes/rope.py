@@ -10,6 +10,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.rope.cross_section import (
     CONSTRUCTIONS,
@@ -18,7 +19,6 @@ from solver.discrete.rope.cross_section import (
     laid,
 )
 from solver.discrete.rope.rope import Rope, RopeWire
-from solver.discrete.structure import LoopFields
 from solver.laws import FrictionLaw
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.bent_strand import BentStrand

@@ -9,9 +9,9 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import End, Rods
-from solver.discrete.structure import LoopFields
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.pulled_bar import broken_wire
 from solver.refusal import plain

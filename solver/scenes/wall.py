@@ -11,7 +11,8 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Indices
 from solver.discrete.plane.bricks import Brick, bonded, grouped, with_opening
-from solver.discrete.plane.stack import Given, Side, Stack, Support
+from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.stack import Stack
 from solver.scenes.plane import PlaneSettings
 from solver.settings.definitions import BODY, DECOMPOSITION, LOAD, redefined
 from solver.settings.load_paths import PRESETS

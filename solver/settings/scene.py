@@ -12,8 +12,10 @@ from typing import ClassVar, Literal, NamedTuple, Self
 import numpy as np
 import param
 
+from solver.discrete import discretise
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import LoopFields, Structure
+from solver.discrete.structure import Structure
 from solver.reference.closed_forms import ExactCurve
 from solver.settings.definitions import SettingError, about
 from solver.settings.load import LoadSettings
@@ -92,7 +94,7 @@ class Settings(LoadSettings):
             # A start on other instants would have to be interpolated in time.
             if not np.array_equal(coarse.times(), self.times()):
                 return
-            yield coarse.structure().discretise()
+            yield discretise(coarse.structure())
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None

@@ -226,7 +226,7 @@ class Comparison:
         # Friction is per length of the points of one interface.
         if results.quantity == FRICTION:
             law = problem.rubbing[self.interface]
-            self._places = problem.contact_slices[self.interface][-1]
+            self._places = problem.rubbing.forces[self.interface][-1]
             self._sizes = law.by_point(law.weights)[:, None]
             positions = law.positions
         self._order = np.argsort(positions, kind="stable")

@@ -11,10 +11,10 @@ from scipy.special import erfc
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
-from solver.discrete.probes import reaction, reaction_moment
+from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.discrete.structure import Loop, LoopFields
+from solver.discrete.structure import Loop
 from solver.latin import Solution
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.closed_forms.fluid_driven_slip import (

@@ -27,8 +27,9 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices
+from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Axes, Loop, LoopFields
+from solver.discrete.structure import Axes, Loop
 from solver.files.columns import KINDS, TableColumn, unit_doubt
 from solver.files.tables import Table
 from solver.settings.definitions import SettingError

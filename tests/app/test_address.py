@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from app.browser import Browser
-from app.files.link import (
+from app.lessons.catalogue import CASES, settings_of
+from app.link import (
     LESSONS,
     LONGEST,
     Link,
@@ -20,7 +21,6 @@ from app.files.link import (
     show,
     shown_by,
 )
-from app.lessons.catalogue import CASES, settings_of
 from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
@@ -152,6 +152,15 @@ def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     assert (state.settings.scene, state.settings.peak) == ("bar", 1200.0)
     link.go(before)
     assert state.settings.values() == default_settings("bar").values()
+
+
+def test_going_back_to_a_class_opens_its_page() -> None:
+    state = PageState(default_settings("rope"))
+    browser = Browser()
+    link = Link(state, browser)
+    link.go("?class=ABCD")
+    assert browser.destination == "?class=ABCD"
+    assert (state.settings.scene, state.room) == ("rope", "")
 
 
 def test_a_slider_that_is_dragged_writes_no_address_until_it_is_let_go() -> None:

@@ -14,7 +14,7 @@ import pytest
 import app.browser
 from app.browser import Display
 from app.frame import Frame
-from app.messages import Earlier, Needs, NewFrame, Ready, Show, Start
+from app.messages import Earlier, Needs, NewFrame, Ready, Show, Start, Step
 from app.state import History, PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -53,11 +53,14 @@ def test_iterates_that_were_not_shown_come_from_the_worker() -> None:
     seen = []
     state.seek(1)
     while state.frame is not newest:
-        seen.append(state.frame.iteration)
-        assert np.array_equal(state.frame.loop, frames[seen[-1]].loop)
-        assert len(state.frame.history["indicator"]) == seen[-1]
+        number = state.frame.iteration
+        seen.append(number)
+        assert np.array_equal(state.frame.loop, frames[number].loop)
+        assert len(state.frame.history["indicator"]) == number
+        # The local stage of the next iterate, and its linear one.
         state.step()
-    assert seen == list(range(1, newest.iteration + 1))
+        state.step()
+    assert seen == list(range(1, newest.iteration + newest.is_answer))
     assert asked == [number for number in seen if number not in (1, 4)]
     state.seek(3)
     state.seek(5)
@@ -72,9 +75,65 @@ def test_an_iterate_that_is_gone_holds_nobody_up(answer: Frame) -> None:
         state.history.add(frame)
     state.newest = answer
     state.seek(1)
-    for _ in range(answer.iteration):
+    for _ in range(2 * answer.iteration):
         state.step()
     assert state.frame is answer
+
+
+def test_a_step_is_a_stage_and_the_worker_does_both_at_once(answer: Frame) -> None:
+    state = PageState(answer.run.settings)
+    state.number = answer.run.number
+    orders: list[object] = []
+    state.send = orders.append
+
+    def come(number: int) -> None:
+        frame = replace(answer, iteration=number, is_answer=False, status=None)
+        state.take(NewFrame(frame))
+
+    def shown() -> tuple[int, str]:
+        return state.frame.iteration, state.selection.stage
+
+    come(1)
+    state.step()
+    # Until the worker has done the iteration the one before is shown.
+    assert shown() == (1, "linear")
+    come(2)
+    assert shown() == (2, "local")
+    state.step()
+    assert shown() == (2, "linear")
+    assert orders.count(Step()) == 1
+    # Who does not wait for the local stage sees the linear one.
+    state.step()
+    state.step()
+    come(3)
+    assert shown() == (3, "linear")
+    assert orders.count(Step()) == 2
+    state.step()
+    come(4)
+    state.seek(3)
+    assert shown() == (3, "linear")
+    state.step()
+    assert shown() == (4, "local")
+    state.go_on()
+    assert shown() == (4, "linear")
+
+
+def test_after_the_local_stage_the_bodies_stand_where_the_iteration_before_put_them(
+    answer: Frame,
+) -> None:
+    state = PageState(answer.run.settings)
+    moved = replace(answer.deformed, nodes=2.0 * answer.deformed.nodes)
+    before = replace(answer, iteration=1, is_answer=False, deformed=moved)
+    after = replace(answer, iteration=2, is_answer=False)
+    state.history.add(before)
+    state.history.add(after)
+    shown = state.before_linear(after)
+    assert shown.deformed.nodes is moved.nodes
+    assert shown.deformed.status is after.deformed.status
+    # A search from nothing begins at rest; of other starts nothing is known.
+    assert not state.before_linear(before).deformed.nodes.any()
+    nested = replace(before.run, settings=before.run.settings.replace(start="nested"))
+    assert state.before_linear(replace(before, run=nested)).deformed is moved
 
 
 def test_a_picture_whose_answer_got_lost_is_asked_for_again(

@@ -50,15 +50,8 @@ class Box:
 
 
 def imported(path: Path) -> Iterator[str]:
-    """Names of the modules that a file imports at work, that is not for types alone."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for_types = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
-            for_types.update(map(id, ast.walk(node)))
-    for node in ast.walk(tree):
-        if id(node) in for_types:
-            continue
+    """Names of the modules that a file imports, at work or for types."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:

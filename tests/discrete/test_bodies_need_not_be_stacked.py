@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver import Latin, solve
-from solver.discrete import Given, Problem, Side, Stack
+from solver.discrete import Given, Problem, Side, Stack, discretise
 from solver.discrete.plane.bricks import Brick
 from solver.latin import Ending
 from solver.reference.incremental import reference_of
@@ -40,7 +40,7 @@ def lintel_on_two_piers() -> Problem:
         instants=TIMES,
         duration=1.0,
     )
-    return lintel.discretise()
+    return discretise(lintel)
 
 
 def test_two_piers_carry_half_of_a_lintel_each() -> None:

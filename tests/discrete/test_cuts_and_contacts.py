@@ -13,13 +13,15 @@ import pytest
 from contact_problems import block, friction_of
 
 from solver.arrays import Array
-from solver.discrete.contacts import NO_SLIP, ContactGroup, contact_fields
+from solver.discrete import discretise
+from solver.discrete.contacts import NO_SLIP, ContactGroup, Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
 from solver.discrete.drives import Drive, beyond, loads_at
 from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.bricks import Brick
 from solver.discrete.plane.cut_stack import CutStack, ends_along
-from solver.discrete.plane.stack import Given, Side, Stack
+from solver.discrete.plane.sides import Given, Side
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.rods import End, Rods
@@ -74,8 +76,8 @@ KINDS = {
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("cuts", [2, 3, 7])
 def test_cut_or_not_rods_have_one_stiffness_and_load(kind: str, cuts: int) -> None:
-    whole = rods(1, **KINDS[kind]).discretise()
-    cut = rods(cuts, **KINDS[kind]).discretise()
+    whole = discretise(rods(1, **KINDS[kind]))
+    cut = discretise(rods(cuts, **KINDS[kind]))
     if kind != "broken" or cuts > 2:
         assert len(cut.substructures) > len(whole.substructures)
     stiffness = assembled_stiffness(whole).toarray()
@@ -97,7 +99,7 @@ def test_cut_or_not_rods_have_one_stiffness_and_load(kind: str, cuts: int) -> No
 def test_stiffness_of_a_rod_is_that_of_springs_in_series() -> None:
     """Pulled at an end whose other is held: the sum of compliances, in m/N."""
     of = rods(4, left=End(displacement=0.0 * INSTANTS), bound=np.zeros(13), strain=None)
-    problem = replace(of, body_force=None).discretise()
+    problem = discretise(replace(of, body_force=None))
     assert of.section is not None
     compliance = float(np.sum(2.0 / 12.0 / (3e4 * of.section)))
     found = reference_of(problem).displacement[-1]
@@ -111,15 +113,15 @@ def test_a_rod_that_is_heated_is_longer_by_its_strain_and_pulls_where_it_is_held
     strain = np.tile(1e-3 * INSTANTS, (12, 1))
     held = End(displacement=0.0 * INSTANTS)
     plain = {"bound": np.zeros(13), "body_force": None, "strain": strain}
-    free = rods(3, left=held, right=End(), **plain).discretise()
+    free = discretise(rods(3, left=held, right=End(), **plain))
     ends = reference_of(free).displacement[-1]
     assert ends == pytest.approx(2.0 * 1e-3 * INSTANTS, rel=1e-10)
 
 
 def test_a_support_that_settles_moves_no_rod_that_does_not_rub() -> None:
     settlement = 1e-4 * np.random.default_rng(2).normal(size=(13, 5))
-    still = rods(3, bound=np.zeros(13)).discretise()
-    moved = rods(3, bound=np.zeros(13), settlement=settlement).discretise()
+    still = discretise(rods(3, bound=np.zeros(13)))
+    moved = discretise(rods(3, bound=np.zeros(13), settlement=settlement))
     assert np.abs(reference_of(moved).displacement).max() > 0.0
     assert moved.absolute(reference_of(moved).displacement) == pytest.approx(
         reference_of(still).displacement, abs=1e-14
@@ -181,8 +183,8 @@ def by_place(problem: Problem) -> dict[tuple[Any, ...], int]:
 def test_what_the_cuts_add_condenses_to_the_uncut_stiffness_and_load(
     kind: str, cuts: tuple[int, int]
 ) -> None:
-    whole = pressed((1, 1), **STACKS[kind]).discretise()
-    cut = pressed(cuts, **STACKS[kind]).discretise()
+    whole = discretise(pressed((1, 1), **STACKS[kind]))
+    cut = discretise(pressed(cuts, **STACKS[kind]))
     assert cut.n_dofs > whole.n_dofs
     places = by_place(cut)
     order = np.array([places[place] for place in by_place(whole)])
@@ -198,7 +200,7 @@ def test_what_the_cuts_add_condenses_to_the_uncut_stiffness_and_load(
 
 def test_tractions_and_weight_add_up_to_their_resultants() -> None:
     stack = pressed((3, 2))
-    problem = stack.discretise()
+    problem = discretise(stack)
     inside = problem.inside
     assert inside is not None
     total = np.stack(
@@ -222,7 +224,7 @@ def test_a_side_is_loaded_where_bodies_reach_farthest_and_not_beside_them() -> N
         block(elements=(6, 4), bodies=2, left=left),
         bricks=[Brick(0, 0, 6, 4), Brick(3, 4, 3, 4)],
     )
-    problem = stack.discretise()
+    problem = discretise(stack)
     inside = problem.inside
     assert inside is not None
     top = stack.sides["top"].x.mean
@@ -259,7 +261,7 @@ def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
 def test_the_inside_is_recovered_alike_whatever_the_cuts(kind: str) -> None:
     found = []
     for cuts in ((1, 1), (3, 2)):
-        problem = pressed(cuts, **STACKS[kind]).discretise()
+        problem = discretise(pressed(cuts, **STACKS[kind]))
         inside = problem.inside
         assert inside is not None
         solution = reference_of(problem)
@@ -277,7 +279,7 @@ def test_a_weighted_sum_of_the_inside_is_its_adjoint_on_the_outside(
     cuts: tuple[int, int],
 ) -> None:
     random = np.random.default_rng(4)
-    problem = pressed(cuts, bodies=2).discretise()
+    problem = discretise(pressed(cuts, bodies=2))
     inside = problem.inside
     assert inside is not None
     field = 1e-3 * random.normal(size=(problem.n_dofs, problem.n_instants))
@@ -290,7 +292,7 @@ def test_a_weighted_sum_of_the_inside_is_its_adjoint_on_the_outside(
 
 
 def test_rigid_motions_cost_no_force_move_nothing_held_and_are_all_there_are() -> None:
-    problem = pressed((3, 2), bodies=2).discretise()
+    problem = discretise(pressed((3, 2), bodies=2))
     inside = problem.inside
     assert inside is not None
     stiffness = assembled_stiffness(problem)
@@ -308,7 +310,7 @@ def test_rigid_motions_cost_no_force_move_nothing_held_and_are_all_there_are() -
 
 def test_a_linear_displacement_has_one_stress_everywhere() -> None:
     stack = pressed((3, 2))
-    inside = stack.discretise().inside
+    inside = discretise(stack).inside
     assert inside is not None
     gradient = np.array([[1e-4, 2e-4], [-3e-4, 5e-4]])
     stress = inside.stress(inside.nodes @ gradient.T)
@@ -357,8 +359,10 @@ def test_contacts_put_together_show_what_each_shows(opens: bool) -> None:
         interface(100, 2, opens=opens),
         interface(6, 4, opens=opens, start=-0.2),
     ]
-    both = ContactGroup(laws, [0, 2])
-    alone = [ContactGroup(laws, [number]) for number in (0, 2)]
+    stacks = Contacts(dict(zip("abc", laws, strict=True))).stacks
+    both = ContactGroup([stacks[0], stacks[2]])
+    alone = [ContactGroup([stacks[number]]) for number in (0, 2)]
+    assert both.numbers.tolist() == [0, 2]
     assert both.points.tolist() == [0, 1, 2, 5, 6, 7, 8]
     displacement = random.normal(size=(14, 6))
     displacement[6:] *= 1e-10
@@ -384,7 +388,7 @@ def test_contacts_put_together_show_what_each_shows(opens: bool) -> None:
 
 
 def test_status_is_the_sign_of_slip_beyond_rounding_and_open_without_force() -> None:
-    group = ContactGroup([interface(0, 2, opens=True)], [0])
+    group = ContactGroup(Contacts({"one": interface(0, 2, opens=True)}).stacks)
     displacement = np.zeros((4, 4))
     displacement[0] = [1.0, 1.0, 0.5, 0.5 + 0.1 * NO_SLIP]
     displacement[1] = [0.0, -1.0, -1.0, -1.0]
@@ -398,7 +402,7 @@ def test_status_is_the_sign_of_slip_beyond_rounding_and_open_without_force() -> 
 
 
 def test_fields_of_a_contact_are_its_forces_jumps_and_gap_in_si() -> None:
-    problem = block(elements=(6, 4), cuts=(2, 1), bodies=2).discretise()
+    problem = discretise(block(elements=(6, 4), cuts=(2, 1), bodies=2))
     random = np.random.default_rng(6)
     (name,) = [name for name in problem.rubbing if name != "support"]
     law = problem.rubbing[name]
@@ -408,14 +412,16 @@ def test_fields_of_a_contact_are_its_forces_jumps_and_gap_in_si() -> None:
     displacement[law.tangent.below] = 1e-3
     assert law.normal is not None
     displacement[law.normal.component.above] = 5e-3
-    sizes = sum(len(one.positions) * 2 for one in problem.rubbing.values())
-    force = random.normal(size=(sizes, problem.n_instants))
-    status = np.zeros((len(law.positions), problem.n_instants), dtype=np.int8)
-    fields = contact_fields(problem, name, force, displacement, status)
+    contacts = problem.rubbing
+    force = random.normal(size=(contacts.n_forces, problem.n_instants))
+    status = random.integers(-1, 3, size=(contacts.n_points, problem.n_instants))
     scale = problem.scales.displacement
-    assert fields.slip == pytest.approx(np.full(status.shape, 2e-3 * scale))
-    assert fields.opening == pytest.approx(np.full(status.shape, 5e-3 * scale))
-    across, along = problem.contact_slices[name]
+    fields = contacts.fields(force, displacement, status.astype(np.int8), scale)[name]
+    shape = len(law.positions), problem.n_instants
+    assert fields.slip == pytest.approx(np.full(shape, 2e-3 * scale))
+    assert fields.opening == pytest.approx(np.full(shape, 5e-3 * scale))
+    assert np.array_equal(fields.status, status[contacts.points[name]])
+    across, along = problem.rubbing.forces[name]
     assert np.array_equal(fields.normal_force, force[across])
     assert np.array_equal(fields.tangential_force, force[along])
 

@@ -22,13 +22,13 @@ from app.messages import Needs
 from app.status import figures_line
 from app.units import percent
 from app.worker.sampling import Sampler
+from solver import discrete
 from solver.arrays import Array
 from solver.discrete import Given, Side, Stack, Support
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.probes import reaction, reaction_moment
+from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.discrete.structure import LoopFields
 from solver.latin import Latin, iterations
 from solver.reference.assembly import external_force
 from solver.reference.distance import kkt_residual
@@ -499,7 +499,7 @@ def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> N
             "top": Side(free, Given(False, -1e6 * np.minimum(4.0 * times, 1.0))),
         },
     )
-    problem = stack.discretise()
+    problem = discrete.discretise(stack)
     reference = reference_of(problem)
     iterate = next(islice(iterations(problem, Latin()), 200, None))
     for fields in (reference, iterate):
@@ -539,7 +539,7 @@ def test_what_presses_a_partly_covered_body_stands_on_its_support(
     bricks, open_tops = LYING[name]
     stack = block(elements=(6, 4), cuts=(cuts, 1), bodies=2, shear=0.05)
     stack = replace(stack, bricks=bricks)
-    problem = stack.discretise()
+    problem = discrete.discretise(stack)
     reference = reference_of(problem)
     assert reference.converged.all()
     assert_bodies_balance(problem, reference)
@@ -563,7 +563,7 @@ def test_a_press_moves_what_lies_farthest_up_however_bodies_are_cut() -> None:
     stack = replace(stack, bricks=bricks, sides={"top": Side(still, pushed)})
     forces = []
     for cuts in ((1, 1), (6, 2)):
-        problem = replace(stack, substructures=cuts).discretise()
+        problem = discrete.discretise(replace(stack, substructures=cuts))
         reference = reference_of(problem)
         assert reference.converged.all()
         assert_bodies_balance(problem, reference)

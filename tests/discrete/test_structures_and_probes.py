@@ -7,11 +7,12 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import islice
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
+from solver import discrete
 from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.elements import von_mises
 from solver.discrete.plane.bricks import Brick
@@ -136,7 +137,9 @@ def test_a_side_that_is_not_named_is_free() -> None:
     named = replace(
         BODY, sides=dict.fromkeys(("left", "right", "bottom"), free) | BODY.sides
     )
-    assert fingerprint(named.discretise()) == fingerprint(BODY.discretise())
+    assert fingerprint(discrete.discretise(named)) == fingerprint(
+        discrete.discretise(BODY)
+    )
     assert {act.where for act in BODY.description().acts} == {"top x", "top y"}
     assert [hold.kind for hold in BODY.description().holds] == ["support"]
 
@@ -167,7 +170,24 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
     """Three heights h with an extreme s carry 3 s h^2 / 6, clockwise where s is up."""
-    problem = BEAMS.discretise()
+    problem = discrete.discretise(BEAMS)
     still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
     force = BEAMS.loop(problem).force(still)
     assert force == pytest.approx(-3.0 * 6e5 * T * 0.1**2 / 6.0)
+
+
+class Framed(NamedTuple):
+    """A structure of one's own."""
+
+    body: Stack
+
+
+def test_a_structure_has_a_mesher_that_its_data_does_not_know() -> None:
+    framed = Framed(BODY)
+    with pytest.raises(RefusedError, match=r"of type Framed.*discretise\.register"):
+        discrete.discretise(framed)
+    discrete.discretise.register(
+        Framed, lambda structure: discrete.discretise(structure.body)
+    )
+    found = discrete.discretise(framed)
+    assert fingerprint(found) == fingerprint(discrete.discretise(BODY))

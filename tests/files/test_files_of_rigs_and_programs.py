@@ -12,6 +12,7 @@ import numpy as np
 import openpyxl
 import pytest
 
+from solver import discrete
 from solver.commands.cli import main
 from solver.files.tables import Table, read_table
 from solver.scenes import CATALOGUE, discretise
@@ -334,7 +335,7 @@ def test_a_table_is_a_loop_or_results_or_a_path_by_its_head(
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_the_axes_of_a_loop_are_those_of_its_structure(scene: str) -> None:
     structure = CATALOGUE[scene].checked({}).structure()
-    assert structure.axes == structure.loop(structure.discretise()).axes
+    assert structure.axes == structure.loop(discrete.discretise(structure)).axes
 
 
 def test_what_is_a_thousand_times_off_the_run_is_doubted() -> None:

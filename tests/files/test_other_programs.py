@@ -60,7 +60,7 @@ def own_friction(scene: str) -> tuple[Any, Any, Any]:
     _, problem, reference = solved(scene)
     (name, *_) = problem.rubbing
     law = next(iter(problem.rubbing.values()))
-    places = problem.contact_slices[name][-1]
+    places = problem.rubbing.forces[name][-1]
     sizes = law.by_point(law.weights)[:, None]
     known = determinate_forces(problem)[places].all(axis=1)
     force = reference.contact_force[places] / sizes

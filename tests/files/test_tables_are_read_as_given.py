@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from refusals import refusal
 
-from app.files.link import read as read_address
+from app.link import read as read_address
 from solver.commands.cli import main
 from solver.files.curves import curve_of
 from solver.files.saved import settings_from_command, settings_from_toml

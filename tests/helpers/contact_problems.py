@@ -3,8 +3,10 @@
 import numpy as np
 
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.stack import Given, Side, Stack, Support
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.stack import Stack
+from solver.discrete.problem import Problem
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import (
     BodyStiffness,

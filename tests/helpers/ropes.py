@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from solver.arrays import Array
+from solver.discrete import discretise
 from solver.discrete.rope.rope import Rope
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.incremental import reference_of
@@ -26,7 +27,7 @@ def settings_of(**changes: Any) -> RopeSettings:
 
 def solved(settings: RopeSettings) -> tuple[Rope, Reference]:
     scene = settings.structure()
-    return scene, reference_of(scene.discretise())
+    return scene, reference_of(discretise(scene))
 
 
 def moment_of(scene: Rope, found: Reference) -> Array:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.files.link import read
+from app.link import read
 from app.state import SEARCH
 from solver.commands.cli import main
 from solver.files.saved import settings_from_command

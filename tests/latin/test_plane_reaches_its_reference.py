@@ -12,7 +12,8 @@ from contact_problems import block
 from plane import whole_force_error
 from runs import errors, sample, settings_of
 
-from solver.discrete.plane.stack import Given, Side
+from solver.discrete import discretise
+from solver.discrete.plane.sides import Given, Side
 from solver.latin import iterations
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces, distance_to
@@ -87,7 +88,7 @@ CASES = {
 
 @pytest.fixture(scope="module", params=CASES)
 def case(request):
-    problem = block(**CASES[request.param]).discretise()
+    problem = discretise(block(**CASES[request.param]))
     settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9)
     iterate = next(islice(iterations(problem, method_of(settings)), 399, None))
     return problem, reference_of(problem), iterate
@@ -109,7 +110,7 @@ def test_converged_latin_is_the_reference_and_shows_the_same_at_every_interface(
 
 
 def test_the_tilted_block_lifts_off_and_comes_back():
-    reference = reference_of(block(**CASES["tilted until it lifts off"]).discretise())
+    reference = reference_of(discretise(block(**CASES["tilted until it lifts off"])))
     status = reference.contact("support").status
     opened = np.diff((status == OPEN).astype(int), axis=1) > 0
     closed = status[:, -1] != OPEN
@@ -121,7 +122,7 @@ def test_only_forces_that_a_support_does_not_share_are_compared():
         Given(True, 0.0 * HERE, 0.0 * HERE), Given(True, -1e-4 * HERE, 0.0 * HERE)
     )
     for side, points in ((LEANING, 13), (wall, 12)):
-        problem = block(left=side).discretise()
+        problem = discretise(block(left=side))
         assert len(problem.rubbing["support"].positions) == points
-        places = problem.contact_slices["support"]
+        places = problem.rubbing.forces["support"]
         assert all(determinate_forces(problem)[place][:, 1:].all() for place in places)

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from contact_problems import friction_of, on_a_support, problem, stiffness, substructure
 
-from solver import End, Latin, Problem, Rods, solve
+from solver import End, Latin, Problem, Rods, discrete, solve
 from solver.arrays import Array, Indices
 from solver.discrete.problem import nothing_acts
 from solver.latin import PGD, Ending, Solution, Stop, solve_in_slabs
@@ -94,17 +94,19 @@ class DampedLoad(Neumann):
 
 
 def bar(bound: float | Array = 300.0, force: Array = PULL) -> Problem:
-    return Rods(
-        length=1.0,
-        stiffness=1e6,
-        elements=8,
-        substructures=2,
-        bound=np.full(9, bound),
-        left=End(displacement=0.0 * T),
-        right=End(force=force),
-        instants=T,
-        duration=1.0,
-    ).discretise()
+    return discrete.discretise(
+        Rods(
+            length=1.0,
+            stiffness=1e6,
+            elements=8,
+            substructures=2,
+            bound=np.full(9, bound),
+            left=End(displacement=0.0 * T),
+            right=End(force=force),
+            instants=T,
+            duration=1.0,
+        )
+    )
 
 
 def with_law(of: Problem, name: str, law: Interface) -> Problem:

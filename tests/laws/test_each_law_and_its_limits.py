@@ -482,8 +482,8 @@ def two_sided(stiffness_beside: BodyStiffness) -> Contact:
 
 def test_k_of_a_body_is_in_proportion_to_its_modulus_and_to_area() -> None:
     found, wanted = np.zeros((2, 12))
-    BodyStiffness((3.0, 5.0)).choose(two_sided(BodyStiffness((3.0, 5.0))), found, 1.0)
-    BodyStiffness((1.0, 1.0)).choose(two_sided(BodyStiffness((1.0, 1.0))), wanted, 1.0)
+    BodyStiffness(3.0, 5.0).choose(two_sided(BodyStiffness(3.0, 5.0)), found, 1.0)
+    BodyStiffness(1.0, 1.0).choose(two_sided(BodyStiffness(1.0, 1.0)), wanted, 1.0)
     factors = np.repeat([3.0, 5.0, 3.0, 5.0], 3)
     assert found == pytest.approx(factors * wanted)
     assert wanted.reshape(4, 3)[:, 1] == pytest.approx(2.0 * wanted.reshape(4, 3)[:, 0])
@@ -501,7 +501,7 @@ def test_k_of_a_rod_grows_with_stiffness_and_the_root_of_what_stays() -> None:
 
 
 def test_bodies_that_stick_are_never_softer_and_as_stiff_as_their_depth() -> None:
-    stiffness_beside = BodyStiffness((2.0, 3.0), depth=1e-3)
+    stiffness_beside = BodyStiffness(2.0, 3.0, depth=1e-3)
     law = two_sided(stiffness_beside)
     before = np.zeros(12)
     stiffness_beside.choose(law, before, 1.0)
@@ -509,7 +509,7 @@ def test_bodies_that_stick_are_never_softer_and_as_stiff_as_their_depth() -> Non
     stiffness_beside.stick(law, after)
     assert np.all(after >= before)
     assert after == pytest.approx(np.tile(2.0 * law.weights / 1e-3, 4))
-    thick = BodyStiffness((2.0, 3.0), depth=1e3)
+    thick = BodyStiffness(2.0, 3.0, depth=1e3)
     same = before.copy()
     thick.stick(law, same)
     assert np.array_equal(same, before)

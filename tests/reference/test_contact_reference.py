@@ -17,6 +17,7 @@ from contact_problems import (
     two_bodies,
 )
 
+from solver.discrete import discretise
 from solver.reference.assembly import (
     Interrupted,
     NoReferenceError,
@@ -178,7 +179,7 @@ def test_strands_that_rub_on_each_other_obey_every_law(strands, ring):
 
 
 def test_a_block_under_more_shear_than_friction_carries_is_said_to_be_lost():
-    of = block(shear=0.5, height=0.2).discretise()
+    of = discretise(block(shear=0.5, height=0.2))
     found = reference_of(of)
     shear = 0.5 * np.sin(2.0 * np.pi * np.maximum(of.instants - 0.25, 0.0) / 0.75)
     carried = np.logical_and.accumulate(np.abs(shear) < 0.3)

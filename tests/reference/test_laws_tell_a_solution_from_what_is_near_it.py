@@ -178,7 +178,7 @@ def test_overlap_and_tension_and_force_at_a_distance_break_the_law_across(scene)
     problem = problem_of(scene, SMALL[scene])
     found = reference_of(problem)
     (name, law) = list(problem.rubbing.items())[-1]
-    place = problem.contact_slices[name][0]
+    place = problem.rubbing.forces[name][0]
     last = problem.n_instants - 1
     point = int(np.argmax(found.contact_force[place, last]))
     assert found.contact_force[place.start + point, last] > 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver import End, Rods, solve
+from solver import End, Rods, discrete, solve
 from solver.discrete.problem import Problem
 from solver.latin import Ending
 from solver.reference.incremental import reference_of
@@ -49,7 +49,7 @@ def pulled_rod(bound: float) -> Problem:
         left=End(force=0.0 * times),
         right=End(force=900.0 * times),
     )
-    return rods.discretise()
+    return discrete.discretise(rods)
 
 
 def test_columns_that_lean_are_given_up_without_trying_the_same_states_again() -> None:

@@ -13,8 +13,10 @@ from scipy.integrate import quad
 from scipy.linalg import solve_banded
 from scipy.special import erfc
 
+from solver import discrete
 from solver.arrays import Array
-from solver.discrete.plane.stack import Given, Side, Stack, Support
+from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.files.saved import dump, read_settings, settings_from_command
 from solver.latin import Auto, Ending, Latin, Stop, solve
@@ -349,7 +351,7 @@ def loosened(substructures):
 
 @pytest.mark.parametrize("substructures", [(1, 1), (4, 2)])
 def test_a_known_bound_in_the_plane_is_obeyed_and_presses_nothing(substructures):
-    problem = loosened(substructures).discretise()
+    problem = discrete.discretise(loosened(substructures))
     reference = reference_of(problem)
     method = Latin(direction=Auto(), stop=Stop(accuracy=1e-4, iterations=300))
     solution = solve(problem, method)

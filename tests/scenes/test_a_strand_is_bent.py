@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from ropes import exact_of, moment_of, settings_of, solved
 
-from solver import solve
+from solver import discrete, solve
 from solver.arrays import Array
 from solver.discrete.rope.cross_section import (
     CONSTRUCTIONS,
@@ -86,7 +86,8 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
     wires = [replace(wire, start=wire.start + turn) for wire in scene.wires]
     turned = replace(scene, wires=wires)
     moments = [
-        moment_of(one, reference_of(one.discretise())) for one in (scene, turned)
+        moment_of(one, reference_of(discrete.discretise(one)))
+        for one in (scene, turned)
     ]
     np.testing.assert_allclose(*moments, rtol=1e-9, atol=1e-9)
 
@@ -172,9 +173,9 @@ def test_what_is_no_strand_is_refused() -> None:
     scene = settings_of(**CLAMPED).structure()
     short = replace(scene.wires[0], curvature=scene.wires[0].curvature[1:])
     with pytest.raises(RefusedError, match=r"curvature = of shape .* shape \[25, 31\]"):
-        replace(scene, wires=[scene.wires[0], short]).discretise()
+        discrete.discretise(replace(scene, wires=[scene.wires[0], short]))
     with pytest.raises(RefusedError, match="bound = -1"):
-        replace(scene, wires=[replace(scene.wires[0], bound=-1.0)]).discretise()
+        discrete.discretise(replace(scene, wires=[replace(scene.wires[0], bound=-1.0)]))
 
 
 def taken(name: str, run: FinishedRun) -> float:

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from runs import solved
 
-from solver import Stack
+from solver import Stack, discrete
 from solver.discrete import Given, Side, Support
 from solver.discrete.rods.rods import End, Rods
 from solver.latin import Ending, Latin, solve
@@ -29,7 +29,7 @@ CHANGING = {"friction_law": "slip-dependent"}
 def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
     """A clamped bar of 1 m whose end is pulled, or displaced by force L / ES."""
     force = np.asarray(force, dtype=float)
-    return (
+    return discrete.discretise(
         Rods(
             length=1.0,
             stiffness=STIFFNESS,
@@ -42,7 +42,7 @@ def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
             duration=1.0,
             friction_law=law,
         )
-    ).discretise()
+    )
 
 
 def changing(ratio, slip_length):
@@ -342,20 +342,22 @@ def pressed_block(law, *, lifted=False):
             x=Given(prescribed=True, mean=along), y=Given(prescribed=True, mean=down)
         )
     }
-    return Stack(
-        length=0.1,
-        height=0.02,
-        young=210e9,
-        poisson=0.0,
-        state="stress",
-        elements=(16, 4),
-        substructures=(2, 1),
-        instants=WHOLE,
-        duration=1.0,
-        support=Support(gap=np.zeros(17), friction=0.3),
-        friction_law=law,
-        sides=sides,
-    ).discretise()
+    return discrete.discretise(
+        Stack(
+            length=0.1,
+            height=0.02,
+            young=210e9,
+            poisson=0.0,
+            state="stress",
+            elements=(16, 4),
+            substructures=(2, 1),
+            instants=WHOLE,
+            duration=1.0,
+            support=Support(gap=np.zeros(17), friction=0.3),
+            friction_law=law,
+            sides=sides,
+        )
+    )
 
 
 TABLE = Strength((0.0, 5e-6, 2e-5), (1.0, 1.4, 0.5))

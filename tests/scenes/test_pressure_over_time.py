@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver import Latin, solve
+from solver.discrete import discretise
 from solver.discrete.rods.rods import Rods
 from solver.latin import Paper, Stop
 from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
@@ -53,7 +54,7 @@ def test_a_bar_slips_on_as_its_bolt_loosens_while_the_load_stands_still():
     np.testing.assert_allclose(
         end[~slides], formula[~slides], atol=1e-6 * np.nanmax(formula)
     )
-    found = reference_of(scene.discretise())
+    found = reference_of(discretise(scene))
     assert np.all(np.diff(found.displacement[-1, held]) > 0.0)
     grown = (found.status == 1).sum(axis=0)[held]
     assert np.all(np.diff(grown) >= 0)
@@ -67,7 +68,7 @@ def test_finer_meshes_come_to_the_closed_form_with_order_two():
         scene = rod(
             load="hold", peak=500.0, pressure_load="loosening", elements=int(elements)
         )
-        found = reference_of(scene.discretise())
+        found = reference_of(discretise(scene))
         end = solved(scene).end_displacement
         errors.append(np.abs(found.displacement[-1] - end).max() / end.max())
     assert -np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(
@@ -90,7 +91,7 @@ def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, f
     scene = rod(elements=80, instants=9)
     pressure = np.array([1.0, *factors])
     scene = pulled(scene, [0.0, *load], bound=np.outer(scene.bound, pressure))
-    found = reference_of(scene.discretise())
+    found = reference_of(discretise(scene))
     exact = closed_form(scene)
     assert found.converged.all()
     bound = np.outer(np.full(81, 1500.0 / 80), pressure)
@@ -106,7 +107,7 @@ def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, f
 @pytest.mark.parametrize("path", ["loosening", "shaken"])
 def test_latin_and_both_incremental_solvers_find_the_same(path, law, method):
     values = {"load": "sine", "peak": 700.0, "pressure_load": path, "friction_law": law}
-    problem = rod(**values, elements=20, substructures=4, instants=41).discretise()
+    problem = discretise(rod(**values, elements=20, substructures=4, instants=41))
     found = reference_of(problem)
     assert found.converged.all()
     if law == "coulomb":

@@ -10,8 +10,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from solver import discrete
 from solver.discrete.plane.bricks import bonded, grouped, with_opening
-from solver.discrete.plane.stack import Given, Side, Stack, Support
+from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.stack import Stack
 from solver.latin import Ending, Latin, iterations, solve
 from solver.latin.end.status import collapses
 from solver.laws import OPEN, FrictionLaw, Strength
@@ -77,7 +79,7 @@ def test_the_weight_over_an_opening_goes_round_it():
     assert (lintel.x, lintel.y, lintel.columns) == (6, 4, 12)
     area = sum(brick.columns * brick.rows for brick in built.rectangles)
     assert area == 6 * 4 * 5 * 2 - 2 * 4 * 2 * 2
-    problem = built.discretise()
+    problem = discrete.discretise(built)
     reference = reference_of(problem)
     weight = 2e4 * area * 0.06 * 0.06
     carried = forces(reference, on_ground(problem), "normal_force")[-1]
@@ -100,7 +102,7 @@ def test_an_opening_leaves_bricks_beside_and_above_it():
 
 @pytest.mark.parametrize("bond", ["running", "stack"])
 def test_latin_and_the_incremental_solver_come_to_one_solution(bond):
-    problem = wall(bond=bond).discretise()
+    problem = discrete.discretise(wall(bond=bond))
     reference = reference_of(problem)
     assert reference.converged.all()
     assert np.any(reference.status == 2)
@@ -113,7 +115,7 @@ def test_latin_and_the_incremental_solver_come_to_one_solution(bond):
 
 def test_the_ground_carries_what_weighs_and_presses():
     made = wall()
-    problem = made.discretise()
+    problem = discrete.discretise(made)
     run = solve(problem, Latin())
     pressed = forces(run.iterate, on_ground(problem), "normal_force")
     expected = made.size[0] * 1e6 * DOWN - made.weight[1]
@@ -125,7 +127,7 @@ def test_the_ground_carries_what_weighs_and_presses():
 
 def test_a_wall_that_is_moved_the_other_way_is_its_mirror_image():
     first, second = (
-        solve(wall(moved=way).discretise(), Latin()) for way in (5e-5, -5e-5)
+        solve(discrete.discretise(wall(moved=way)), Latin()) for way in (5e-5, -5e-5)
     )
     shears = []
     for run, sign in ((first, 1.0), (second, -1.0)):
@@ -140,7 +142,7 @@ def test_the_order_of_the_bricks_changes_nothing():
     mixed = replace(made, bricks=[made.rectangles[number] for number in order])
     sums = []
     for each in (made, mixed):
-        problem = each.discretise()
+        problem = discrete.discretise(each)
         run = solve(problem, Latin())
         assert run.is_certified
         sums.append(forces(run.iterate, on_ground(problem), "tangential_force"))
@@ -154,7 +156,7 @@ def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
     cut = replace(whole, substructures=cuts)
     found = []
     for made in (whole, cut):
-        problem = made.discretise()
+        problem = discrete.discretise(made)
         run = solve(problem, Latin())
         assert run.is_certified
         names = sorted(problem.rubbing)
@@ -186,10 +188,10 @@ def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, l
     """A brick slides at mu p, and tips about its toe at p b / (2 h)."""
     for share, stands in ((0.97, True), (1.03, False)):
         made = column(share * limit * 1e6, courses, friction=friction)
-        found = reference_of(made.discretise())
+        found = reference_of(discrete.discretise(made))
         assert bool(found.converged[-1]) is stands
         assert found.converged[:5].all()
-    collapse = collapse_of(made.discretise())
+    collapse = collapse_of(discrete.discretise(made))
     assert collapse.tips is (limit < friction)
 
 
@@ -207,11 +209,11 @@ def test_limit_analysis_finds_the_shear_that_no_contact_force_balances(law, limi
     hardening that slip may bring is counted in.
     """
     made = column(2.0 * limit * 1e6, 1, friction=0.3, friction_law=law)
-    collapse = collapse_of(made.discretise())
+    collapse = collapse_of(discrete.discretise(made))
     assert collapse.time == pytest.approx(0.25 + 0.75 * 0.5, rel=1e-9)
     assert np.abs(collapse.mechanism).max() == pytest.approx(1.0)
     safe = column(0.99 * limit * 1e6, 1, friction=0.3, friction_law=law)
-    assert collapse_of(safe.discretise()) is None
+    assert collapse_of(discrete.discretise(safe)) is None
 
 
 PILE = {
@@ -292,7 +294,7 @@ def test_the_limit_of_a_wall_is_said_to_be_its_meshs_and_rises_with_its_elements
 
 @pytest.mark.parametrize("moved", [2e-4, 1e-3])
 def test_bricks_that_hang_loose_have_an_equilibrium_at_every_instant(moved):
-    problem = wall(3, 4, moved=moved).discretise()
+    problem = discrete.discretise(wall(3, 4, moved=moved))
     reference = reference_of(problem)
     assert reference.converged.all()
     assert kkt_residual(reference, problem) < 1e-11
@@ -303,12 +305,14 @@ def test_bricks_that_hang_loose_have_an_equilibrium_at_every_instant(moved):
 def test_groups_lead_from_a_whole_coarse_problem_to_none():
     whole = wall(moved=3e-5)
     count = len(whole.rectangles)
-    reference = distance_to(reference_of(whole.discretise()), whole.discretise())
+    reference = distance_to(
+        reference_of(discrete.discretise(whole)), discrete.discretise(whole)
+    )
     needed = {}
     for number in (1, 4, count):
         groups = grouped(whole.rectangles, (4, 2), number)
         assert np.bincount(groups).min() >= 1
-        problem = replace(whole, groups=groups).discretise()
+        problem = discrete.discretise(replace(whole, groups=groups))
         for iterate in iterations(problem, Latin()):
             if reference.of_friction_force(iterate) < 0.01:
                 break
@@ -320,7 +324,7 @@ def test_the_number_of_iterations_does_not_grow_with_the_bricks():
     needed = {}
     for multiscale in (True, False):
         for count in (3, 7):
-            problem = wall(count, count).discretise()
+            problem = discrete.discretise(wall(count, count))
             distance = distance_to(reference_of(problem), problem)
             for iterate in iterations(
                 problem, Latin(finish=None, multiscale=multiscale)
@@ -334,7 +338,7 @@ def test_the_number_of_iterations_does_not_grow_with_the_bricks():
 
 
 def test_a_run_ends_by_itself_within_its_accuracy():
-    problem = wall(6, 6).discretise()
+    problem = discrete.discretise(wall(6, 6))
     distance = distance_to(reference_of(problem), problem)
     run = solve(problem, Latin(finish=None), distance=distance)
     assert run.status.ending is Ending.CONVERGED

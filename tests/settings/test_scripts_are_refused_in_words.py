@@ -14,9 +14,9 @@ import pytest
 from scipy import sparse
 
 from solver import End, Latin, Problem, Rods, Stack, iterations
-from solver.discrete import Given, Rope, Side, Spring, Support
+from solver.discrete import Given, Rope, Side, Spring, Support, discretise
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.problem import Scales
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
 from solver.latin import PGD, Anderson, Auto, Checkpoint, FromStatus, Nested, Stop
 from solver.latin.end.status_step import StatusStep
@@ -75,7 +75,7 @@ def rope() -> Rope:
 
 ROPE = rope()
 WIRE = ROPE.wires[0]
-PROBLEM = ROD.discretise()
+PROBLEM = discretise(ROD)
 LOAD: Any = PROBLEM.interfaces["load"]
 SUPPORT: Any = PROBLEM.interfaces["support"]
 PIECE = PROBLEM.substructures[0]

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from refusals import assert_names, refusal
 
-from app.files.link import query_of, read
+from app.link import query_of, read
 from app.state import default_settings
 from solver.files.saved import settings_from_command, settings_from_toml
 from solver.scenes.bar import BarSettings

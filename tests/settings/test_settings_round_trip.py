@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from app.files.link import query_of, read
+from app.link import query_of, read
 from solver.files.saved import dump, settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings

@@ -13,7 +13,7 @@ from urllib.parse import parse_qsl
 import numpy as np
 import pytest
 
-from app.files.link import read as read_address
+from app.link import read as read_address
 from solver.commands.cli import main
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.reference.incremental import reference_of

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,10 +23,9 @@ from solver.discrete.elements import (
 )
 from solver.discrete.inside import RectangularSubstructure
 from solver.discrete.plane.bricks import Brick, Joint, joints_of
+from solver.discrete.plane.sides import Given
+from solver.discrete.plane.stack import Stack
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
-
-if TYPE_CHECKING:
-    from solver.discrete.plane.stack import Given, Stack
 
 SIDES = "left", "right", "bottom", "top"
 
@@ -170,6 +169,8 @@ class CutStack:
         # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)
         self._operator = cache(self._operator_of)
+        self._basis = cache(self._basis_of)
+        self._entries = cache(self._entries_of)
         self.parts = list(self._parts(_node_numbers(grids)))
 
     def _grids(self) -> list[Array]:
@@ -292,6 +293,10 @@ class CutStack:
             for first, last in ends.tolist():
                 yield Span(side, first, last)
 
+    def body_of(self, number: int) -> int:
+        """Number of the body of a substructure."""
+        return self._pieces[number].body
+
     def bodies(self, joint: Joint) -> tuple[int, int | None]:
         """Body above or to the right of a joint, and the other one (None: support)."""
         above = self._pieces[joint.above].body
@@ -338,9 +343,26 @@ class CutStack:
         """
         number, side = joint.sides[which]
         part = self.parts[number]
-        mesh = part.rectangle
-        count = len(part.rows[joint])
+        return self._basis(part.rectangle, side, len(part.rows[joint]))
+
+    def entries(self, joint: Joint) -> tuple[Indices, Indices, Array]:
+        """Macro basis of one component on a joint from above: rows, columns, values.
+
+        Columns ascend; entries that are zero are left out.
+        """
+        number, side = joint.sides[0]
+        part = self.parts[number]
+        return self._entries(part.rectangle, side, len(part.rows[joint]))
+
+    def _basis_of(self, mesh: Rectangle, side: str, count: int) -> Array:
         return side_basis(mesh, side, count, self.stack.macro_degree)
+
+    def _entries_of(
+        self, mesh: Rectangle, side: str, count: int
+    ) -> tuple[Indices, Indices, Array]:
+        basis = self._basis(mesh, side, count)
+        columns, rows = np.nonzero(basis.T)
+        return rows, columns, basis[rows, columns]
 
     def _is_known(self, joint: Joint) -> bool:
         """Check whether a joint is with a support of known bound."""

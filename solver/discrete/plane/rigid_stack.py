@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from operator import itemgetter
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Indices
-
-if TYPE_CHECKING:
-    from solver.discrete.plane.stack import Given, Spring, Stack
+from solver.discrete.plane.sides import Given, Spring
+from solver.discrete.plane.stack import Stack
 
 SLACK = 1e-9
 """Largest rounding of the loads, as a share of them."""

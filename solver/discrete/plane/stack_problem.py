@@ -6,20 +6,24 @@ the support, are in contact. Contact forces are lumped at the nodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import block_diag
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.inside import Inside, RectangularSubstructure
+from solver.discrete.loose import is_loose
 from solver.discrete.plane.bricks import Joint
 from solver.discrete.plane.cut_stack import CutStack, Span
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.plane.sides import Side, Spring, Support
+from solver.discrete.plane.stack import Stack
+from solver.discrete.problem import Problem
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
 from solver.laws import (
     BodyStiffness,
@@ -35,8 +39,8 @@ from solver.laws import (
 from solver.laws.friction import compliance_of
 from solver.refusal import RefusedError, Words
 
-if TYPE_CHECKING:
-    from solver.discrete.plane.stack import Side, Spring, Stack
+NO_BODY = -1
+"""In place of the number of a body: the support."""
 
 
 def problem_of(stack: Stack) -> Problem:
@@ -48,6 +52,10 @@ def problem_of(stack: Stack) -> Problem:
         If bodies can move though all contacts are closed and stick.
     """
     cut = CutStack(stack)
+    contacts = _contacts_of(cut)
+    order = [*contacts]
+    if stack.spring is not None:
+        order.append("spring")
     scales = Scales(stack.length, stack.young * stack.length, stack.duration)
     inside = Inside(cut.parts, cut.positions, scales, len(stack.instants))
     has_short_joints = any(
@@ -58,15 +66,16 @@ def problem_of(stack: Stack) -> Problem:
             _substructure(part, dofs)
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
         ),
-        interfaces=dict(_interfaces(cut)),
+        interfaces=dict(_interfaces(cut, contacts)),
         positions=inside.positions * scales.displacement,
         instants=stack.instants,
         scales=scales,
         inside=inside,
         rest=_rest(stack, inside),
         has_short_joints=has_short_joints,
+        order=tuple(order),
     )
-    if problem.is_loose:
+    if is_loose(problem):
         held = [name for name, side in stack.sides.items() if _is_moved(side)]
         raise RefusedError(
             "Stack.sides",
@@ -115,21 +124,25 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     return rest
 
 
-def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
+def _contacts_of(cut: CutStack) -> dict[str, list[Joint]]:
+    """Joints of each contact by its name, in the order of the joints."""
+    contacts = dict[str, list[Joint]]()
+    for joint in cut.pairs:
+        if not cut.is_within_body(joint):
+            contacts.setdefault(cut.name(joint), []).append(joint)
+    return contacts
+
+
+def _interfaces(
+    cut: CutStack, contacts: Mapping[str, Sequence[Joint]]
+) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed sides."""
     stack = cut.stack
-    contacts = dict[str, list[Joint]]()
-    cuts = list[Joint]()
-    for joint in cut.pairs:
-        if cut.is_within_body(joint):
-            cuts.append(joint)
-        else:
-            contacts.setdefault(cut.name(joint), []).append(joint)
-    for name, joints in contacts.items():
-        yield name, _contact(cut, joints)
+    yield from _laws_of_contact(cut, contacts)
     if stack.spring is not None:
         yield "spring", _spring(cut, stack.spring)
     # By the substructure below; upright cuts before lying ones.
+    cuts = [joint for joint in cut.pairs if cut.is_within_body(joint)]
     cuts.sort(key=lambda joint: (joint.sides[1][0], not joint.is_upright))
     for joint in cuts:
         yield cut.name(joint), _glued(cut, joint)
@@ -140,6 +153,21 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
             yield from _prescribed(cut, side, given)
 
 
+def _laws_of_contact(
+    cut: CutStack, contacts: Mapping[str, Sequence[Joint]]
+) -> Iterator[tuple[str, Contact]]:
+    """Yield a law for all contacts with the support, and one for those of bodies."""
+    alike = dict[str, list[str]]()
+    for name, joints in contacts.items():
+        kind = "supports" if joints[0].below is None else "contacts"
+        alike.setdefault(kind, []).append(name)
+    for kind, names in alike.items():
+        key = kind
+        if len(names) == 1:
+            key = names[0]
+        yield key, _contact(cut, {name: contacts[name] for name in names})
+
+
 def _glued(cut: CutStack, joint: Joint) -> Perfect:
     """Perfect interface of two substructures of one body."""
     rows_above, rows_below = _rows_of(cut, [joint])
@@ -148,87 +176,120 @@ def _glued(cut: CutStack, joint: Joint) -> Perfect:
 
 
 class _Pairs(NamedTuple):
-    """Pairs of nodes of a contact.
+    """Pairs of nodes of contacts, contact by contact and joint by joint.
 
     Attributes
     ----------
     joints
-        Joints of the contact, one after the other.
-    body, under
-        Body above, or to the right, and the other one; None is the support.
+        Joints of all contacts.
+    counts
+        Number of pairs of each joint, (n_joints,).
+    contacts
+        Number of the contact of each pair, ascending, (n_pairs,).
+    bodies, others
+        Body above, or to the right, of each pair, and the other one, (n_pairs,);
+        `NO_BODY` is the support.
     nodes
         Node of each pair on the grid of all elements, along the contact, (n_pairs,).
+    is_upright
+        Whether the joint of each pair is upright, (n_pairs,).
     areas
         Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
     """
 
     joints: Sequence[Joint]
-    body: int
-    under: int | None
+    counts: Indices
+    contacts: Indices
+    bodies: Indices
+    others: Indices
     nodes: Indices
+    is_upright: Flags
     areas: Array
 
 
-def _contact(cut: CutStack, joints: Sequence[Joint]) -> Contact:
-    """Contact of a body with the body, or support, below it or to its left."""
-    stack = cut.stack
-    body, under = cut.bodies(joints[0])
-    grid_nodes = [cut.pairs[joint][0] for joint in joints]
+def _pairs_of(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> _Pairs:
+    """Pairs of nodes of contacts."""
+    joints = list(chain.from_iterable(contacts.values()))
+    n_joints = [len(of_contact) for of_contact in contacts.values()]
+    numbers = np.repeat(np.arange(len(contacts)), n_joints)
+    nodes = [cut.pairs[joint][0] for joint in joints]
     lengths = [cut.pairs[joint][1] for joint in joints]
-    pairs = _Pairs(
+    counts = np.array([len(of_joint) for of_joint in nodes])
+    bodies = [cut.body_of(joint.above) for joint in joints]
+    others = [
+        NO_BODY if joint.below is None else cut.body_of(joint.below) for joint in joints
+    ]
+    return _Pairs(
         joints=joints,
-        body=body,
-        under=under,
-        nodes=np.concatenate(grid_nodes),
-        areas=stack.length * np.concatenate(lengths),
+        counts=counts,
+        contacts=np.repeat(numbers, counts),
+        bodies=np.repeat(bodies, counts),
+        others=np.repeat(others, counts),
+        nodes=np.concatenate(nodes),
+        is_upright=np.repeat([joint.is_upright for joint in joints], counts),
+        areas=cut.stack.length * np.concatenate(lengths),
     )
-    support = None
-    if under is None:
-        support = stack.support
+
+
+def _contact(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> Contact:
+    """Law of contacts by name: of bodies with the support, or with each other."""
+    stack = cut.stack
+    pairs = _pairs_of(cut, contacts)
     gap = np.zeros(len(pairs.nodes))
-    if support is not None:
+    slip_ratio = 1.0
+    support = stack.support
+    if support is not None and pairs.others[0] == NO_BODY:
         gap = support.gap[pairs.nodes] / stack.length
-    touching, points = np.unique(pairs.nodes, return_inverse=True)
-    is_upright = joints[0].is_upright
-    tangent, normal = _components(cut, joints)
+        if support.is_image:
+            slip_ratio = 2.0
+    n_nodes = max(stack.grid) + 1
+    keys = pairs.contacts * n_nodes + pairs.nodes
+    _, first, points = np.unique(keys, return_index=True, return_inverse=True)
+    tangent, normal = _components(cut, pairs)
+    names: tuple[str, ...] = ()
+    interfaces = None
+    if len(contacts) > 1:
+        names = tuple(contacts)
+        interfaces = pairs.contacts[first]
     return Contact(
         normal=_normal_law(stack, normal, pairs, gap),
         tangential=_friction(stack, tangent, pairs, gap),
         points=points,
-        positions=touching.astype(float) * _element_size(stack, is_upright=is_upright),
+        positions=_positions(stack, pairs)[first],
         weights=pairs.areas,
         stiffness_beside=_stiffness_beside(stack, pairs),
-        macro=_macro_basis(cut, joints),
-        slip_ratio=2.0 if support is not None and support.is_image else 1.0,
+        macro=_macro_basis(cut, pairs),
+        slip_ratio=slip_ratio,
+        names=names,
+        interfaces=interfaces,
     )
 
 
-def _element_size(stack: Stack, *, is_upright: bool) -> float:
-    """Length, or height, of an element, m."""
-    if is_upright:
-        return stack.height / stack.elements[1]
-    return stack.length / stack.elements[0]
+def _positions(stack: Stack, pairs: _Pairs) -> Array:
+    """Position of each pair along its contact, (n_pairs,), m."""
+    length = stack.length / stack.elements[0]
+    height = stack.height / stack.elements[1]
+    return np.asarray(pairs.nodes * np.where(pairs.is_upright, height, length), float)
 
 
-def _components(
-    cut: CutStack, joints: Sequence[Joint]
-) -> tuple[Component, Component | None]:
-    """Tangential and normal component of a contact; no normal one at a known bound."""
-    rows = _rows_of(cut, joints)
-    tangential = int(joints[0].is_upright)
-    along = [rows_of_side[:, tangential] for rows_of_side in rows]
-    tangent = Component(*along)
+def _components(cut: CutStack, pairs: _Pairs) -> tuple[Component, Component | None]:
+    """Tangential and normal component of contacts; no normal one at a known bound."""
+    rows = _rows_of(cut, pairs.joints)
     has_normal = rows[0].shape[1] > 1
     if not has_normal:
-        return tangent, None
-    across = [rows_of_side[:, 1 - tangential] for rows_of_side in rows]
-    return tangent, Component(*across)
+        sides = [rows_of_side[:, 0] for rows_of_side in rows]
+        return Component(*sides), None
+    along = pairs.is_upright.astype(np.intp)
+    every = np.arange(len(along))
+    tangential = [rows_of_side[every, along] for rows_of_side in rows]
+    across = [rows_of_side[every, 1 - along] for rows_of_side in rows]
+    return Component(*tangential), Component(*across)
 
 
 def _normal_law(
     stack: Stack, component: Component | None, pairs: _Pairs, gap: Array
 ) -> Unilateral | None:
-    """Unilateral law across a contact, with its opening, (n_pairs,), scaled."""
+    """Unilateral law across contacts, with their opening, (n_pairs,), scaled."""
     if component is None:
         return None
     scales = (stack.length, stack.young * stack.length)
@@ -239,11 +300,11 @@ def _normal_law(
 def _friction(
     stack: Stack, component: Component, pairs: _Pairs, gap: Array
 ) -> Friction:
-    """Friction law along a contact, whose opening is `gap`, (n_pairs,), scaled."""
+    """Friction law along contacts, whose opening is `gap`, (n_pairs,), scaled."""
     scales = (stack.length, stack.young * stack.length)
     law = stack.friction_law
     support = None
-    if pairs.under is None:
+    if pairs.others[0] == NO_BODY:
         support = stack.support
     if support is not None and support.is_image:
         law = law.of_one_side()
@@ -251,44 +312,63 @@ def _friction(
         scaled = support.bound[pairs.nodes] / (stack.young * stack.length)
         known = scaled * pairs.areas[:, None]
         return law.at(component, pairs.areas, scales, known=known)
-    mu = _coefficients(stack, pairs)
+    mu = _coefficients(stack, support, pairs)
     friction = law.at(component, pairs.areas, scales, friction=mu)
     # Nothing is bonded across a gap.
     is_closed = (gap <= 0.0)[:, None]
     return replace(friction, bound=friction.bound * is_closed)
 
 
-def _coefficients(stack: Stack, pairs: _Pairs) -> Array:
+def _coefficients(stack: Stack, support: Support | None, pairs: _Pairs) -> Array:
     """Coefficient of friction of each pair, (n_pairs,)."""
-    if pairs.under is None and stack.support is not None:
-        mu = np.asarray(stack.support.friction)
+    if support is not None:
+        mu = np.asarray(support.friction)
     else:
         mu = np.asarray(stack.friction)
-    if mu.ndim == 2:
-        mu = mu[pairs.body - 1]
-    if mu.size > 1:
-        mu = mu[pairs.nodes]
-    return np.broadcast_to(mu, pairs.nodes.shape)
+    if mu.ndim < 2:
+        mu = np.atleast_2d(mu)
+        rows = np.zeros_like(pairs.nodes)
+    else:
+        rows = pairs.bodies - 1
+    columns = pairs.nodes if mu.shape[1] > 1 else 0
+    return np.asarray(mu[rows, columns])
 
 
 def _stiffness_beside(stack: Stack, pairs: _Pairs) -> BodyStiffness:
-    """Moduli and depth of the bodies at a contact, for its search direction."""
-    below = np.inf
-    if pairs.under is not None:
-        below = stack.modulus(pairs.under)
-    depth = stack.height * (stack.rectangles[pairs.body].rows / stack.elements[1])
-    return BodyStiffness(moduli=(stack.modulus(pairs.body), below), depth=depth)
+    """Moduli and depth of the bodies at contacts, for their search direction."""
+    moduli = np.array([stack.modulus(body) for body in range(len(stack.rectangles))])
+    rows = np.array([rectangle.rows for rectangle in stack.rectangles])
+    depths = stack.height * (rows / stack.elements[1])
+    return BodyStiffness(
+        above=moduli[pairs.bodies],
+        below=np.where(pairs.others == NO_BODY, np.inf, moduli[pairs.others]),
+        depth=depths[pairs.bodies],
+    )
 
 
-def _macro_basis(cut: CutStack, joints: Sequence[Joint]) -> sparse.csr_array | None:
-    """Macro basis of one component, (n_pairs, n_macro), or None."""
-    if not cut.has_macro(joints[0]):
+def _macro_basis(cut: CutStack, pairs: _Pairs) -> sparse.csr_array | None:
+    """Macro basis of one component, (n_pairs, n_macro), or None.
+
+    Each joint on which macro forces balance has columns of its own.
+    """
+    firsts = np.cumsum(pairs.counts) - pairs.counts
+    rows = list[Indices]()
+    columns = list[Indices]()
+    values = list[Array]()
+    n_macro = 0
+    for first, joint in zip(firsts.tolist(), pairs.joints, strict=True):
+        if not cut.has_macro(joint):
+            continue
+        row, column, value = cut.entries(joint)
+        rows.append(first + row)
+        columns.append(n_macro + column)
+        values.append(value)
+        n_macro += int(column[-1]) + 1
+    if not values:
         return None
-    bases = [cut.basis(joint, 0) for joint in joints]
-    # Most joints of a wall have one part, and SciPy takes long for one block.
-    if len(bases) == 1:
-        return sparse.csr_array(bases[0])
-    return sparse.csr_array(block_diag(*bases))
+    entries = np.concatenate(rows), np.concatenate(columns)
+    shape = len(pairs.nodes), n_macro
+    return sparse.csr_array((np.concatenate(values), entries), shape=shape)
 
 
 def _rows_of(cut: CutStack, joints: Sequence[Joint]) -> list[Indices]:
@@ -296,18 +376,15 @@ def _rows_of(cut: CutStack, joints: Sequence[Joint]) -> list[Indices]:
 
     Each has shape (n_points, n_components); a support has no rows.
     """
-    n_sides = len(joints[0].sides)
-    return [_rows_of_side(cut, joints, side) for side in range(n_sides)]
-
-
-def _rows_of_side(cut: CutStack, joints: Sequence[Joint], side: int) -> Indices:
-    """Boundary rows of side 0 (above) or 1 of joints, (n_points, n_components)."""
-    numbers = [joint.sides[side][0] for joint in joints]
-    rows = [
-        cut.parts[number].rows[joint]
-        for number, joint in zip(numbers, joints, strict=True)
+    rows = [np.concatenate([cut.parts[joint.above].rows[joint] for joint in joints])]
+    below = [
+        cut.parts[joint.below].rows[joint]
+        for joint in joints
+        if joint.below is not None
     ]
-    return np.concatenate(rows)
+    if below:
+        rows.append(np.concatenate(below))
+    return rows
 
 
 def _spring(cut: CutStack, spring: Spring) -> Contact:
@@ -326,7 +403,7 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
         points=np.zeros(1, dtype=np.intp),
         positions=np.array([stack.length]),
         weights=stack.length * areas[:1],
-        stiffness_beside=BodyStiffness(moduli=(stack.modulus(0), np.inf)),
+        stiffness_beside=BodyStiffness(above=stack.modulus(0)),
         is_spring=True,
     )
 

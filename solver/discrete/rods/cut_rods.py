@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,9 @@ from scipy import sparse
 from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
-from solver.discrete.problem import Problem, Scales
+from solver.discrete.problem import Problem
+from solver.discrete.rods.rods import SIDES, End, Rods
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import (
     Elasticity,
     Substructure,
@@ -28,9 +30,6 @@ from solver.laws import (
     RodStiffness,
 )
 
-if TYPE_CHECKING:
-    from solver.discrete.rods.rods import End, Rods
-
 DEGREES = 2
 """Macro modes of the friction force on each piece of a contact between rods: resultant
 and first moment. Without them the forces of both sides balance only slowly: 1 % of the
@@ -39,8 +38,27 @@ with Anderson acceleration and automatic k). 4 modes save up to half of the iter
 with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires gain nothing."""
 NO_ROW = -1
 """Number of a boundary row that a node does not have."""
-SIDES = {"left": "support", "right": "load"}
-"""Interfaces of the ends, by their side."""
+
+
+def problem_of(rods: Rods) -> Problem:
+    """Make the discrete problem of rods.
+
+    The interface with a support is "friction"; "contact 1-2" lies between rods 1 and 2,
+    of which rod 2 is the body above. Its points run along the rods; at the break of
+    either there are two, one for each of the parts that have come apart.
+
+    Between rods, ends of prescribed displacement do not rub: nothing slips there, and
+    friction could not be told from the reactions.
+    """
+    if rods.wires == 1:
+        names = ["friction"]
+        rub_at_ends = (True, True)
+    else:
+        numbers = range(1, rods.wires)
+        names = [f"contact {number}-{number + 1}" for number in numbers]
+        rub_at_ends = (not rods.left.is_prescribed, not rods.right.is_prescribed)
+    places = [rods.nodes] * rods.wires
+    return CutRods([rods] * rods.wires, places, names, rub_at_ends).problem()
 
 
 def _pieces_of(rods: Rods) -> tuple[list[int], int]:

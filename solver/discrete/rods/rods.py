@@ -25,7 +25,6 @@ from solver.checks import (
 )
 from solver.discrete.probes import Probe, Reaction, constant, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.rods.cut_rods import SIDES, CutRods
 from solver.discrete.structure import (
     OUTWARD,
     Act,
@@ -44,6 +43,8 @@ pressure where rods rub; over the length."""
 SEVERAL = 8
 """Largest number of wires of which each shows its load."""
 EndName = Literal["left", "right"]
+SIDES = {"left": "support", "right": "load"}
+"""Interfaces of the ends, by their side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,27 +261,6 @@ class Rods:
         if self.broken is None:
             return 0
         return 1 + (1 < self.broken[0] < self.wires)
-
-    def discretise(self) -> Problem:
-        """Make the discrete problem.
-
-        The interface with a support is "friction"; "contact 1-2" lies between rods 1
-        and 2, of which rod 2 is the body above. Its points run along the rods; at the
-        break of either there are two, one for each of the parts that have come apart.
-
-        Between rods, ends of prescribed displacement do not rub: nothing slips there,
-        and friction could not be told from the reactions.
-        """
-        if self.wires == 1:
-            names = ["friction"]
-            rub_at_ends = (True, True)
-        else:
-            numbers = range(1, self.wires)
-            names = [f"contact {number}-{number + 1}" for number in numbers]
-            rub_at_ends = (not self.left.is_prescribed, not self.right.is_prescribed)
-        rods = [self] * self.wires
-        places = [self.nodes] * self.wires
-        return CutRods(rods, places, names, rub_at_ends).problem()
 
     @property
     def axes(self) -> Axes:

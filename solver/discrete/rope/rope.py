@@ -17,7 +17,7 @@ interfaces, one a wire, "wire LAYER.NUMBER".
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,8 +39,6 @@ from solver.checks import (
 )
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem
-from solver.discrete.rods.cut_rods import CutRods
-from solver.discrete.rods.rods import End, Rods
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
 from solver.discrete.structure import (
     OUTWARD,
@@ -244,44 +242,6 @@ class Rope:
         if self.is_clamped:
             return longest
         return 2.0 * longest
-
-    def discretise(self) -> Problem:
-        """Make the discrete problem: all wires as rods with the same cuts.
-
-        Positions are those along the strand. Where a wire represents its layer, over
-        half a turn, so does its interface, over the strand that is drawn.
-        """
-        problem = CutRods(
-            [self._rod(wire) for wire in self.wires],
-            [wire.along for wire in self.wires],
-            [wire.name for wire in self.wires],
-            rub_at_ends=(False, False),
-        ).problem()
-        if self.is_clamped:
-            return problem
-        interfaces = dict(problem.interfaces)
-        for wire in self.wires:
-            # The drawn strand has several half turns of each wire, which all count.
-            copies = wire.stands_for * self.seen_length / float(wire.along[-1])
-            interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
-        return replace(problem, interfaces=interfaces)
-
-    def _rod(self, wire: RopeWire) -> Rods:
-        """A wire as a rod that is held at both ends."""
-        held = End(displacement=np.zeros(len(self.instants)))
-        return Rods(
-            length=wire.length,
-            stiffness=wire.layer_data.stiffness,
-            elements=self.elements,
-            substructures=self.substructures,
-            bound=np.multiply.outer(np.ones(self.elements + 1), wire.bound),
-            left=held,
-            right=held,
-            instants=self.instants,
-            duration=self.duration,
-            body_force=wire.body_force(),
-            friction_law=self.friction_law,
-        )
 
     def moment(self) -> Probe:
         """Bending moment of the strand, N m, from the slip of its wires.

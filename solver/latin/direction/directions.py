@@ -97,7 +97,7 @@ class Auto(SearchDirection):
 
         In a run from the fields of another, which are near, k stays.
         """
-        laws = problem.rubbing.values()
+        laws = problem.rubbing.laws.values()
         has_bodies = any(law.opens and not law.is_on_support for law in laws)
         if start is None and has_bodies:
             return UpdateProgress("first", self.of(problem))
@@ -123,7 +123,7 @@ def _slips_between_bodies(iterate: Iterate) -> bool:
     """Check whether bodies slip on each other anywhere, by the local stage."""
     moved = iterate.local_displacement
     force = iterate.boundary_local_force
-    for group in iterate.problem.contact_groups:
+    for group in iterate.problem.rubbing.groups:
         if not group.law.is_on_support:
             status = group.status(moved, force)
             if np.any(np.abs(status) == 1):
@@ -153,7 +153,7 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     -------
     k, shape (n_rows,), scaled.
     """
-    laws = list(problem.rubbing.values())
+    laws = list(problem.rubbing.laws.values())
     if not laws:
         return problem.direction
     stiffness_beside = laws[0].stiffness_beside
@@ -174,13 +174,13 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
 
 def _sliding_parts(problem: Problem) -> float:
     """Number of interfaces that slide, over the share of one of them that slides."""
-    laws = problem.rubbing.values()
+    laws = problem.rubbing.laws.values()
     # Rods on supports of their own slide all alike; of those beside each other one
     # slides far.
     if all(law.is_on_support for law in laws):
         several = 1
     else:
-        several = len(laws)
+        several = len(problem.rubbing)
     return several / sliding_share(problem)
 
 
@@ -213,9 +213,10 @@ def sliding_share(problem: Problem) -> float:
     makes of a rod, whose scaled stiffness is 1. Bodies on supports of their own count
     as sliding everywhere.
     """
-    first, *others = problem.rubbing.values()
-    if others and all(law.is_on_support for law in problem.rubbing.values()):
+    laws = problem.rubbing.laws.values()
+    if len(problem.rubbing) > 1 and all(law.is_on_support for law in laws):
         return 1.0
+    first = next(iter(problem.rubbing.values()))
     # Interfaces are alike, so the first one stands for all.
     capacity = first.tangential.bound.sum(axis=0)
     smallest = min(2.0 / len(first.positions), 1.0)

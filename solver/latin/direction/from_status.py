@@ -120,14 +120,14 @@ def _crept(iterate: Iterate) -> NDArray[np.int8]:
 
     Shape (n_points, n_instants). A point that creeps has not settled.
     """
-    groups = iterate.problem.contact_groups
+    groups = iterate.problem.rubbing.groups
     moved = iterate.local_displacement
     force = None
     if any(group.law.tangential.compliance is not None for group in groups):
         # A point that gives way moves while it sticks: its force tells whether it
         # slips.
         force = iterate.boundary_local_force
-    n_points = sum(len(group.points) for group in groups)
+    n_points = iterate.problem.rubbing.n_points
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
     for group in groups:
         status[group.points] = group.status(moved, force)
@@ -142,7 +142,7 @@ def _profile(problem: Problem, status: NDArray[np.int8]) -> Array:
     # Stick is 0, so nonzero statuses are slip, or open contact.
     share = np.count_nonzero(status, axis=1) / status.shape[1]
     k = automatic(problem)
-    for name, law in problem.rubbing.items():
+    for law, _, points, _ in problem.rubbing.stacks:
         for rows in law.tangent.sides:
-            k[rows] *= SLIDING ** share[problem.contact_points[name]][law.points]
+            k[rows] *= SLIDING ** share[points][law.points]
     return read_only(k)

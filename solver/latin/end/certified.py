@@ -209,8 +209,7 @@ def known_forces(
     for loaded in problem.given_forces:
         force[loaded.rows] = loaded.values
         is_known[loaded.rows] = True
-    for name, law in problem.rubbing.items():
-        forces = problem.contact_slices[name]
+    for law, _, _, forces in problem.rubbing.stacks:
         for numbers, component in zip(forces, law.components, strict=True):
             carried = law.shares[:, None] * contact_force[numbers][law.points]
             for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):

@@ -65,7 +65,7 @@ class LinearStage:
         else:
             self._blocks = Blocks(1, problem.n_instants)
         self._coarse = None
-        has_macro = any(law.macro is not None for law in problem.rubbing.values())
+        has_macro = any(law.macro is not None for law in problem.rubbing.laws.values())
         if multiscale and (problem.cuts or has_macro):
             self._coarse = CoarseProblem(problem, self.groups, self._blocks)
         self._shape = (problem.n_rows, problem.n_instants)

@@ -33,8 +33,11 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
     """
     if problem.own_laws or problem.given_forces or problem.motions is None:
         return None
-    springs = [law.normal for law in problem.rubbing.values() if _is_spring(law)]
-    ground = [law for law in problem.rubbing.values() if not _is_spring(law)]
+    if len(problem.rubbing) != 2:
+        return None
+    laws = problem.rubbing.values()
+    springs = [law.normal for law in laws if _is_spring(law)]
+    ground = [law for law in laws if not _is_spring(law)]
     if len(ground) != 1 or len(springs) != 1:
         return None
     law = ground[0]

@@ -57,7 +57,7 @@ def peak_displacement(run: FinishedRun) -> float:
         return float(np.abs(absolute).max())
     vectors = inside.displacement(absolute, slice(None))
     # On its image a body shows half of the slip.
-    ratio = max(law.slip_ratio for law in run.problem.rubbing.values())
+    ratio = max(law.slip_ratio for law in run.problem.rubbing.laws.values())
     if ratio > 1.0:
         return ratio * float(np.abs(vectors[:, 0]).max())
     return float(np.linalg.norm(vectors, axis=1).max())
@@ -180,7 +180,7 @@ bottom_force = _force_at("bottom")
 @quantity("Largest slip", "m")
 def peak_slip(run: FinishedRun) -> float:
     """Largest slip of any point in contact, at any instant, m."""
-    contacts = [run.iterate.contact(name) for name in run.problem.surfaces]
+    contacts = [run.iterate.contact(name) for name in run.problem.rubbing.surfaces]
     slips = [np.abs(each.slip * (each.status != OPEN)).max() for each in contacts]
     return float(max(slips))
 
@@ -188,11 +188,13 @@ def peak_slip(run: FinishedRun) -> float:
 @quantity("Largest friction, all points", "N")
 def peak_friction(run: FinishedRun) -> float:
     """Largest sum over all points of the size of the friction force, N."""
-    total = np.zeros(run.problem.n_instants)
-    for name, law in run.problem.rubbing.items():
-        force = run.iterate.contact(name).tangential_force
-        total += law.copies * np.abs(force).sum(axis=0)
-    return float(total.max())
+    contacts = run.problem.rubbing
+    sums = np.empty((len(contacts), run.problem.n_instants))
+    for law, numbers, _, forces in contacts.stacks:
+        size = np.abs(run.iterate.contact_force[forces[-1]])
+        for number, (points, _) in zip(numbers, law.ranges, strict=True):
+            sums[number] = law.copies * np.add.reduce(size[points])
+    return float(sums.sum(axis=0).max())
 
 
 def _pressing(run: FinishedRun, name: str) -> Array:
@@ -209,7 +211,7 @@ def _pressing(run: FinishedRun, name: str) -> Array:
 def peak_pressing(run: FinishedRun) -> float:
     """Largest sum over all points of the pressing force, N."""
     # Instant by instant over all interfaces: their peaks may come at other times.
-    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.surfaces]
+    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.rubbing.surfaces]
     return float(np.sum(forces, axis=0).max())
 
 
@@ -236,9 +238,10 @@ def contact_width(run: FinishedRun) -> float:
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
     """Tributary lengths of the points of each surface by name, shape (n_points,), m."""
-    return {
-        name: law.by_point(law.weights) for name, law in run.problem.surfaces.items()
-    }
+    contacts = run.problem.rubbing
+    laws = contacts.laws.values()
+    lengths = contacts.of_points([law.by_point(law.weights) for law in laws])
+    return {name: lengths[contacts.points[name]] for name in contacts.surfaces}
 
 
 def _touching(run: FinishedRun) -> tuple[Array, NDArray[np.int8]]:
@@ -334,8 +337,8 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
     """
     # Clamped points would count as sticking.
     length, statuses = _touching(run)
-    still = _stand_still(run)
-    length = length * ~np.concatenate([still[name] for name in _lengths(run)])
+    still = _stand_still(run)[run.problem.rubbing.on_surfaces]
+    length = length * ~still
     status = statuses[:, instant]
     touching = length[status != OPEN].sum()
     if touching:
@@ -351,21 +354,22 @@ def _slipped_shares(run: FinishedRun) -> Array:
     problem = run.problem
     # A point counts from its first slip on.
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
-    still = np.concatenate(list(_stand_still(run).values()))
-    counted = slipped[problem.on_surfaces & ~still]
+    still = _stand_still(run)
+    counted = slipped[problem.rubbing.on_surfaces & ~still]
     if not len(counted):
         return np.zeros(slipped.shape[1])
     return np.asarray(counted.mean(axis=0))
 
 
-def _stand_still(run: FinishedRun) -> dict[str, Flags]:
-    """Points of each interface that are held and never slip, shape (n_points,)."""
-    still = {}
-    for name, law in run.problem.rubbing.items():
+def _stand_still(run: FinishedRun) -> Flags:
+    """Mask of points that are held and never slip, shape (n_points,)."""
+    contacts = run.problem.rubbing
+    is_held = []
+    for law in contacts.laws.values():
         is_free = ~are_clamped(run.problem, law)
-        has_slipped = np.any(np.abs(run.iterate.contact(name).status) == 1, axis=1)
-        still[name] = (law.by_point(is_free.astype(float)) == 0.0) & ~has_slipped
-    return still
+        is_held.append(law.by_point(is_free.astype(float)) == 0.0)
+    has_slipped = np.any(np.abs(run.iterate.status) == 1, axis=1)
+    return np.asarray(contacts.of_points(is_held) & ~has_slipped)
 
 
 def are_clamped(problem: Problem, law: Contact) -> Flags:

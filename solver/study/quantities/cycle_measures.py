@@ -85,7 +85,7 @@ def sliding_share(run: FinishedRun) -> float:
     left out.
     """
     length = _free_lengths(run)[:, None]
-    status = run.iterate.status[run.problem.on_surfaces]
+    status = run.iterate.status[run.problem.rubbing.on_surfaces]
     # Points that are open carry nothing, and are no part of the contact then.
     status = status[:, instants_of(run.settings, cycles_in(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
@@ -97,11 +97,12 @@ def sliding_share(run: FinishedRun) -> float:
 
 def _free_lengths(run: FinishedRun) -> Array:
     """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
+    contacts = run.problem.rubbing
     lengths = []
-    for law in run.problem.surfaces.values():
+    for law in contacts.laws.values():
         is_free = ~are_clamped(run.problem, law)
         lengths.append(law.by_point(law.weights * is_free))
-    return np.concatenate(lengths)
+    return np.asarray(contacts.of_points(lengths)[contacts.on_surfaces])
 
 
 @quantity("Shakedown factor on the swing of the load", applies=has_a_limit)
@@ -205,7 +206,8 @@ def wire_work(run: FinishedRun) -> float:
     """
     last = instants_of(run.settings, cycles_in(run.settings) or None)
     largest = []
-    for law, _, work in slips_of(run.iterate):
+    for stacked, _, work in slips_of(run.iterate):
+        law = stacked.law
         of_cycle = law.by_point(work[:, last].sum(axis=1))
         largest.append(float((of_cycle / law.by_point(law.weights)).max()))
     return max(largest)

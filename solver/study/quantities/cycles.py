@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.contacts import Stacked
 from solver.latin import Iterate
-from solver.laws import Contact
 from solver.settings.scene import Settings
 
 SMALLEST_SWING = 0.05
@@ -43,8 +43,8 @@ Word = Literal[
 ]
 
 
-def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
-    """Interfaces with friction, the slip of their pairs, m, and its friction work, J.
+def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
+    """Laws of contact, the slip of their pairs, m, and its friction work, J.
 
     Slip and work are increments since the instant before, shape (n_pairs, n_instants).
     They are those of the local stage, whose laws hold at every iterate. A point slips
@@ -53,13 +53,16 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Contact, Array, Array]]:
     scales = iterate.problem.scales
     displacement = iterate.local_displacement
     force = iterate.boundary_local_force
-    for law in iterate.problem.surfaces.values():
+    for stacked in iterate.problem.rubbing.stacks:
+        law = stacked.law
+        if law.is_spring:
+            continue
         # Slip is the motion of the slider, without the elastic part.
         slider = law.tangential.slider(displacement, force)
         slip = np.diff(slider, axis=1, prepend=0.0)
         # On its image a body moves by half of the slip.
         slip *= law.slip_ratio * scales.displacement
-        yield law, slip, force[law.tangent.above] * slip * -scales.force
+        yield stacked, slip, force[law.tangent.above] * slip * -scales.force
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,14 +108,16 @@ class LoadCycles:
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     """Cycles of an iterate; the points are those of one interface after another."""
     ends = ends_of(settings)
-    slips = []
-    works = []
-    for law, slip, work in slips_of(iterate):
-        slips.append(law.mean_by_point(slip))
-        works.append(law.copies * law.by_point(work))
-    slip = np.concatenate(slips)
-    work = np.concatenate(works)
-    status = iterate.status[iterate.problem.on_surfaces]
+    contacts = iterate.problem.rubbing
+    slip = np.zeros((contacts.n_points, iterate.problem.n_instants))
+    work = np.zeros_like(slip)
+    for stacked, increments, works in slips_of(iterate):
+        law = stacked.law
+        slip[stacked.points] = law.mean_by_point(increments)
+        work[stacked.points] = law.copies * law.by_point(works)
+    slip = slip[contacts.on_surfaces]
+    work = work[contacts.on_surfaces]
+    status = iterate.status[contacts.on_surfaces]
     # An open point moves without friction.
     rubbed = np.where(np.abs(status) == 1, np.abs(slip), 0.0)
     if ends:

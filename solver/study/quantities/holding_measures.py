@@ -99,8 +99,8 @@ def _holds(run: FinishedRun) -> list[_Hold]:
     # A point that a clamp holds, too, never slips: it counts as free.
     determinate = determinate_forces(run.problem)
     holds = []
-    for name in run.problem.surfaces:
-        *_, tangential = run.problem.contact_slices[name]
+    for name in run.problem.rubbing.surfaces:
+        *_, tangential = run.problem.rubbing.forces[name]
         holds.append(_hold(run, name, determinate[tangential]))
     return holds
 
@@ -127,7 +127,7 @@ def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
 
     Where the pressure is given, it follows from the friction bound.
     """
-    law = run.problem.surfaces[name]
+    law = run.problem.rubbing[name]
     contact = run.iterate.contact(name)
     friction = run.settings.friction
     if contact.normal_force is None:

@@ -1,0 +1,58 @@
+"""Bodies that can move though all contacts are closed and stick."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from solver.arrays import Indices
+from solver.discrete.problem import Problem
+from solver.laws import Contact
+
+
+def is_loose(problem: Problem) -> bool:
+    """Check whether bodies can move though all contacts are closed and stick.
+
+    False along rods, and beside a user's law, which may hold what it likes.
+    """
+    if problem.inside is None or problem.own_laws:
+        return False
+    bodies = problem.inside.body_of_dofs
+    ground = int(bodies.max()) + 1
+    joined = [np.zeros((2, 0), dtype=np.intp)]
+    jumps = list[tuple[Indices, Indices]]()
+    with_ground = np.append(bodies, ground)
+    for law in problem.rubbing.laws.values():
+        # Two points in contact leave no motion of one body beside the other.
+        is_wide = (law.sizes > 1)[law.interface_of_pairs] & law.opens
+        for above, below in _pairs_that_hold(problem, law):
+            joined.append(with_ground[np.stack([above[is_wide], below[is_wide]])])
+            jumps.append((above[~is_wide], below[~is_wide]))
+    first, second = np.concatenate(joined, axis=1)
+    size = ground + 1
+    links = sparse.coo_array((np.ones(len(first)), (first, second)), (size, size))
+    _, groups = connected_components(links, directed=False)
+    group_of_dofs = groups[bodies]
+    group_of_dofs[group_of_dofs == groups[ground]] = -1
+    fixed, _ = problem.prescribed
+    return not problem.inside.hold_still(group_of_dofs, fixed, jumps)
+
+
+def _pairs_that_hold(problem: Problem, law: Contact) -> list[tuple[Indices, Indices]]:
+    """Degrees of freedom above and below that a closed contact that sticks ties.
+
+    Shape (n_pairs,) each, by components; -1 is a support. A spring ties one
+    component.
+    """
+    components = law.components
+    if law.is_spring:
+        components = law.components[:1]
+    pairs = list[tuple[Indices, Indices]]()
+    for component in components:
+        above = problem.row_dofs[component.above]
+        below = np.full_like(above, -1)
+        if component.below is not None:
+            below = problem.row_dofs[component.below]
+        pairs.append((above, below))
+    return pairs

@@ -1,0 +1,117 @@
+"""Reasons for which incremental solvers would misread a problem.
+
+They read the incremental forms of all laws, one degree of freedom where rows are glued,
+and the mean of the pairs of a point: they would leave out anything else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from solver.arrays import Indices
+from solver.discrete.contacts import Contacts
+from solver.laws import Contact, Interface, Strength
+from solver.laws.interface import Glued, IncrementalForm
+from solver.laws.play import PLAIN
+
+_BY_ESTIMATE = "judge the run by its estimate alone"
+_OF_ONES_OWN = f"define its incremental_form, or {_BY_ESTIMATE}"
+
+
+class Numbering(NamedTuple):
+    """Degree of freedom, and substructure, of every boundary row, (n_rows,) both."""
+
+    dofs: Indices
+    parts: Indices
+
+
+def reason_against_reference(
+    interfaces: Mapping[str, Interface], contacts: Contacts, numbering: Numbering
+) -> str:
+    """Reason that a problem has no incremental reference, with a remedy, or ""."""
+    forms = list[IncrementalForm]()
+    for name, law in interfaces.items():
+        form = law.incremental_form()
+        if form is None:
+            return (
+                f'The law {type(law).__name__} of the interface "{name}" does not say '
+                "how it enters the incremental problem, so that there is no reference: "
+                f"{_OF_ONES_OWN}."
+            )
+        if form.contact is not None and form.contact is not law:
+            return (
+                f'The interface "{name}" enters as a contact that it is not: '
+                f"{_OF_ONES_OWN}."
+            )
+        forms.append(form)
+    if not contacts:
+        return (
+            "No interface is one of contact, so that there is nothing to solve "
+            f"instant by instant: add a contact, or {_BY_ESTIMATE}."
+        )
+    cuts = [form.glued for form in forms if form.glued is not None]
+    if not _are_glued_as_numbered(cuts, numbering):
+        return (
+            "Rows of one degree of freedom are not glued, or glued rows have two, "
+            "so that no matrix of the whole structure says what holds: number them "
+            f"alike, or {_BY_ESTIMATE}."
+        )
+    for name, contact in contacts.laws.items():
+        if not _has_points(contact, numbering.dofs):
+            return (
+                f'Pairs of one point of the interface "{name}" differ in their '
+                "degrees of freedom, gap or friction: give each a point of its "
+                f"own, or {_BY_ESTIMATE}."
+            )
+    if len(_strengths(contacts)) > 1:
+        return (
+            "Slip changes friction otherwise on one interface than on another: "
+            f"give all of them the same strength, or {_BY_ESTIMATE}."
+        )
+    return ""
+
+
+def _are_glued_as_numbered(cuts: Sequence[Glued], numbering: Numbering) -> bool:
+    """Check whether just those rows share a degree of freedom that laws glue."""
+    n_dofs = int(numbering.dofs.max(initial=0)) + 1
+    # All rows of one substructure at one degree of freedom are one node.
+    keys = numbering.parts * n_dofs + numbering.dofs
+    nodes, node_of_row = np.unique(keys, return_inverse=True)
+    sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *cuts], axis=1)
+    first, second = node_of_row[sides]
+    ones = np.ones(len(first))
+    links = sparse.coo_array((ones, (first, second)), shape=(len(nodes),) * 2)
+    n_glued, glued = connected_components(links, directed=False)
+    # Each group of glued nodes has one degree of freedom, and no other group has it.
+    dofs = nodes % n_dofs
+    n_pairs = len(np.unique(glued * n_dofs + dofs))
+    return bool(n_pairs == n_glued == len(np.unique(dofs)))
+
+
+def _has_points(law: Contact, dofs: Indices) -> bool:
+    """Check whether pairs of one point agree in degrees of freedom, gap and mu.
+
+    `dofs` are the degrees of freedom of all rows, (n_rows,).
+    """
+    if len(law.points) == len(law.positions):
+        return True
+    fields: list[NDArray[Any]] = [law.tangential.friction]
+    for component in law.components:
+        fields.extend([dofs[rows] for rows in component.sides])
+    if law.normal is not None:
+        fields.append(law.normal.gap)
+    _, first = np.unique(law.points, return_index=True)
+    same = first[law.points]
+    return all(np.array_equal(field, field[same]) for field in fields)
+
+
+def _strengths(contacts: Contacts) -> set[Strength]:
+    """Slip-dependent factors of all interfaces on which there is any friction."""
+    laws = [law.tangential for law in contacts.laws.values()]
+    return {law.strength or PLAIN for law in laws if law.rubs}

@@ -1,0 +1,112 @@
+"""Sides of bodies in the plane, supports and springs: they hold, move and load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.checks import (
+    ANY_NUMBER,
+    FLAG,
+    NON_NEGATIVE,
+    POSITIVE,
+    Either,
+    Numbers,
+    check,
+)
+from solver.refusal import RefusedError
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Displacement or traction along a side, in one component.
+
+    At the distance s from its lower or left end it is mean + slope (2 s / length - 1).
+
+    Attributes
+    ----------
+    prescribed
+        Whether it is a displacement, m; else it is a traction, Pa.
+    mean, slope
+        Values over time, shape (n_instants,); the slope may be 0. On the left and the
+        right s runs over each body anew.
+    """
+
+    prescribed: bool
+    mean: Array
+    slope: Array | float = 0.0
+
+    def __post_init__(self) -> None:
+        over_time = Numbers(((None,),))
+        check(
+            self, prescribed=FLAG, mean=over_time, slope=Either(ANY_NUMBER, over_time)
+        )
+
+    @property
+    def is_zero(self) -> bool:
+        """Check whether mean and slope are zero at all instants."""
+        return not np.any(self.mean) and not np.any(self.slope)
+
+
+class Side(NamedTuple):
+    """Displacements or tractions along a side of the stack, along x and along y."""
+
+    x: Given
+    y: Given
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """A rigid rough support below the stack, or the image of the stack.
+
+    Attributes
+    ----------
+    gap, friction
+        Opening at the nodes of the lowest side, m, shape (nodes along,), and
+        coefficient mu there, or one for all nodes.
+    bound
+        Largest friction force per area where it is known, shape (nodes along,
+        n_instants), Pa; the support then presses as much as that takes, and adds no
+        pressure of its own. None where the contact force decides, and contact may open.
+    is_image
+        Whether below lies the image of the stack, turned by half a turn, which moves
+        along as much the other way: slip is between both, twice the displacement of the
+        stack, and the friction law is one of this slip. The bound has to be known.
+    """
+
+    gap: Array
+    friction: float | Array
+    bound: Array | None = None
+    is_image: bool = False
+
+    def __post_init__(self) -> None:
+        along = Numbers(((None,),))
+        friction = Either(NON_NEGATIVE, Numbers(along.shapes, low=0.0))
+        check(
+            self, gap=along, friction=friction, bound=Numbers(((None, None),), low=0.0)
+        )
+        if self.is_image and self.bound is None:
+            raise RefusedError(
+                "Support.bound",
+                None,
+                "the largest friction force of an image",
+                "give it, as slip changes nothing across a plane of symmetry",
+            )
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring along x at the foot of the right side of the lowest body.
+
+    The foot may move to the left by the slack, m, before the spring pulls it back; the
+    stiffness is in N/m.
+    """
+
+    slack: float
+    stiffness: float
+
+    def __post_init__(self) -> None:
+        check(self, slack=NON_NEGATIVE, stiffness=POSITIVE)

@@ -1,0 +1,52 @@
+"""Discrete problem of a strand: its wires as rods on supports of their own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from solver.discrete.problem import Problem
+from solver.discrete.rods.cut_rods import CutRods
+from solver.discrete.rods.rods import End, Rods
+from solver.discrete.rope.rope import Rope, RopeWire
+
+
+def problem_of(rope: Rope) -> Problem:
+    """Make the discrete problem: all wires as rods with the same cuts.
+
+    Positions are those along the strand. Where a wire represents its layer, over half a
+    turn, so does its interface, over the strand that is drawn.
+    """
+    problem = CutRods(
+        [_rod(rope, wire) for wire in rope.wires],
+        [wire.along for wire in rope.wires],
+        [wire.name for wire in rope.wires],
+        rub_at_ends=(False, False),
+    ).problem()
+    if rope.is_clamped:
+        return problem
+    interfaces = dict(problem.interfaces)
+    for wire in rope.wires:
+        # The drawn strand has several half turns of each wire, which all count.
+        copies = wire.stands_for * rope.seen_length / float(wire.along[-1])
+        interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
+    return replace(problem, interfaces=interfaces)
+
+
+def _rod(rope: Rope, wire: RopeWire) -> Rods:
+    """A wire as a rod that is held at both ends."""
+    held = End(displacement=np.zeros(len(rope.instants)))
+    return Rods(
+        length=wire.length,
+        stiffness=wire.layer_data.stiffness,
+        elements=rope.elements,
+        substructures=rope.substructures,
+        bound=np.multiply.outer(np.ones(rope.elements + 1), wire.bound),
+        left=held,
+        right=held,
+        instants=rope.instants,
+        duration=rope.duration,
+        body_force=wire.body_force(),
+        friction_law=rope.friction_law,
+    )
