@@ -194,7 +194,10 @@ class Live:
             if list(self._plots) != shown:
                 self._plots[:] = shown
             # Without plots the scene has all the height.
-            self._plots.css_classes = ["plots"] if shown else []
+            roles = []
+            if shown:
+                roles = ["plots"]
+            self._plots.css_classes = roles
         self.look()
 
     def _write(self) -> None:

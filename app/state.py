@@ -358,11 +358,11 @@ class PageState(param.Parameterized):
         if iteration is not None and iteration < last:
             shown = max(iteration, 1)
             frame = self.history.at(shown)
-            if frame.iteration != shown:
-                self.send(Show(shown))
         with param.parameterized.batch_call_watchers(self):
             self.show_stage(LINEAR)
             self.param.update(iteration=shown, frame=frame, ghost=self._ghost_at(frame))
+        if shown is not None and frame.iteration != shown:
+            self.send(Show(shown))
 
     def _start(
         self, settings: Settings, pace: float | None = None, **options: Any
