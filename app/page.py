@@ -7,6 +7,7 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
 from app.browser import Browser
@@ -242,6 +243,10 @@ def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     # Without notifications: each page's would stay in Panel's table of views for good.
     pn.extension(reconnect=True, respect_explicit_sizing=True)
+    # Panel sets this as it sends a page. One that is made anew by the socket, as its
+    # session had ended while a slow browser was still loading, is not sent: its style
+    # sheets would be asked from the internet.
+    pn.state.curdoc.template_variables["dist_url"] = LOCAL_DIST
     if not PAGES.enter():
         words = pn.pane.HTML(html("full.html"), css_classes=["full"])
         full = pmui.Page(title="Slipfront", main=[words])
