@@ -40,7 +40,10 @@ if (link) {
   navigator.clipboard?.writeText(link).catch(() => prompt("The link", link))
 }
 """
+MET = "localStorage.setItem('slipfront', 'met')"
+"""Script that notes that this browser has met the page."""
 LISTEN = """
+browser.is_new = !location.search && localStorage.getItem("slipfront") == null
 const measure = () => {
   browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
 }
@@ -97,7 +100,7 @@ class Display:
         )
         self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
         state.param.watch(
-            lambda *events: self._update(), ["frame", "selection", "ghost"]
+            lambda *events: self._update(), ["frame", "selection", "ghost", "is_new"]
         )
 
     def look_at(self, views: list[View]) -> None:
@@ -181,7 +184,8 @@ class Browser(DataModel):
 
     The window has a `height` in px and may be narrow. `pressed` is the last key, and
     `count` grows with every key. `search` is the address to which the browser went back
-    or on, `copied` a link that it is to copy.
+    or on, `copied` a link that it is to copy. A browser is new until somebody has done
+    something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -190,6 +194,7 @@ class Browser(DataModel):
     count: int = Int(default=0)  # type: ignore[assignment]
     search: str = String(default="")  # type: ignore[assignment]
     copied: str = String(default="")  # type: ignore[assignment]
+    is_new: bool = Bool(default=False)  # type: ignore[assignment]
 
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
@@ -198,13 +203,14 @@ class Browser(DataModel):
 
         Keys that an element takes for itself (`TAKEN`) call nothing.
         """
-        for size in ("height", "is_narrow"):
+        for size in ("height", "is_narrow", "is_new"):
             self.on_change(
                 size, lambda name, old, new: state.param.update(**{name: new})
             )
         self.on_change("count", lambda name, old, new: actions[self.pressed]())
         args = {"browser": self, "names": list(actions), "taken": TAKEN}
         self.js_on_change("copied", CustomJS(args=args, code=COPY))
+        self.js_on_change("is_new", CustomJS(code=f"if (!cb_obj.is_new) {{ {MET} }}"))
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import panel as pn
@@ -23,7 +22,8 @@ from app.live import STYLE, Live, column
 from app.server import PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import PlainText, button, dialog, html, looks, wrapped
+from app.transport import TOUCHED
+from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
 
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
@@ -33,7 +33,6 @@ COMPACT = {
         "& header": {"overflowX": "auto"},
     },
 }
-WORDS = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 
 
@@ -67,7 +66,7 @@ class Page:
         self._main = column("main", self._beside)
         self._away = dialog("Take away")
         self._words = dialog(
-            "Keys and words", pn.pane.Markdown(WORDS), width_option="md"
+            "Keys and words", pn.pane.Markdown(GLOSSARY), width_option="md"
         )
         # Dialogs are put on the page when they are first opened.
         for each in (
@@ -93,6 +92,8 @@ class Page:
         keys = transport.keys() | {"p": self._present, "?": self._help}
         browser.listen(state, document, keys)
         self._class.view.param.watch(lambda event: self._place(), "visible")
+        acts = [*TOUCHED, "plots", "view"]
+        state.param.watch(lambda *events: browser.update(is_new=False), acts)
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda event: self._show_controls(), "is_narrow")

@@ -10,7 +10,7 @@ from app.frame import Frame, Selection
 from app.refusals import advice_in_titles
 from app.state import PageState
 from app.units import number, percent, unit_for
-from app.widgets import html
+from app.widgets import MEANINGS, explained, html
 from solver.latin import Ending
 from solver.study.quantities.finished import KeyFigure, key_figures, slipping_shares
 
@@ -22,7 +22,31 @@ ENDINGS = {
     Ending.DIVERGED: "✗ diverged",
 }
 
-
+TERMS = (
+    "certified",
+    "wrong",
+    "iteration",
+    "iterations",
+    "search",
+    "answer",
+    "solved",
+    "not converged",
+    "stalled",
+    "diverged",
+    "substructure",
+    "substructures",
+    "multiscale",
+    "monoscale",
+    "indicator η",
+    "k-free indicator",
+    "force error",
+    "displacement error",
+    "estimated force error",
+    "incremental solver",
+)
+"""Words of the glossary in the status and its details."""
+TINY = 1e-9
+"""Largest share of a loop's force times displacement up to which energy is rounding."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
 
@@ -42,7 +66,12 @@ def status_line(state: PageState) -> str:
         lead, rest = _progress(state, frame, newest)
         details = [*_details(frame), *said]
     return html(
-        "status.html", lead=lead, rest=rest, details=details, said=" ".join(said)
+        "status.html",
+        lead=explained(lead, *TERMS),
+        rest=explained(rest, *TERMS),
+        details=[explained(sentence, *TERMS) for sentence in details],
+        said=" ".join(said),
+        is_running=state.running and not state.is_over,
     )
 
 
@@ -131,7 +160,10 @@ def figures_line(frame: Frame, selection: Selection) -> str:
             springs.append(chain)
     status = frame.deformed.status[~np.isin(run.geometry.chains, springs)]
     figures["Slips"] = percent(float(slipping_shares(status)[column]))
-    figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
+    energy = _but_for_rounding(frame)
+    figures["Energy lost"] = unit_for(abs(energy), "J")(energy)
+    for title in ("Slips", "Energy lost"):
+        hints[title] = MEANINGS[title]
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['brought'].source}"] = percent(beside["distance"])
@@ -139,6 +171,14 @@ def figures_line(frame: Frame, selection: Selection) -> str:
         figures = dict.fromkeys(figures, "–")
         hints = dict.fromkeys(figures, LOST)
     return html("figures.html", figures=figures, hints=hints)
+
+
+def _but_for_rounding(frame: Frame) -> float:
+    """Energy that a run has lost, J; zero where that is rounding of what it took."""
+    across, up = np.nanmax(np.abs(frame.loop), axis=1)
+    if abs(frame.energy) <= TINY * across * up:
+        return 0.0
+    return frame.energy
 
 
 def _is_lost(frame: Frame) -> bool:

@@ -24,6 +24,8 @@ BODY = "#8FAAC2"
 EDGE = "#607D8B"
 CUT = "#8A8A8A"
 """Colour of lines where substructures meet."""
+HINT = "#37474F"
+"""Colour behind the marks of a first visit."""
 UNSEEN = "#00000000"
 """Colour of a mark that only carries a text into a legend."""
 RANKS = (LATIN, ERROR, DISPLACEMENT, PRESSURE, "#B58500", REFERENCE)
