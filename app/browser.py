@@ -42,8 +42,9 @@ if (link) {
 """
 MET = "localStorage.setItem('slipfront', 'met')"
 """Script that notes that this browser has met the page."""
+GO = "if (browser.destination) { location.search = browser.destination }"
+"""Script that opens the page of another address, also one that is there already."""
 LISTEN = """
-browser.is_new = !location.search && localStorage.getItem("slipfront") == null
 const measure = () => {
   browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
 }
@@ -67,6 +68,10 @@ document.addEventListener("keydown", (event) => {
   browser.pressed = name
   browser.count += 1
 })
+// Without a storage every visit would be the first.
+try {
+  browser.is_new = !location.search && localStorage.getItem("slipfront") == null
+} catch {}
 """
 
 
@@ -184,8 +189,8 @@ class Browser(DataModel):
 
     The window has a `height` in px and may be narrow. `pressed` is the last key, and
     `count` grows with every key. `search` is the address to which the browser went back
-    or on, `copied` a link that it is to copy. A browser is new until somebody has done
-    something on a page.
+    or on, `copied` a link that it is to copy, `destination` an address whose page it is
+    to open. A browser is new until somebody has done something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -195,6 +200,7 @@ class Browser(DataModel):
     search: str = String(default="")  # type: ignore[assignment]
     copied: str = String(default="")  # type: ignore[assignment]
     is_new: bool = Bool(default=False)  # type: ignore[assignment]
+    destination: str = String(default="")  # type: ignore[assignment]
 
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
@@ -211,6 +217,7 @@ class Browser(DataModel):
         args = {"browser": self, "names": list(actions), "taken": TAKEN}
         self.js_on_change("copied", CustomJS(args=args, code=COPY))
         self.js_on_change("is_new", CustomJS(code=f"if (!cb_obj.is_new) {{ {MET} }}"))
+        self.js_on_change("destination", CustomJS(args=args, code=GO))
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
 

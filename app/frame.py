@@ -23,6 +23,9 @@ Floats = NDArray[np.float32]
 Bytes = NDArray[np.int8]
 OPEN = 2
 """Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
+LOCAL = "local"
+LINEAR = "linear"
+"""Stages of an iteration: laws of interfaces, then elasticity and balance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +190,7 @@ class Frame:
             arrays += [fields.friction, fields.status]
             if fields.pressure is not None:
                 arrays.append(fields.pressure)
-        return sum(array.nbytes for array in arrays)
+        return sum(array.nbytes for array in arrays) + _size(self.extras)
 
     @property
     def stage(self) -> tuple[int, bool, bool]:
@@ -213,6 +216,15 @@ class Frame:
         return self.last("estimated_error")
 
 
+def _size(extra: Any) -> int:
+    """Memory of an extra and its parts that say theirs, bytes."""
+    if isinstance(extra, Mapping):
+        return sum(_size(part) for part in extra.values())
+    if isinstance(extra, list | tuple):
+        return sum(_size(part) for part in extra)
+    return int(getattr(extra, "nbytes", 0))
+
+
 @dataclass(frozen=True)
 class Selection:
     """The selection: instant, interface, substructure and position that views show."""
@@ -225,6 +237,9 @@ class Selection:
     """Number of the selected substructure, from 0; None is the last."""
     position: float | None = None
     """Position along the bodies that is marked, m."""
+    stage: str = LINEAR
+    """Stage up to which the iteration is shown, `LOCAL` or `LINEAR`; after the linear
+    stage it is whole."""
 
     def interface_of(self, run: Run) -> str:
         """The selected interface of a run, or its default one."""

@@ -77,9 +77,27 @@ class Link:
         self._browser.copied, message = link_of(self._state)
         return f"The link to what is shown is copied. {message}".rstrip()
 
+    def join(self, code: str) -> None:
+        """Open the page of a class."""
+        self._visit(query_of({"room": code}))
+
+    def _visit(self, query: str) -> None:
+        """Have the browser open the page of an address."""
+
+        def leave() -> None:
+            self._browser.destination = ""
+            self._browser.destination = query
+
+        # A model changes under the document's lock, which a click does not have.
+        pn.state.execute(leave, schedule=True)
+
     def go(self, query: str) -> None:
-        """Show the state of an address."""
+        """Show the state of an address, or open the page of a class."""
         shown, refusal = read(query, self._state.settings)
+        if room := shown["room"]:
+            if room != self._state.room:
+                self._visit(query)
+            return
         self.query = query_of(shown)
         show(self._state, shown)
         self._state.refusal = refusal

@@ -238,7 +238,7 @@ class Card:
         state = self._state
         if view not in self._panes:
             self._panes[view] = pn.pane.Bokeh(
-                view.figure, sizing_mode="stretch_both", margin=0
+                view.layout, sizing_mode="stretch_both", margin=0
             )
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)

@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
+import numpy as np
 import param
 
 from app import messages
-from app.frame import Frame, Selection
+from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.messages import Needs, Order, Pace, Ready, Report, Start, Step
 from app.refusals import message_of
 from solver.refusal import RefusedError
@@ -187,6 +188,7 @@ class PageState(param.Parameterized):
         self.number = 0
         self.began = 0
         self._sent: Needs | None = None
+        self._awaits_local = False
         self._last_run: Frame | None = None
         self.param.watch(lambda event: self.param.update(prediction=None), "lesson")
         needed = ["selection", "needs", "readings", "brought"]
@@ -287,21 +289,56 @@ class PageState(param.Parameterized):
         if self.is_over or self.is_costly:
             self.run(is_agreed=self.is_costly)
             return
+        self.show_stage(LINEAR)
         self.param.update(running=True, iteration=None)
         self.send(Pace(PACES[self.pace]))
 
     def step(self) -> None:
-        """Do one iteration and wait.
+        """Show the next stage of the search, and wait.
 
-        If an earlier iterate is shown, show the next one.
+        After a whole iteration that is the local stage of the next one, for which the
+        worker does both stages; then its linear stage.
         """
         shown = self.frame
         newest = self.newest
-        if shown is not None and newest is not None and shown is not newest:
-            self.seek(self.history.after(shown.iteration))
-            return
-        self.param.update(running=False, iteration=None)
-        self.send(Step())
+        if self._awaits_local or self.selection.stage == LOCAL:
+            self.show_stage(LINEAR)
+        elif shown is not None and newest is not None and shown is not newest:
+            with param.parameterized.batch_call_watchers(self):
+                self.seek(self.history.after(shown.iteration))
+                if not self.frame.is_answer:
+                    self.show_stage(LOCAL)
+        else:
+            self._awaits_local = not self.is_over
+            self.param.update(running=False, iteration=None)
+            self.send(Step())
+
+    def before_linear(self, frame: Frame) -> Frame:
+        """A frame with its bodies where the linear stage before the last one put them.
+
+        That of the iterate before, if it was kept; a search from nothing begins at
+        rest.
+        """
+        moved = None
+        if frame.iteration > 1:
+            before = self.history.at(frame.iteration - 1)
+            if before.iteration == frame.iteration - 1:
+                moved = before.deformed
+        elif frame.run.settings.start == SEARCH["start"]:
+            moved = replace(
+                frame.deformed,
+                nodes=np.zeros_like(frame.deformed.nodes),
+                points=np.zeros_like(frame.deformed.points),
+            )
+        if moved is None:
+            return frame
+        return replace(frame, deformed=replace(moved, status=frame.deformed.status))
+
+    def show_stage(self, stage: str) -> None:
+        """Show the iterate up to one of its stages."""
+        self._awaits_local = False
+        if stage != self.selection.stage:
+            self.select(stage=stage)
 
     def reset(self, iteration: int = 1) -> None:
         """Begin anew, and wait at an iteration."""
@@ -320,13 +357,16 @@ class PageState(param.Parameterized):
         if iteration is not None and iteration < last:
             frame = self.history.at(iteration)
             shown = frame.iteration
-        self.param.update(iteration=shown, frame=frame, ghost=self._ghost_at(frame))
+        with param.parameterized.batch_call_watchers(self):
+            self.show_stage(LINEAR)
+            self.param.update(iteration=shown, frame=frame, ghost=self._ghost_at(frame))
 
     def _start(
         self, settings: Settings, pace: float | None = None, **options: Any
     ) -> None:
         """Order a run with options of `Start`, by default at the page's pace."""
         self.number = next(RUNS)
+        self.show_stage(LINEAR)
         self.param.update(
             is_costly=False,
             message="",
@@ -383,8 +423,12 @@ class PageState(param.Parameterized):
             if self.pinned is not self.history:
                 self._last_run = last
             self.history = History()
+        is_stepped = self._awaits_local and last is not None
+        is_next = is_stepped and frame.iteration > last.iteration
         self.history.add(frame)
         with param.parameterized.batch_call_watchers(self):
+            if is_next and not frame.is_answer:
+                self.show_stage(LOCAL)
             self.newest = frame
             if self.iteration is None:
                 self.ghost = self._ghost_at(frame)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from app.frame import Frame, Selection
+from app.frame import LOCAL, Frame, Selection
 from app.refusals import advice_in_titles
 from app.state import PageState
 from app.units import number, percent, unit_for
@@ -79,6 +79,8 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     """State of the run in bold, and its iterations and error."""
     wrong = percent(frame.error)
     counted = f"iteration {frame.iteration}"
+    if state.selection.stage == LOCAL:
+        return counted, " · local stage, paused"
     if frame is not newest:
         return counted, f" of {newest.iteration} · {wrong} wrong"
     if newest.status is None:

@@ -64,7 +64,7 @@ class Transport:
         self.view = wrapped(
             self._run,
             _button("skip_previous", "From the start (r)", state.reset),
-            _button("skip_next", "One iteration (s)", state.step),
+            _button("skip_next", "One stage of an iteration (s)", state.step),
             self._pin,
             *self._choices(),
         )

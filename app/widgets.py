@@ -31,7 +31,7 @@ ROW = re.compile(r"^\| (.+) \| (.+) \|$", re.MULTILINE)
 
 
 def _meanings() -> dict[str, str]:
-    """What each word of the glossary means."""
+    """Meanings of the glossary by word."""
     meanings = {}
     for words, meaning in ROW.findall(GLOSSARY):
         for word in words.split(", "):

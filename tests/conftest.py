@@ -8,6 +8,7 @@ import one_thread  # noqa: F401  # before NumPy, which asks but once
 
 import gc
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import closing
@@ -44,6 +45,10 @@ LONGEST_FIRST = (
 # commands too
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# A shell's background job ignores interrupts, and what it starts would, too
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The same examples each time, however long a busy machine takes over one
 settings.register_profile("same", derandomize=True, deadline=None)

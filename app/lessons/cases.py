@@ -43,12 +43,12 @@ def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
 
     They are its question, its known value beside that of the run, and its source.
     """
-    head = f"### {case.title}\n\n**{_raised(case.question)}**"
+    head = f"## {case.title}\n\n**{_raised(case.question)}**"
     known = (
         f"*{_raised(case.formula)}*. {_raised(case.how)}"
         f"\n\n<small>{case.source}</small>"
     )
-    change = f"{known}\n\n#### What to change first\n\n{case.change}"
+    change = f"{known}\n\n### What to change first\n\n{case.change}"
     return [lambda: head, lambda: _known_beside_found(case, state), lambda: change]
 
 

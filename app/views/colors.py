@@ -7,6 +7,8 @@ from bokeh.palettes import interp_palette
 LATIN = "#0072B2"
 PRESSURE = "#B0609A"
 REFERENCE = "#7A7A7A"
+STAGES = {"local": "#D55E00", "linear": LATIN}
+"""Colours of the stages of an iteration."""
 ERROR = "#D55E00"
 DISPLACEMENT = "#009E73"
 EXACT = "#56B48C"
@@ -22,6 +24,9 @@ KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENE
 """Colours of the status by its names in legends."""
 BODY = "#8FAAC2"
 EDGE = "#607D8B"
+MACRO = {"above": "#D55E00", "below": "#00795A"}
+MICRO = {"above": "#F0A868", "below": "#6CC5A4"}
+"""Colours of macro and micro forces on the pieces above, or right, and below joints."""
 CUT = "#8A8A8A"
 """Colour of lines where substructures meet."""
 HINT = "#37474F"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
-from app.frame import Floats, Frame, Selection
+from app.frame import LOCAL, Floats, Frame, Selection
 from app.views.axis import rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
 from app.views.view import View, hover
@@ -78,6 +78,8 @@ class Convergence(ErrorPlot):
         self.add("answer", "Scatter", size=11, **ring)
         # Curves were added from below; the legend has the uppermost first.
         titles = dict(reversed(titles.items()))
+        self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
+        titles["stage"] = "local stage"
         self.legend(**titles, answer="answer", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
 
@@ -94,8 +96,12 @@ class Convergence(ErrorPlot):
         self.y.hold(newest.run.number, SEEN, errors["y"])
         ends = [float(newest.iteration), *map(float, ghosts["x"][-1:])]
         self.x.hold(newest.run.number, [0.0, rounded_up(max(*ends, SHORTEST))])
+        is_local = selection.stage == LOCAL
         is_back = frame is not newest and not frame.is_answer
-        self.fill("shown", x=[frame.iteration] if is_back else [])
+        # The local stage lies between two whole iterates.
+        at = frame.iteration - 0.5 * is_local
+        self.fill("shown", x=[at] if is_back or is_local else [])
+        self.show("stage", is_local)
         # The ring of the answer, whose error is nearly zero, stands at the foot.
         answers = []
         if newest.is_answer:

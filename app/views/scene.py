@@ -12,7 +12,7 @@ from bokeh.models import LinearColorMapper
 from bokeh.palettes import Cividis256, RdBu11
 from bokeh.plotting import figure
 
-from app.frame import Frame, Selection
+from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.units import number, unit_for
 from app.views.acts import Arrows
 from app.views.axis import rounded_up
@@ -34,6 +34,11 @@ WIDEST = 9.0
 FAINTEST = 0.01
 """Width of the line of the largest thrust, px, and share of it below which a thrust has
 no line."""
+STAGES = {
+    LOCAL: "local stage: forces obey the law",
+    LINEAR: "linear stage: bodies in balance",
+}
+"""Notes on the stage that is shown while a run waits."""
 STRESS_STEPS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 """Ends of the scale of stresses, times a power of ten: it seldom changes."""
 
@@ -131,7 +136,10 @@ class Scene(View):
         plot.x_range.end = layout.width
         plot.y_range.end = layout.height
         column = run.column(selection.phase)
-        picture = Picture(frame, column, layout, self._factor, self._peaks)
+        shown = frame
+        if selection.stage == LOCAL:
+            shown = self.state.before_linear(frame)
+        picture = Picture(shown, column, layout, self._factor, self._peaks)
         self.picture = picture
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
@@ -144,7 +152,7 @@ class Scene(View):
         if run.mechanism is not None and run.instants[column] >= run.collapses_at:
             past = picture.mechanism(run.mechanism)
         self.fill("ghost", **past)
-        self._show_keys(frame, layout)
+        self._show_keys(frame, layout, selection.stage)
 
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
@@ -165,14 +173,16 @@ class Scene(View):
             self._factor = layout.fitting(largest, self._factor)
             self._scale_arrows(frame)
 
-    def _show_keys(self, frame: Frame, layout: Layout) -> None:
-        """Show the keys of the status in rows or a column, with the magnification."""
+    def _show_keys(self, frame: Frame, layout: Layout, stage: str) -> None:
+        """Show the keys of the status, with the magnification and the stage."""
         run = frame.run
         can_open = any(each.bound is None for each in run.interfaces.values())
         self.show("open", can_open)
         note = f"displacement × {number(self._factor)}"
         if run.geometry.description.height is None:
             note += ", thickness not to scale"
+        if not self.state.running and not frame.is_answer:
+            note += f"; {STAGES[stage]}"
         self.show("note", note)
         if layout.key_rows:
             self._keys.update(orientation="horizontal", nrows=layout.key_rows)

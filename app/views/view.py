@@ -72,6 +72,8 @@ marks stay as they are."""
 class View:
     """A figure, made when it is first seen, below a legend of its curves.
 
+    A second figure may stand `beside` it.
+
     A click on an entry of the legend hides its curve. A tap or a drag in the figure
     selects in the state of the page. `x` and `y` are the axes, `sources` the data of
     the glyphs, by name.
@@ -88,6 +90,7 @@ class View:
         self.state = state
         self._type = TEXT
         self._figure: figure | None = None
+        self.beside: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
         self._items: dict[str, LegendItem] = {}
 
@@ -109,14 +112,25 @@ class View:
         self.magnify(size)
         return self._figure
 
+    @property
+    def layout(self) -> Any:
+        """The figure, or a layout of it and of the one beside it, as a card has it."""
+        return self.figure
+
     def magnify(self, size: str) -> None:
-        """Set the type size of the figure, as CSS has it."""
-        plot = self._figure
-        keep = CustomJS(code=KEEP)
+        """Set the type size of all figures, as CSS has it."""
         is_same = size == self._type
         self._type = size
-        if is_same or plot is None:
+        if is_same or self._figure is None:
             return
+        self._magnify(self._figure)
+        if self.beside is not None:
+            self._magnify(self.beside)
+
+    def _magnify(self, plot: figure) -> None:
+        """Set the type size of a figure."""
+        size = self._type
+        keep = CustomJS(code=KEEP)
         # Each by itself: an em is 13 pixels to axes, whatever the style.
         for model in (plot, *plot.legend):
             model.styles = {**model.styles, "font-size": size}

@@ -13,7 +13,9 @@ from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import Needs
 from app.worker.extras import EXTRAS, Sampled
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
+from app.worker.pieces import Cutter
 from app.worker.strand import DrawnRope
+from app.worker.zigzag import Trail, zigzag
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.probes import LoopFields
@@ -67,11 +69,13 @@ class Sampler:
             for name, points in contacts.points.items()
         }
         self.loop = settings.structure().loop(problem)
+        self._trail = Trail()
         self._sampled = Sampled(problem, settings, self.loop, self.columns)
         kind = {"plane": DrawnMesh, "helices": DrawnRope}.get(settings.kind, DrawnRods)
         self.drawn: DrawnRods | DrawnMesh | DrawnRope = kind(
             problem, settings, self.columns
         )
+        self._cutter = Cutter(problem, settings, self.columns)
         self.run = Run(
             number=number,
             settings=settings,
@@ -84,8 +88,13 @@ class Sampler:
             is_idle=nothing_acts(problem),
         )
 
+    def keep(self, iterate: Iterate) -> None:
+        """Keep an iterate for extras that show past ones."""
+        self._trail.keep(iterate)
+
     def complete(self, reference: Reference | None) -> None:
         """Add the reference and the closed forms to the run."""
+        self._trail.reference = reference
         curves = self.settings.exact(self.problem, reference)
         exact = tuple(self._at_columns(curve) for curve in curves)
         known: dict[str, Any] = {"exact": exact, "is_compared": True}
@@ -143,6 +152,8 @@ class Sampler:
     def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
         known = {name: partial(extra, self._sampled) for name, extra in EXTRAS.items()}
         known |= self.drawn.extras
+        known["pieces"] = self._cutter.pieces
+        known["zigzag"] = partial(zigzag, self._sampled, self._trail)
         return {
             name: known[name](iterate, needs) for name in needs.extras & known.keys()
         }

@@ -130,6 +130,23 @@ class Inside:
                 constant += share[:, 0] @ part.condensed.recover(held, part.force)
         return total, constant * self._length
 
+    def of_part(self, number: int, nodes: Indices) -> tuple[Array, Array | None]:
+        """Map from a substructure's degrees of freedom to the motion of its nodes.
+
+        `nodes` are numbers among its own, row by row from below, (n,). The matrix has
+        shape (2 n, n_kept). Loads inside add a displacement, shape (2 n, n_instants),
+        scaled; None without them.
+        """
+        part = self._parts[number]
+        condensed = part.condensed
+        n_kept = len(condensed.kept)
+        dofs = dofs_of(nodes)
+        matrix = condensed.recover(np.eye(n_kept), None)[dofs]
+        if part.force is None:
+            return matrix, None
+        held = np.zeros((n_kept, part.force.shape[1]))
+        return matrix, condensed.recover(held, part.force)[dofs]
+
     def stress(self, displacement: Array) -> Array:
         """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
 

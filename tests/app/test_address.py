@@ -154,6 +154,15 @@ def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     assert state.settings.values() == default_settings("bar").values()
 
 
+def test_going_back_to_a_class_opens_its_page() -> None:
+    state = PageState(default_settings("rope"))
+    browser = Browser()
+    link = Link(state, browser)
+    link.go("?class=ABCD")
+    assert browser.destination == "?class=ABCD"
+    assert (state.settings.scene, state.room) == ("rope", "")
+
+
 def test_a_slider_that_is_dragged_writes_no_address_until_it_is_let_go() -> None:
     state = PageState(default_settings("bar"))
     link = Link(state, Browser())

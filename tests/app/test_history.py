@@ -13,7 +13,7 @@ import pytest
 import app.browser
 from app.browser import Display
 from app.frame import Frame
-from app.messages import Needs, NewFrame, Ready, Start
+from app.messages import Needs, NewFrame, Ready, Start, Step
 from app.state import History, PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -30,7 +30,7 @@ def answer() -> Frame:
     return runner.frame(Needs())
 
 
-def test_one_steps_from_each_kept_iterate_to_the_next_and_at_last_to_the_answer(
+def test_one_steps_by_stages_of_kept_iterates_and_at_last_to_the_answer(
     answer: Frame,
 ) -> None:
     last = answer.iteration
@@ -46,11 +46,73 @@ def test_one_steps_from_each_kept_iterate_to_the_next_and_at_last_to_the_answer(
     seen = []
     state.seek(1)
     while state.frame is not answer:
-        seen.append(state.frame)
+        seen.append((state.frame.iteration, state.selection.stage))
         state.step()
-    assert [frame.iteration for frame in seen] == [1, 4, last - 2]
+    assert seen == [
+        (1, "linear"),
+        (4, "local"),
+        (4, "linear"),
+        (last - 2, "local"),
+        (last - 2, "linear"),
+    ]
     state.seek(3)
     assert state.frame is kept[0]
+
+
+def test_a_step_is_a_stage_and_the_worker_does_both_at_once(answer: Frame) -> None:
+    state = PageState(answer.run.settings)
+    state.number = answer.run.number
+    orders: list[object] = []
+    state.send = orders.append
+
+    def come(number: int) -> None:
+        frame = replace(answer, iteration=number, is_answer=False, status=None)
+        state.take(NewFrame(frame))
+
+    def shown() -> tuple[int, str]:
+        return state.frame.iteration, state.selection.stage
+
+    come(1)
+    state.step()
+    # Until the worker has done the iteration the one before is shown.
+    assert shown() == (1, "linear")
+    come(2)
+    assert shown() == (2, "local")
+    state.step()
+    assert shown() == (2, "linear")
+    assert orders.count(Step()) == 1
+    # Who does not wait for the local stage sees the linear one.
+    state.step()
+    state.step()
+    come(3)
+    assert shown() == (3, "linear")
+    assert orders.count(Step()) == 2
+    state.step()
+    come(4)
+    state.seek(3)
+    assert shown() == (3, "linear")
+    state.step()
+    assert shown() == (4, "local")
+    state.go_on()
+    assert shown() == (4, "linear")
+
+
+def test_after_the_local_stage_the_bodies_stand_where_the_iteration_before_put_them(
+    answer: Frame,
+) -> None:
+    state = PageState(answer.run.settings)
+    moved = replace(answer.deformed, nodes=2.0 * answer.deformed.nodes)
+    before = replace(answer, iteration=1, is_answer=False, deformed=moved)
+    after = replace(answer, iteration=2, is_answer=False)
+    state.history.add(before)
+    state.history.add(after)
+    shown = state.before_linear(after)
+    assert shown.deformed.nodes is moved.nodes
+    assert shown.deformed.status is after.deformed.status
+    # A search from nothing begins at rest; of other starts nothing is known.
+    assert not state.before_linear(before).deformed.nodes.any()
+    nested = replace(before.run, settings=before.run.settings.replace(start="nested"))
+    assert state.before_linear(replace(before, run=nested)).deformed is moved
 
 
 def test_a_picture_whose_answer_got_lost_is_asked_for_again(

@@ -304,3 +304,19 @@ def test_a_wall_that_collapses_says_its_limit_and_shows_by_which_mechanism() -> 
     assert float(np.abs(frame.run.mechanism).max()) > 0.0
     assert len(shown(frame, 1.0).sources["ghost"].data["x"]) > 10
     assert not len(shown(frame, 0.1).sources["ghost"].data["x"])
+
+
+def test_marks_of_a_first_visit_stay_until_somebody_does_something() -> None:
+    frame = frame_of(default_settings("bar"))
+    view = Scene(PageState(frame.run.settings, is_new=True))
+    _ = view.figure
+    view.update(frame, Selection(0.25), None)
+    x, y, texts, _ = view.sources["hints"].data.values()
+    assert len(texts) == 3
+    (pulled,) = (n for n, text in enumerate(texts) if text.startswith("pulled"))
+    (rubs,) = (n for n, text in enumerate(texts) if text.endswith("rubs here"))
+    assert x[pulled] > 0.9 * np.nanmax(view.sources["bodies"].data["x"])
+    assert y[rubs] < np.nanmin(view.sources["bodies"].data["y"])
+    view.state.is_new = False
+    view.update(frame, Selection(0.25), None)
+    assert not len(view.sources["hints"].data["text"])

@@ -308,6 +308,9 @@ def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
     view = view_of(Convergence, last)
     view.update(first, Selection(), None)
     assert list(view.sources["shown"].data["x"]) == [first.iteration]
+    # A local stage lies between two whole iterates.
+    view.update(last, Selection(stage="local"), None)
+    assert list(view.sources["shown"].data["x"]) == [last.iteration - 0.5]
     assert len(view.sources["indicator"].data["x"]) == len(last.history["iteration"])
 
 

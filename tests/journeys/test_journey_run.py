@@ -193,17 +193,21 @@ def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
 def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(
     visit: Visit,
 ) -> None:
-    page = visit(f"?{ENDLESS}")
+    page = visit(f"?{ENDLESS}&plots=Zigzag")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
     button(page, "Run or pause").click()
     expect(status(page)).to_contain_text("paused")
     button(page, "From the start").click()
     expect(status(page)).to_contain_text("iteration 1 ")
-    button(page, "One iteration").click()
-    expect(status(page)).to_contain_text("iteration 2 ")
+    # A step is a stage.
+    button(page, "One stage").click()
+    expect(status(page)).to_contain_text("iteration 2 · local stage")
     page.locator(".sentence").click()
     page.keyboard.press("s")
-    expect(status(page)).to_contain_text("iteration 3 ")
+    expect(status(page)).to_contain_text("iteration 2 · ")
+    expect(status(page)).not_to_contain_text("local stage")
+    page.keyboard.press("s")
+    expect(status(page)).to_contain_text("iteration 3 · local stage")
     page.keyboard.press("r")
     expect(status(page)).to_contain_text("iteration 1 ")
     page.keyboard.press(" ")
