@@ -40,6 +40,8 @@ if (link) {
   navigator.clipboard?.writeText(link).catch(() => prompt("The link", link))
 }
 """
+MET = "localStorage.setItem('slipfront', 'met')"
+"""Script that notes that this browser has met the page."""
 GO = "if (browser.destination) { location.search = browser.destination }"
 """Script that opens the page of another address, also one that is there already."""
 LISTEN = """
@@ -66,6 +68,10 @@ document.addEventListener("keydown", (event) => {
   browser.pressed = name
   browser.count += 1
 })
+// Without a storage every visit would be the first.
+try {
+  browser.is_new = !location.search && localStorage.getItem("slipfront") == null
+} catch {}
 """
 
 
@@ -99,7 +105,7 @@ class Display:
         )
         self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
         state.param.watch(
-            lambda *events: self._update(), ["frame", "selection", "ghost"]
+            lambda *events: self._update(), ["frame", "selection", "ghost", "is_new"]
         )
 
     def look_at(self, views: list[View]) -> None:
@@ -184,7 +190,7 @@ class Browser(DataModel):
     The window has a `height` in px and may be narrow. `pressed` is the last key, and
     `count` grows with every key. `search` is the address to which the browser went back
     or on, `copied` a link that it is to copy, `destination` an address whose page it is
-    to open.
+    to open. A browser is new until somebody has done something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -193,6 +199,7 @@ class Browser(DataModel):
     count: int = Int(default=0)  # type: ignore[assignment]
     search: str = String(default="")  # type: ignore[assignment]
     copied: str = String(default="")  # type: ignore[assignment]
+    is_new: bool = Bool(default=False)  # type: ignore[assignment]
     destination: str = String(default="")  # type: ignore[assignment]
 
     def listen(
@@ -202,13 +209,14 @@ class Browser(DataModel):
 
         Keys that an element takes for itself (`TAKEN`) call nothing.
         """
-        for size in ("height", "is_narrow"):
+        for size in ("height", "is_narrow", "is_new"):
             self.on_change(
                 size, lambda name, old, new: state.param.update(**{name: new})
             )
         self.on_change("count", lambda name, old, new: actions[self.pressed]())
         args = {"browser": self, "names": list(actions), "taken": TAKEN}
         self.js_on_change("copied", CustomJS(args=args, code=COPY))
+        self.js_on_change("is_new", CustomJS(code=f"if (!cb_obj.is_new) {{ {MET} }}"))
         self.js_on_change("destination", CustomJS(args=args, code=GO))
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))

@@ -17,7 +17,7 @@ from app.views.layout import shape_of
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
-from app.widgets import PlainText, looks, wrapped
+from app.widgets import MEANINGS, PlainText, html, looks, wrapped
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026
@@ -239,9 +239,11 @@ class Card:
         self.kinds: Kinds = tuple([type(view) for view in views])
         self.seen: View | None = None
         self._offered: list[View] = []
-        look = {"margin": 0, "sizing_mode": "stretch_width", **looks("small-tabs")}
+        look = {"margin": (0, 20, 0, 0), **looks("small-tabs")}
+        look["sizing_mode"] = "stretch_width"
         self.tabs = pmui.TabMenu(items=[], **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
+        self._about = _words("about", margin=0)
         self.view = pn.Column(
             self.tabs, sizing_mode="stretch_both", min_height=170, margin=0
         )
@@ -268,7 +270,9 @@ class Card:
         self.tabs.param.update(items=[view.name for view in offered], active=active)
         if is_turned:
             if seen is not None:
-                self.view[:] = [self.tabs, self._pane(seen)]
+                meaning = MEANINGS[seen.name]
+                self._about.object = html("term.html", term="?", meaning=meaning)
+                self.view[:] = [self.tabs, self._about, self._pane(seen)]
             else:
                 self.view[:] = [self.tabs]
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
 from app.browser import Browser
@@ -22,7 +22,8 @@ from app.live import LARGE, STYLE, Live, column
 from app.server import PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
-from app.widgets import PlainText, button, dialog, html, looks, wrapped
+from app.transport import TOUCHED
+from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
 
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
@@ -57,7 +58,6 @@ LOADING = """
 """Style of what is seen until the page is there."""
 READ = 15.0
 """Type size of the text beside the plots, px."""
-WORDS = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
 HEADINGS = {
     "components": {
         # The page's title; spacers of the template.
@@ -103,7 +103,7 @@ class Page:
         self._main = column("main", self._beside)
         self._away = dialog("Take away")
         self._words = dialog(
-            "Keys and words", pn.pane.Markdown(WORDS), width_option="md"
+            "Keys and words", pn.pane.Markdown(GLOSSARY), width_option="md"
         )
         # Dialogs are put on the page when they are first opened.
         for each in (
@@ -132,6 +132,8 @@ class Page:
         keys = transport.keys() | {"p": self._present, "?": self._help}
         browser.listen(state, document, keys)
         self._class.view.param.watch(lambda event: self._place(), "visible")
+        acts = [*TOUCHED, "plots", "view"]
+        state.param.watch(lambda *events: browser.update(is_new=False), acts)
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda event: self._show_controls(), "is_narrow")
@@ -295,6 +297,10 @@ def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     # Without notifications: each page's would stay in Panel's table of views for good.
     pn.extension(reconnect=True, respect_explicit_sizing=True)
+    # Panel sets this as it sends a page. One that is made anew by the socket, as its
+    # session had ended while a slow browser was still loading, is not sent: its style
+    # sheets would be asked from the internet.
+    pn.state.curdoc.template_variables["dist_url"] = LOCAL_DIST
     if not PAGES.enter():
         words = pn.pane.HTML(html("full.html"), css_classes=["full"])
         full = pmui.Page(title="Slipfront", main=[words])

@@ -166,6 +166,9 @@ class PageState(param.Parameterized):
     is_narrow = param.Boolean(
         doc="Whether the window has no room for controls beside the run."
     )
+    is_new = param.Boolean(
+        doc="Whether marks in the picture say what is to be seen: on a first visit."
+    )
     plots = param.List(default=[], doc="Names of the views on top of their cards.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(
@@ -431,8 +434,8 @@ class PageState(param.Parameterized):
             case messages.Costly(number, text) if number == self.number:
                 self.is_costly = True
                 self.message = (
-                    f"This run would take about {text}: press Run to run it anyway, "
-                    "or choose fewer elements, instants or bodies."
+                    f"This run would take about {text}: press ⚠ (or space) to run it "
+                    "anyway, or choose fewer elements, instants or bodies."
                 )
             case messages.Failed(number, text) if number == self.number:
                 self.message = text

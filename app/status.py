@@ -10,7 +10,7 @@ from app.frame import LOCAL, Frame, Selection
 from app.refusals import advice_in_titles
 from app.state import PageState
 from app.units import number, percent, settled, unit_for
-from app.widgets import html
+from app.widgets import MEANINGS, explained, html
 from solver.latin import Ending
 from solver.study.quantities.finished import KeyFigure, key_figures, slipping_shares
 
@@ -22,7 +22,30 @@ ENDINGS = {
     Ending.DIVERGED: "✗ diverged",
 }
 
-
+TERMS = (
+    "certified",
+    "wrong",
+    "iteration",
+    "iterations",
+    "search",
+    "answer",
+    "solved",
+    "not converged",
+    "stalled",
+    "diverged",
+    "substructure",
+    "substructures",
+    "multiscale",
+    "monoscale",
+    "indicator η",
+    "k-free indicator",
+    "force error",
+    "displacement error",
+    "estimated force error",
+    "incremental solver",
+)
+"""Words of the glossary in the status and its details."""
+"""Largest share of a loop's force times displacement up to which energy is rounding."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
 
@@ -42,7 +65,12 @@ def status_line(state: PageState) -> str:
         lead, rest = _progress(state, frame, newest)
         details = [*_details(frame), *said]
     return html(
-        "status.html", lead=lead, rest=rest, details=details, said=" ".join(said)
+        "status.html",
+        lead=explained(lead, *TERMS),
+        rest=explained(rest, *TERMS),
+        details=[explained(sentence, *TERMS) for sentence in details],
+        said=" ".join(said),
+        is_running=state.running and not state.is_over,
     )
 
 
@@ -139,6 +167,8 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     work = float(np.abs(frame.loop).max(axis=1).prod())
     energy = settled(frame.energy, work)
     figures["Energy lost"] = unit_for(abs(energy), "J")(energy)
+    for title in ("Slips", "Energy lost"):
+        hints[title] = MEANINGS[title]
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['brought'].source}"] = percent(beside["distance"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
@@ -12,6 +13,7 @@ from urllib.parse import quote
 import panel as pn
 import panel_material_ui as pmui
 import param
+from markupsafe import Markup
 
 from solver.files.templates import templates_in
 from solver.settings.scene import Icon
@@ -23,10 +25,45 @@ SHEET = (Path(__file__).parents[1] / "static" / "widgets.css").read_text(
     encoding="utf-8"
 )
 
+GLOSSARY = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
+"""Keys, words and plots of the page, in Markdown."""
+ROW = re.compile(r"^\| (.+) \| (.+) \|$", re.MULTILINE)
+
+
+def _meanings() -> dict[str, str]:
+    """Meanings of the glossary by word."""
+    meanings = {}
+    for words, meaning in ROW.findall(GLOSSARY):
+        for word in words.split(", "):
+            meanings[word] = meaning
+    return meanings
+
+
+MEANINGS = _meanings()
+
 
 def html(template: str, **values: Any) -> str:
     """HTML of a template, in which values are escaped."""
     return TEMPLATES.get_template(template).render(values)
+
+
+def explained(text: str, *terms: str) -> Markup:
+    """HTML of a text in which terms of the glossary have their meaning at hand.
+
+    It shows under the pointer, and once the term is tapped or has the focus.
+    """
+    if not terms:
+        return Markup(escape(text))
+    # Of terms that begin alike the longest.
+    longest_first = sorted(terms, key=len, reverse=True)
+    pattern = rf"(?<!\w)({'|'.join(map(re.escape, longest_first))})(?!\w)"
+    parts = re.split(pattern, text)
+    for number, part in enumerate(parts):
+        if number % 2:
+            parts[number] = html("term.html", term=part, meaning=MEANINGS[part])
+        else:
+            parts[number] = escape(part)
+    return Markup("".join(parts))
 
 
 def looks(role: str) -> dict[str, Any]:

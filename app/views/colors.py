@@ -35,6 +35,8 @@ MICRO = {"above": "#F0A868", "below": "#6CC5A4"}
 """Colours of macro and micro forces on the pieces above, or right, and below joints."""
 CUT = "#8A8A8A"
 """Colour of lines where substructures meet."""
+HINT = "#37474F"
+"""Colour behind the marks of a first visit."""
 UNSEEN = "#00000000"
 """Colour of a mark that only carries a text into a legend."""
 RANKS = (LATIN, ERROR, DISPLACEMENT, PRESSURE, "#B58500", REFERENCE)

@@ -15,7 +15,8 @@ from app.frame import LINEAR, LOCAL, Frame, Run, Selection
 from app.units import number, unit_for
 from app.views.acts import Arrows, Rest
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, GROUND, KEYS, LATIN, UNSEEN
+from app.views.colors import BODY, EDGE, GHOST, GROUND, HINT, KEYS, LATIN, UNSEEN
+from app.views.hints import NONE, hints_of
 from app.views.layout import Layout, layout_of
 from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
@@ -109,6 +110,17 @@ class Scene(View):
             text_font_style="bold",
             text_baseline="middle",
         )
+        if not self.is_bare:
+            self.add(
+                "hints",
+                "Text",
+                "x y text text_align",
+                text_color="white",
+                text_baseline="middle",
+                background_fill_color=HINT,
+                padding=5,
+                border_radius=4,
+            )
         self.mark(KEYS | {"note": UNSEEN})
         names = ["note"]
         if not self.is_bare:
@@ -145,6 +157,8 @@ class Scene(View):
                 self._dragged[arrows.setting] = arrows, run.settings
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
+        if not self.is_bare:
+            self.fill("hints", **(hints_of(picture) if self.state.is_new else NONE))
         # In the place of the ghost a structure that collapses shows its mechanism.
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:

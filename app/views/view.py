@@ -119,6 +119,7 @@ class View:
         }
         self._filter = AllIndices()
         self.make()
+        self._figure.html_attributes = {"role": "figure", "aria-label": self.name}
         # A size that was asked for before there was a figure.
         size = self._type
         self._type = TEXT

@@ -60,7 +60,8 @@ class MethodSettings(param.Parameterized):
         10,
         (1, 20_000),
         (1, 50),
-        "Number of pieces (substructures) that a body is cut into.",
+        "Number of pieces (substructures) that a body is cut into. Each is solved by "
+        "itself in every iteration, then joined with the others.",
     )
     multiscale = DECOMPOSITION.switch(
         True,
@@ -89,7 +90,9 @@ class MethodSettings(param.Parameterized):
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
-        "Multiplies the search direction k: other iterations, the same solution.",
+        "Multiplies the search direction k, the stiffness along which a point goes to "
+        "and fro between its contact law and balance: other iterations, the same "
+        "solution.",
         title="Factor on k",
     )
     relaxation = METHOD.quantity(

@@ -9,6 +9,7 @@ from typing import Any
 import panel as pn
 import pytest
 from bokeh.document import Document
+from bokeh.models import ImportedStyleSheet
 from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
@@ -72,3 +73,15 @@ def test_a_page_does_not_follow_how_busy_the_server_is() -> None:
         pn.state.busy = True
         assert not page.template.busy
         pn.state.busy = False
+
+
+@pytest.mark.usefixtures("orders")
+def test_a_page_that_nobody_was_sent_asks_nothing_of_the_internet(
+    document: Document,
+) -> None:
+    # As the socket makes one anew whose session had ended.
+    root = open_page().get_root(document)
+    PAGES.leave()
+    sheets = [sheet.url for sheet in root.select({"type": ImportedStyleSheet})]
+    assert sheets
+    assert not [url for url in sheets if url.startswith("http")]

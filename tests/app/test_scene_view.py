@@ -390,3 +390,19 @@ def test_words_lie_beside_the_bodies(frame: Frame, width: float) -> None:
                 & (high[:, 1] > y - 4.0)
             )
             assert not covers.any(), (phase, text)
+
+
+def test_marks_of_a_first_visit_stay_until_somebody_does_something() -> None:
+    frame = frame_of(default_settings("bar"))
+    view = Scene(PageState(frame.run.settings, is_new=True))
+    _ = view.figure
+    view.update(frame, Selection(0.25), None)
+    x, y, texts, _ = view.sources["hints"].data.values()
+    assert len(texts) == 3
+    (pulled,) = (n for n, text in enumerate(texts) if text.startswith("pulled"))
+    (rubs,) = (n for n, text in enumerate(texts) if text.endswith("rubs here"))
+    assert x[pulled] > 0.9 * np.nanmax(view.sources["bodies"].data["x"])
+    assert y[rubs] < np.nanmin(view.sources["bodies"].data["y"])
+    view.state.is_new = False
+    view.update(frame, Selection(0.25), None)
+    assert not len(view.sources["hints"].data["text"])

@@ -1,0 +1,54 @@
+"""Marks in the picture of a first visit: the pull, the friction, and the solver."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.views.picture import Columns, Picture
+
+PULLED = "pulled here"
+RUBS = "↑ rubs here"
+SOLVER = "the solver corrects a guess\nof the whole motion"
+ASIDE = 8.0
+ABOVE = 16.0
+BELOW = 26.0
+"""Distances of marks from a side of the bodies, above them, and below the contact,
+px."""
+BROAD = 420.0
+"""Length of bodies from which two marks have room beside each other, px."""
+RUBBING = 0.55
+"""Place of the mark of friction, over the length."""
+NONE: Columns = {"x": [], "y": [], "text": [], "text_align": []}
+
+
+def hints_of(picture: Picture) -> Columns:
+    """Columns of the marks on a picture, whose driving load is the one that varies."""
+    layout = picture.layout
+    length, top = layout.size * layout.scale
+    texts = [SOLVER]
+    aligns = ["left"]
+    anchors = [np.array([ASIDE - 0.5 * length, 0.5 * top])]
+    if picture.draggable:
+        driving = max(picture.draggable, key=_change)
+        x = float(driving.points[:, 0].mean())
+        if length > BROAD:
+            texts.append(f"{PULLED} →")
+            anchors.append(np.array([x - ASIDE, 0.5 * top]))
+        else:
+            texts.append(f"{PULLED} ↘")
+            anchors.append(np.array([x - ASIDE, top + ABOVE]))
+        aligns.append("right")
+    texts.append(RUBS)
+    aligns.append("center")
+    foot = np.nanmin(picture.points[:, 1])
+    anchors.append(np.array([(RUBBING - 0.5) * length, foot - BELOW]))
+    x, y = picture.page(np.array(anchors)).T
+    return {"x": x, "y": y, "text": texts, "text_align": aligns}
+
+
+def _change(arrows: Any) -> float:
+    """Largest change of a load through time over its largest size."""
+    values = np.abs(arrows.act.values).max() or 1.0
+    return float(np.ptp(arrows.act.values, axis=-1).max() / values)

@@ -1,0 +1,38 @@
+"""Terms have their meaning where they stand, and each is said once."""
+
+from __future__ import annotations
+
+from itertools import chain
+
+import pytest
+
+from app.status import TERMS
+from app.views.catalogue import CARDS
+from app.views.view import View
+from app.widgets import GLOSSARY, MEANINGS, ROW, explained
+
+
+@pytest.mark.parametrize("term", TERMS)
+def test_a_term_of_the_status_has_its_meaning_at_hand(term: str) -> None:
+    written = explained(f"12 {term} · 3", *TERMS)
+    assert written.startswith("12 <abbr")
+    assert written.striptags() == f"12 {term} · 3"
+    assert MEANINGS[term] in written.unescape()
+
+
+@pytest.mark.parametrize("kind", chain.from_iterable(CARDS))
+def test_every_plot_says_what_it_shows(kind: type[View]) -> None:
+    assert kind.name in MEANINGS
+
+
+def test_a_word_is_explained_once() -> None:
+    _, _, said = GLOSSARY.partition("#### Words")
+    rows = [words.split(", ") for words, _ in ROW.findall(said)]
+    words = list(chain.from_iterable(rows))
+    assert sorted(set(words)) == sorted(words)
+
+
+def test_markup_in_a_text_is_text_and_a_term_within_a_word_is_none() -> None:
+    written = explained("<b>wrongly</b> researched", *TERMS)
+    assert "<" not in written
+    assert written.unescape() == "<b>wrongly</b> researched"
