@@ -14,9 +14,11 @@ configure()
 
 
 def on_server_loaded(_server_context: Any) -> None:
-    """Import the modules of a worker, and start the process from which it is forked."""
+    """Import the page, and start the process from which workers are forked."""
     # The path is as it was before this file was run.
     sys.path.insert(0, ROOT)
+    # The first page would keep others waiting while it is imported.
+    import app.page  # noqa: F401
     from app.worker.process import Worker
 
     Worker(lambda worker, report: None).end()

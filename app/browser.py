@@ -40,6 +40,8 @@ if (link) {
   navigator.clipboard?.writeText(link).catch(() => prompt("The link", link))
 }
 """
+GO = "if (browser.destination) { location.search = browser.destination }"
+"""Script that opens the page of another address, also one that is there already."""
 LISTEN = """
 const measure = () => {
   browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
@@ -181,7 +183,8 @@ class Browser(DataModel):
 
     The window has a `height` in px and may be narrow. `pressed` is the last key, and
     `count` grows with every key. `search` is the address to which the browser went back
-    or on, `copied` a link that it is to copy.
+    or on, `copied` a link that it is to copy, `destination` an address whose page it is
+    to open.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -190,6 +193,7 @@ class Browser(DataModel):
     count: int = Int(default=0)  # type: ignore[assignment]
     search: str = String(default="")  # type: ignore[assignment]
     copied: str = String(default="")  # type: ignore[assignment]
+    destination: str = String(default="")  # type: ignore[assignment]
 
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
@@ -205,8 +209,18 @@ class Browser(DataModel):
         self.on_change("count", lambda name, old, new: actions[self.pressed]())
         args = {"browser": self, "names": list(actions), "taken": TAKEN}
         self.js_on_change("copied", CustomJS(args=args, code=COPY))
+        self.js_on_change("destination", CustomJS(args=args, code=GO))
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
+
+
+def fade_first(state: PageState, act: Callable[[], None]) -> None:
+    """Fade what is shown, and do in the next step what takes a while and replaces it.
+
+    Within one step the browser would hear of the fading at its end.
+    """
+    state.is_stale = state.frame is not None
+    pn.state.execute(act, schedule=True)
 
 
 class Echoes:

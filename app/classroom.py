@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import secrets
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import panel as pn
@@ -171,6 +171,11 @@ def find(code: str) -> Classroom | None:
     return room
 
 
+def no_class(code: str) -> str:
+    """Sentence on a code that no class has."""
+    return f"There is no class {code[:20]}: ask for it; it may have ended."
+
+
 class ClassMember(param.Parameterized):
     """The role of a page in classes: leader, follower, or neither.
 
@@ -213,9 +218,7 @@ class ClassMember(param.Parameterized):
         room = find(code)
         if room is None:
             if code:
-                self.message = (
-                    f"There is no class {code[:20]}: ask for it; it may have ended."
-                )
+                self.message = no_class(code)
             self.state.room = self._address()
         # In constant time: a key is not found letter by letter.
         elif secrets.compare_digest(room.key.encode(), key.encode()):
@@ -353,12 +356,8 @@ class ClassMember(param.Parameterized):
         return self.room.code
 
     def _on_address(self, address: str) -> None:
-        """Follow or leave a class, as the browser goes back and forth."""
-        if address == self._address() or self.leads:
-            return
-        if address:
-            self.enter(address)
-        else:
+        """Leave a class, as the browser goes back."""
+        if self.follows and not address:
             self.leave()
 
 
@@ -366,15 +365,15 @@ class ClassDialog:
     """Dialog that begins a class and shows its code, or joins a class.
 
     `view` is the line on the page while it is in a class, or has left one; `dialog` is
-    opened by a button in the header.
+    opened by a button in the header. `visit` has the browser open the page of a class,
+    by its code: whoever joins has a page that was made for what the class shows.
     """
 
-    def __init__(self, member: ClassMember) -> None:
+    def __init__(self, member: ClassMember, visit: Callable[[str], None]) -> None:
         self._member = member
+        self._visit = visit
         self._message = PlainText(margin=(4, 8))
-        self._again = button(
-            "Follow again", lambda: member.enter(member.left), variant="text"
-        )
+        self._again = button("Follow again", self._return, variant="text")
         self.view = pn.Row(
             self._message,
             self._again,
@@ -429,13 +428,23 @@ class ClassDialog:
 
     def _join(self) -> None:
         code = self._field.value_input or self._field.value
-        if self._member.enter(code):
-            self.dialog.open = False
-            return
         refusal = "Write a code."
         if code:
-            refusal = self._member.message
-        self._field.param.update(error_state=True, helper_text=refusal)
+            refusal = self._enter(code)
+        if refusal:
+            self._field.param.update(error_state=True, helper_text=refusal)
+
+    def _return(self) -> None:
+        if refusal := self._enter(self._member.left):
+            self._member.message = refusal
+
+    def _enter(self, code: str) -> str:
+        """Open the page of a class; return a refusal where there is none."""
+        room = find(code)
+        if room is None:
+            return no_class(code)
+        self._visit(room.code)
+        return ""
 
     def _leave(self) -> None:
         self._member.leave()

@@ -69,6 +69,7 @@ class Live:
         state.param.watch(
             lambda *events: self._write(), ["running", "message", "refusal"]
         )
+        state.param.watch(lambda event: self._fade(), "is_stale")
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
@@ -142,10 +143,21 @@ class Live:
         if not has_text and state.frame is not None:
             if is_high(state.frame.run.geometry):
                 classes.append("high")
+        case = state.trade_case
+        if case is not None and case.surroundings is not None:
+            if case.surroundings.is_upright:
+                classes += ["high", "upright"]
+        if state.is_stale:
+            classes.append("stale")
         return classes
 
     def _reshape(self) -> None:
         self.view.css_classes = self._shape
+
+    def _fade(self) -> None:
+        """Fade what is of a run before the present one."""
+        self._reshape()
+        self._write()
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
@@ -171,7 +183,10 @@ class Live:
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
-            self._sentence.object = frame.run.sentence
+            sentence = frame.run.sentence
+            if self.state.trade_case is not None:
+                sentence = self.state.trade_case.sentence_on(sentence)
+            self._sentence.object = sentence
             if self._shape != self.view.css_classes:
                 # In one step with new data the browser would paint the old ones in the
                 # new shape.

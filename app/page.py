@@ -28,11 +28,23 @@ COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
     # On a phone the buttons are moved by a finger.
     "@media (max-width: 600px)": {
-        "& header h3": {"display": "none"},
+        "& header .title": {"display": "none"},
         "& header": {"overflowX": "auto"},
     },
 }
 WORDS = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
+HEADINGS = {
+    "components": {
+        # The page's title; spacers of the template.
+        "MuiTypography": {
+            "defaultProps": {"variantMapping": {"h3": "h1", "h5": "div"}}
+        },
+        "MuiAccordion": {
+            "defaultProps": {"slotProps": {"heading": {"component": "h2"}}}
+        },
+    }
+}
+"""Elements of headings in the theme: else the page would have none of first rank."""
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 
 
@@ -58,7 +70,7 @@ class Page:
         transport = self._live.transport
         open_counts = self._member.open_counts
         self._guide = Guide(state, transport, self._dress, open_counts)
-        self._class = ClassDialog(self._member)
+        self._class = ClassDialog(self._member, self._link.join)
         self._guide.view.stylesheets = [STYLE]
         self._class.view.stylesheets = [STYLE]
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
@@ -87,6 +99,7 @@ class Page:
             # As `theme` in the address has it.
             dark_theme=pn.config.theme == "dark",
             sx=COMPACT,
+            theme_config=HEADINGS,
         )
         follow_itself(self.template)
         keys = transport.keys() | {"p": self._present, "?": self._help}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import time
@@ -10,6 +11,8 @@ from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
 import panel as pn
+from bokeh.server.urls import per_app_patterns
+from panel.io.server import DocHandler
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPHeaders, HTTPServerRequest
 from tornado.routing import Matcher, Rule
@@ -29,6 +32,8 @@ POLICY = "script-src-attr 'none'; object-src 'none'"
 """Policy on contents: handlers in elements do not run, should a text become markup
 after all. Scripts in the page stay allowed, as Bokeh has no nonces for its own: with
 `script-src 'self'` there would be no page."""
+PAUSE = 0.02
+"""Time between two pages that are made, in which the server answers others, s."""
 QUIET = 60.0
 """Least time between two errors of one log that are written, s."""
 
@@ -90,6 +95,8 @@ def _address() -> SplitResult:
 def configure() -> None:
     """Have Tornado, on which Panel serves, use this kind of server."""
     HTTPServer.configure(PageServer)
+    paths = [path for path, handler in per_app_patterns if handler is DocHandler]
+    per_app_patterns[:0] = [(path, PageHandler) for path in paths]
     for name in (
         "bokeh.server.views.ws",
         "bokeh.server.protocol_handler",
@@ -112,6 +119,22 @@ class PageServer(HTTPServer):
                 0, Rule(Refused(), ErrorHandler)
             )
         super().initialize(request_callback, **{"max_header_size": RECEIVED, **options})
+
+
+class PageHandler(DocHandler):
+    """Handler of requests for pages, which are made one by one.
+
+    All of a server has one thread. Of many requests that come together each would make
+    its page, and then each its figures, before anything else is answered.
+    """
+
+    _turn = asyncio.Lock()
+
+    async def prepare(self) -> None:
+        """Wait for those who came before, and then until others are answered."""
+        await super().prepare()
+        async with self._turn:
+            await asyncio.sleep(PAUSE)
 
 
 class Compressed(GZipContentEncoding):

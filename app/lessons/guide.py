@@ -11,6 +11,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
+from app.browser import fade_first
 from app.controls import SettingControl
 from app.frame import Selection
 from app.lessons.cases import gallery, texts_of
@@ -25,18 +26,15 @@ from app.lessons.catalogue import (
     readings_of,
     settings_of,
 )
+from app.lessons.choices import WITHOUT, Choices, text_button
 from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
-from app.state import PageState, Poll
+from app.state import PageState
 from app.transport import Transport
 from app.views.view import View
-from app.widgets import button, dialog, download, looks
+from app.widgets import dialog, download, looks
 from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
-
-WITHOUT = -1
-"""Prediction that stands for a wish to see the answer without predicting."""
-text_button = partial(button, margin=(3, 8, 3, 0))
 
 
 class Guide:
@@ -62,7 +60,7 @@ class Guide:
         self._texts: list[tuple[pn.pane.Markdown, Callable[[], str]]] = []
         self._controls: list[SettingControl] = []
         self._curve: DrawnCurve | None = None
-        self._choices = pn.Column(margin=0)
+        self._choices: Choices | None = None
         self._shown: tuple[str, str, bool] | None = None
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
         self.dialogs = {
@@ -78,8 +76,13 @@ class Guide:
     def open(self, kind: str, name: str) -> None:
         """Begin a lesson or a case with its settings, in place of another."""
         self.dialogs[kind].open = False
+        fade_first(self._state, partial(self._open, kind, name))
+
+    def _open(self, kind: str, name: str) -> None:
         opened = {"lesson": "", "case": "", kind: name}
         plots = plots_of(opened["case"])
+        if kind == "case":
+            self._state.select(phase=CASES[name].instant)
         # In one step: else the text would be built once with the scene before.
         with param.parameterized.batch_call_watchers(self._state):
             self._state.param.update(**opened, prediction=None, plots=plots)
@@ -123,11 +126,8 @@ class Guide:
         if shown != self._shown:
             self._shown = shown
             self._build(lesson, CASES.get(state.case))
-        if lesson is not None:
-            self._choices[:] = [
-                *self._choices_of(lesson, state.poll),
-                *self._of_class(state.poll),
-            ]
+        elif self._choices is not None:
+            self._choices.show()
 
     @property
     def _follows(self) -> bool:
@@ -142,6 +142,7 @@ class Guide:
         self._transport.stop()
         self._texts = []
         self._controls = []
+        self._choices = None
         if lesson is not None:
             self._prepare_curve(lesson)
             parts = self._parts(lesson)
@@ -198,8 +199,10 @@ class Guide:
         figures = []
         if self._curve:
             figures = [pn.pane.Bokeh(self._curve.figure, margin=0)]
-        title = f"### {lesson.title}"
-        question = [*self._paragraphs((f"**{lesson.question}**",)), self._choices]
+        title = f"## {lesson.title}"
+        choices = Choices(lesson, self._state, self.predict, self._open_counts)
+        self._choices = choices
+        question = [*self._paragraphs((f"**{lesson.question}**",)), choices.view]
         explore = text_button("Explore freely", self._end, variant="text")
         if self._state.is_asked:
             paragraphs = self._paragraphs((title, *lesson.text))
@@ -216,9 +219,10 @@ class Guide:
         ]
 
     def _verdict(self, lesson: Lesson) -> pmui.Alert:
-        """The right choice and its reason; the colour says whether it was predicted."""
+        """The prediction, the right choice and its reason."""
         prediction = self._state.prediction
-        text = f"{lesson.choices[lesson.right]}. {lesson.why}"
+        right = lesson.choices[lesson.right]
+        text = f"{right}. {lesson.why}"
         if prediction in (None, WITHOUT):
             severity = "info"
         elif prediction == lesson.right:
@@ -226,6 +230,8 @@ class Guide:
             text = f"Right: {text}"
         else:
             severity = "warning"
+            chosen = lesson.choices[prediction]
+            text = f"You chose “{chosen}”. Right is “{right}”. {lesson.why}"
         return pmui.Alert(
             object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"
         )
@@ -271,62 +277,6 @@ class Guide:
         self._controls.append(control)
         return control.view
 
-    def _choices_of(self, lesson: Lesson, poll: Poll | None) -> list[pmui.Button]:
-        """Buttons of the choices, with the counts of a class once they are open."""
-        counts: tuple[int, ...] = ()
-        if poll is not None:
-            counts = poll.counts
-        if not self._state.is_asked and not counts:
-            # The answer below says whether the prediction was right.
-            return []
-        labels = list(lesson.choices)
-        if counts:
-            labels = [
-                f"{choice}: {count}"
-                for choice, count in zip(lesson.choices, counts, strict=True)
-            ]
-        return [
-            self._choice(number, label, lesson) for number, label in enumerate(labels)
-        ]
-
-    def _choice(self, number: int, label: str, lesson: Lesson) -> pmui.Button:
-        """The button of a choice: filled if it was predicted, green if it is right."""
-        is_asked = self._state.is_asked
-        variant = "outlined"
-        if number == self._state.prediction:
-            variant = "contained"
-        color = "primary"
-        if not is_asked and number == lesson.right:
-            color = "success"
-        return text_button(
-            label,
-            partial(self.predict, number),
-            variant=variant,
-            color=color,
-            disabled=not is_asked,
-            **looks("choice"),
-        )
-
-    def _of_class(self, poll: Poll | None) -> list[Any]:
-        """Parts below the choices: number of predictions, and buttons to the answer."""
-        is_asked = self._state.is_asked
-        answer = partial(self.predict, WITHOUT)
-        if poll is None:
-            if is_asked:
-                return [text_button("Show me", answer, variant="text")]
-            return []
-        text = f"{poll.predicted} of {poll.present} have predicted."
-        if is_asked and not poll.leads:
-            text += " The answer comes with the class."
-        parts = [pn.pane.Markdown(text)]
-        if poll.leads and not poll.counts:
-            parts.append(
-                text_button("Open the counts", self._open_counts, variant="outlined")
-            )
-        if poll.leads and is_asked:
-            parts.append(text_button("Go on to the answer", answer))
-        return parts
-
     def _follow_settings(self) -> None:
         """Leave the lesson or case for another scene; show settings in its controls."""
         state = self._state
@@ -345,9 +295,9 @@ def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
     """The titles of all lessons by subject, as buttons that begin them."""
     columns = []
     for subject in SUBJECTS:
-        title = "#### The method"
+        title = "### The method"
         if subject == "mechanics":
-            title = "#### Mechanics"
+            title = "### Mechanics"
         buttons = [
             text_button(
                 lesson.title, partial(begin, name), **looks("choice"), variant="text"

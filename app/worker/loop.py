@@ -16,7 +16,7 @@ import numpy as np
 
 from app import messages
 from app.messages import Needs, Order, Ready, Report, Start
-from app.worker.references import ReferenceCache
+from app.worker.references import LastAnswer, ReferenceCache
 from app.worker.runner import Runner
 from solver.refusal import RefusedError
 
@@ -58,6 +58,7 @@ class WorkerLoop:
         self._sending = threading.Lock()
         self._orders: deque[Order] = deque()
         self._references = ReferenceCache()
+        self._last: LastAnswer | None = None
         self._runner: Runner | None = None
         self._number = 0
         self._needs = Needs()
@@ -82,6 +83,8 @@ class WorkerLoop:
         """Do the next piece of work if it is due, and send a frame if it is wanted."""
         if runner.rest(self._is_ready) == 0.0:
             runner.advance()
+            if runner.answer is not None:
+                self._last = runner.answer
         if self._is_ready and runner.is_presentable:
             self._is_ready = False
             self._shown_at = time.monotonic()
@@ -125,7 +128,12 @@ class WorkerLoop:
         self._send(messages.Began(start.number))
         self._number = start.number
         self._runner = None
-        runner = Runner(start, self._references, self._is_superseded, self._is_halted)
+        before = None
+        if self._last is not None:
+            before = self._last.start_of(start, self._needs)
+        runner = Runner(
+            start, self._references, self._is_superseded, self._is_halted, before
+        )
         cost = runner.cost
         is_costly = cost.seconds > LONG or cost.memory > LARGE
         if is_costly and not start.is_agreed:

@@ -1,22 +1,73 @@
-"""A cache of the references of the last problems that a process has solved."""
+"""Solutions that a process keeps: references, and the states of the last answer."""
 
 from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+from app.messages import Needs, Start
 from solver.discrete import Problem
+from solver.latin.end.status_step import states_of_solution
 from solver.reference.assembly import NoReferenceError
 from solver.reference.incremental import reference_of
+from solver.reference.rules import States
 from solver.reference.solution import Reference, fingerprint
+from solver.settings.method import MethodSettings
 from solver.settings.scene import Settings
+from solver.study.quantities import reading
 
 MOST_JUMPS = 1500
 """Jumps up to which a reference takes no longer than some seconds; its time grows with
 their cube (measured: layers 8 s for 1900, a wall 1 s for 1400)."""
 ENTRIES = 8
+OF_THE_SEARCH = {"start", "finish"}
+"""Settings of the method that a dragged slider sets by itself."""
+
+
+@dataclass(frozen=True, eq=False)
+class LastAnswer:
+    """The certified solution of a run, from whose states a similar run may start.
+
+    Attributes
+    ----------
+    order
+        Order of the run.
+    states
+        What stuck, slipped and was open, shape (n_forces, n_instants).
+    """
+
+    order: Start
+    states: States
+
+    @classmethod
+    def of(cls, order: Start, solution: Reference) -> LastAnswer:
+        """Keep the states of a solution, and not its problem."""
+        return cls(order, states_of_solution(solution))
+
+    def start_of(self, order: Start, needs: Needs) -> States | None:
+        """States from which an ordered run starts; None where it starts from nothing.
+
+        A run that a changed method, a step or a reading asks for is there to be seen
+        from its own start, and so is one that is begun anew.
+        """
+        is_shown_from_start = order.pace == 0.0 or any(
+            reading(name).reads for name in needs.readings
+        )
+        if is_shown_from_start or order.settings.scene != self.order.settings.scene:
+            return None
+        values = self.order.settings.values()
+        changed = {
+            name
+            for name, value in order.settings.values().items()
+            if value != values[name]
+        }
+        is_of_method = MethodSettings.definitions().keys() - OF_THE_SEARCH
+        if changed & is_of_method:
+            return None
+        is_new = bool(changed - OF_THE_SEARCH)
+        return self.states if is_new or self.order.is_dragged else None
 
 
 def has_reference(settings: Settings) -> bool:

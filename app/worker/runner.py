@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from app.frame import Frame
 from app.messages import WHOLE, Needs, Start
-from app.worker.references import ReferenceCache, has_reference
+from app.worker.references import LastAnswer, ReferenceCache, has_reference
 from app.worker.sampling import Sampler
-from solver.latin import Ending, Iterate, Record, Status, judged, record
+from solver.latin import Decision, Ending, Iterate, Record, Status, judged, record
 from solver.latin.end.cost import RunCost, run_cost
 from solver.latin.end.status import collapses
+from solver.latin.end.status_step import Certificate
 from solver.reference.assembly import Interrupted
 from solver.reference.distance import Distance, distance_to
+from solver.reference.rules import States
+from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.method import method_of
+from solver.study.quantities.finished import neighbour
 
 HURRY = 0.1
 """Longest time for which a run that follows a dragged slider is not shown, s."""
@@ -79,10 +83,13 @@ class Runner:
 
     `interrupted` says that an order waits that ends the run, and `halted` that one is
     there that ends or halts it: a status step is then given up until the run goes on.
-    The run
-    has a `sampler` of its problem, the newest `iterate`, a `history` with a record of
-    each iterate, and at its end a `status`. `pacing` says when the next iteration is
-    due, `has_news` whether anything changed since the last frame.
+    `before` are states of a similar run, from which one status step may find the
+    answer; else the run begins as its method says.
+
+    The run has a `sampler` of its problem, the newest `iterate`, a `history` with a
+    record of each iterate, and at its end a `status`, with an `answer` if that is
+    certified. `pacing` says when the next iteration is due, `has_news` whether anything
+    changed since the last frame.
 
     A run does its first iteration, hurries on for a moment if a slider is dragged,
     finds the reference, and goes on at the pace until its end.
@@ -94,29 +101,35 @@ class Runner:
         references: ReferenceCache,
         interrupted: Callable[[], bool],
         halted: Callable[[], bool] = lambda: False,
+        before: States | None = None,
     ) -> None:
+        self._order = start
         self.settings = settings = start.settings
         self.is_dragged = start.is_dragged
         # What is made here counts as time of the method.
         began = time.perf_counter()
         problem = discretise(settings)
-        latin = method_of(settings)
+        self._method = method_of(settings)
         self.cost: RunCost = run_cost(
             problem,
-            latin,
+            self._method,
             settings.max_iterations,
             with_reference=has_reference(settings),
         )
-        spent = time.perf_counter() - began
+        self._spent = time.perf_counter() - began
         self.sampler = Sampler(problem, settings, start.number)
         self.iterate: Iterate | None = None
         self.history: list[Record] = []
         self.status: Status | None = None
+        self.answer: LastAnswer | None = None
+        self._certificate: Certificate | None = None
         self.has_news = False
         self.pacing = Pacing(start.pace, start.steps)
-        self._iterates = judged(problem, latin, spent=spent, interrupted=halted)
+        self._before = before
+        self._iterates: Iterator[tuple[Iterate, Decision]] | None = None
         self._references = references
         self._interrupted = interrupted
+        self._halted = halted
         self._is_compared = False
         self._distance: Distance | None = None
         self._hurries_until = time.monotonic()
@@ -148,7 +161,9 @@ class Runner:
 
     def advance(self) -> None:
         """Do one piece of work: an iteration, or after the first one the reference."""
-        if self.iterate is not None and not self._is_compared and not self.hurries:
+        if self._before is not None:
+            self._start_near(self._before)
+        elif self.iterate is not None and not self._is_compared and not self.hurries:
             self._compare()
         else:
             self._iterate()
@@ -158,9 +173,31 @@ class Runner:
         self.has_news = False
         return self.sampler.frame(self.iterate, self.history, self.status, needs)
 
+    def _start_near(self, before: States) -> None:
+        """Seek the answer from the states of another run, once."""
+        self._before = None
+        began = time.perf_counter()
+        near = neighbour(
+            self.sampler.problem, self.settings, before, self._halted, self._spent
+        )
+        # What was tried in vain is time of the run all the same.
+        self._spent += time.perf_counter() - began
+        if near is not None:
+            self._take(*near)
+
     def _iterate(self) -> None:
         """Do an iteration, and record it unless it diverged."""
-        iterate, decision = next(self._iterates)
+        if self._iterates is None:
+            self._iterates = judged(
+                self.sampler.problem,
+                self._method,
+                spent=self._spent,
+                interrupted=self._halted,
+            )
+        self._take(*next(self._iterates))
+
+    def _take(self, iterate: Iterate, decision: Decision) -> None:
+        """Take the next iterate, and the decision of the stop rules on it."""
         self.pacing.count(iterate.number)
         self.status = decision.status
         self.has_news = True
@@ -170,24 +207,42 @@ class Runner:
         self.iterate = iterate
         self.sampler.keep(iterate)
         self.history.append(record(iterate, decision, self._distance))
+        if self.status is not None and decision.certificate is not None:
+            self.answer = LastAnswer.of(self._order, decision.certificate.solution)
+            if self.is_dragged:
+                self._certificate = decision.certificate
 
     def _compare(self) -> None:
         """Find the reference, and the errors of the iterate recorded before it."""
         problem = self.sampler.problem
+        # The certified solution of a run that follows a slider is its reference: the
+        # incremental solver would find it once more, while the slider moves on.
+        if self._certificate is not None:
+            # It does not tell how long the incremental solver takes from nothing.
+            timeless = replace(self._certificate.solution, seconds=math.nan)
+            self._complete(timeless, self._certificate.distance)
+            return
         try:
             reference = self._references.of(self.settings, problem, self._interrupted)
         except Interrupted:
             return
-        self._is_compared = self.has_news = True
-        if reference is not None and reference.collapse is not None:
+        if reference is None:
+            self._complete(None, None)
+        elif reference.collapse is None:
+            self._complete(reference, distance_to(reference, problem))
+        else:
+            self._is_compared = self.has_news = True
             self.sampler.collapse(reference.collapse)
             # The answer of a run that has ended before its reference is there stands.
             if self.status is None or self.status.ending is not Ending.CONVERGED:
                 self.status = collapses(problem, reference.collapse)
-            return
+
+    def _complete(self, reference: Reference | None, distance: Distance | None) -> None:
+        """Compare the run with a reference, by the distance to it, or with none."""
+        self._is_compared = self.has_news = True
         self.sampler.complete(reference)
-        if reference is not None:
-            self._distance = distance = distance_to(reference, problem)
+        self._distance = distance
+        if distance is not None:
             self.history[-1] = replace(
                 self.history[-1],
                 error_displacement=distance.of_displacement(self.iterate),

@@ -219,7 +219,8 @@ def _contacts_at(
                 weight = weight - held[problem.row_dofs[component.below[pairs]]]
             weights.append(weight)
         for number, (points, _) in zip(numbers, law.ranges, strict=True):
-            normal, tangential = weights[0][points], weights[-1][points]
+            normal = weights[0][points]
+            tangential = weights[-1][points]
             if normal.any() or tangential.any():
                 found[names[number]] = (normal if law.opens else None, tangential)
     return {name: found[name] for name in names if name in found}

@@ -269,7 +269,8 @@ def restricted(whole: Any, pairs: slice) -> Any:
     if isinstance(whole, np.ndarray):
         return whole[pairs]
     if isinstance(whole, Component):
-        return Component(*[restricted(side, pairs) for side in whole])
+        sides = [restricted(side, pairs) for side in whole]
+        return Component(*sides)
     if not is_dataclass(whole):
         return whole
     kind = cast(Any, type(whole))

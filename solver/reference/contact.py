@@ -246,8 +246,8 @@ def _status(rules: Rules, slip: Array, forces: Array) -> States:
     """
     tangential = ~rules.normal
     status = np.sign(slip).astype(np.int8)
-    # Friction never drives a slip: one along it is rounding, of a point that stays where
-    # it was at its bound.
+    # Friction never drives a slip: one along it is rounding, of a point that stays
+    # where it was, at its bound.
     status[slip * forces > 0.0] = 0
     # A friction force of a known pressure has itself as partner, and never opens.
     with_normal = rules.normal[rules.partner][:, None]

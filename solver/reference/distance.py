@@ -179,11 +179,17 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
     moved = jumps(problem) @ problem.motions
     # Few patterns of contact occur, each at many instants: one rank for each pattern.
     patterns, kind = np.unique(holds, axis=1, return_inverse=True)
+    kind = kind.ravel()
+    at_rest = ~np.logical_or.accumulate(holds.any(axis=0))
+    # Mostly the contacts that hold in all patterns but none hold the bodies already.
+    acts = np.asarray(patterns.any(axis=0))
+    always = patterns[:, acts].all(axis=1)
+    if np.linalg.matrix_rank(moved[always]) == moved.shape[1]:
+        return np.asarray(acts[kind] | at_rest)
     sure = []
     for pattern in patterns.T:
         sure.append(np.linalg.matrix_rank(moved[pattern]) == moved.shape[1])
-    at_rest = ~np.logical_or.accumulate(holds.any(axis=0))
-    return np.asarray(np.asarray(sure)[kind.ravel()] | at_rest)
+    return np.asarray(np.asarray(sure)[kind] | at_rest)
 
 
 def determinate_forces(problem: Problem) -> Flags:

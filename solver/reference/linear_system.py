@@ -81,6 +81,7 @@ class LinearSystem:
         alone = abs(condensed.ties) @ self._alone
         self.unit: Array = alone / (1.0 + alone * rules.compliance)
         self._pulls_of_gauge = self._of_unknowns[:, : len(self._base)] @ self._gauge
+        self._gauge_square = self._gauge.T @ self._gauge
         self._is_plain = not self._compliance.any() and not self._gauge.size
         self._states: States | None = None
         self._factors: Factors
@@ -318,8 +319,16 @@ class LinearSystem:
             matrix[self._sprung] = self._rows_of_sprung(matrix[self._sprung])
         # Of all y with the same forces the one with Q' y = 0.
         matrix[n_rows:, : len(free)] = -gauge[free].T
-        matrix[n_rows:, n_rows:] = self._gauge_kept.T @ self._gauge_kept
+        matrix[n_rows:, n_rows:] = self._square_of_kept()
         return matrix
+
+    def _square_of_kept(self) -> Array:
+        """Q' Q of the held jumps of the base, (n_motions, n_motions)."""
+        if len(self._kept) <= len(self._free):
+            return np.asarray(self._gauge_kept.T @ self._gauge_kept)
+        # Few jumps are free: what is held is all but these.
+        gauge_free = self._gauge[self._free]
+        return np.asarray(self._gauge_square - gauge_free.T @ gauge_free)
 
     def _pulls_with_friction(self) -> Array:
         """Force of each row less its friction by each motion, (n_rows, n_motions)."""

@@ -34,6 +34,7 @@ LOOKED_AT: dict[str, Any] = {
     "tab": "What if",
     "question": "friction=0.2:0.4:3 peak=600:900:2 dissipation",
     "instant": 0.25,
+    "interface": "contact 2-3",
     "iteration": 12,
     "pace": "5 a second",
     "plots": ["Convergence", "Singular values"],
@@ -152,6 +153,15 @@ def test_going_back_brings_settings_back_and_leaves_no_new_address() -> None:
     assert (state.settings.scene, state.settings.peak) == ("bar", 1200.0)
     link.go(before)
     assert state.settings.values() == default_settings("bar").values()
+
+
+def test_going_back_to_a_class_opens_its_page() -> None:
+    state = PageState(default_settings("rope"))
+    browser = Browser()
+    link = Link(state, browser)
+    link.go("?class=ABCD")
+    assert browser.destination == "?class=ABCD"
+    assert (state.settings.scene, state.room) == ("rope", "")
 
 
 def test_a_slider_that_is_dragged_writes_no_address_until_it_is_let_go() -> None:

@@ -15,7 +15,7 @@ import pytest
 from panel.io.state import set_curdoc
 
 from app import classroom
-from app.classroom import ClassMember, begin_with_class, find
+from app.classroom import ClassDialog, ClassMember, begin_with_class, find
 from app.frame import Frame
 from app.messages import Needs, Order, Ready, Start
 from app.state import History, PageState, default_settings
@@ -276,6 +276,21 @@ def test_a_key_that_is_wrong_does_not_lead(leader: Seat) -> None:
 def test_a_code_that_there_is_not_is_told_and_the_page_runs() -> None:
     seat = Seat("bar", "XXXX5")
     assert "There is no class XXXX5" in seat.member.message
+    assert seat.worker.is_there
+
+
+def test_whoever_joins_opens_the_page_of_the_class(leader: Seat) -> None:
+    seat = Seat("rope")
+    visited: list[str] = []
+    dialog = ClassDialog(seat.member, visited.append)
+    dialog.open()
+    dialog._field.value = "XXXX"
+    dialog._join()
+    assert dialog._field.helper_text.startswith("There is no class XXXX")
+    dialog._field.value = code_of(leader).lower()
+    dialog._join()
+    assert visited == [code_of(leader)]
+    # All else is as it was: the browser leaves for the other page.
     assert seat.worker.is_there
 
 

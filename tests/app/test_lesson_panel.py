@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import panel as pn
+import panel_material_ui as pmui
 import pytest
 
 from app.frame import Frame
@@ -122,6 +123,52 @@ def test_in_a_class_the_answer_waits_for_the_leader() -> None:
     state.poll = Poll(False, 1, 3, is_answered=True)
     assert not state.is_asked
     assert panel.kinds == kinds_of(LESSONS[NAME], is_answered=True)
+
+
+def buttons_of(panel: Guide) -> dict[str, pmui.Button]:
+    return {made.label: made for made in panel.view.select(pmui.Button)}
+
+
+@pytest.mark.parametrize("leads", [True, False])
+def test_buttons_of_a_question_stay_while_others_predict(leads: bool) -> None:
+    lesson = LESSONS[NAME]
+    poll = Poll(leads, 0, 3)
+    state = PageState(settings_of(lesson), lesson=NAME, poll=poll)
+    panel, _ = panel_of(state)
+    before = buttons_of(panel)
+    state.poll = replace(poll, predicted=1)
+    state.poll = replace(poll, predicted=3, counts=(1, 0, 0, 2))
+    assert buttons_of(panel) == before
+    bars = " ".join(pane.object for pane in panel.view.select(pn.pane.HTML))
+    assert "3 of 3 have predicted." in bars
+    assert "1 of 3" in bars
+    assert "2 of 3" in bars
+    assert before["Open the counts"].visible is False
+
+
+def test_ones_own_choice_is_filled_and_may_be_another() -> None:
+    lesson = LESSONS[NAME]
+    state = PageState(settings_of(lesson), lesson=NAME, poll=Poll(False, 0, 3))
+    panel, _ = panel_of(state)
+    for choice in (2, 0):
+        panel.predict(choice)
+        buttons = buttons_of(panel)
+        looks = [buttons[label].variant for label in lesson.choices]
+        others = len(looks) - 1
+        assert looks.pop(choice) == "contained"
+        assert looks == ["outlined"] * others
+
+
+@each
+def test_the_verdict_says_what_was_chosen_and_what_is_right(lesson: Lesson) -> None:
+    wrong = (lesson.right + 1) % len(lesson.choices)
+    state = PageState(settings_of(lesson), lesson=lesson.name)
+    panel, _ = panel_of(state)
+    panel.predict(wrong)
+    (verdict,) = panel.view.select(pmui.Alert)
+    chosen = verdict.object.index(lesson.choices[wrong])
+    right = verdict.object.index(lesson.choices[lesson.right])
+    assert chosen < right < verdict.object.index(lesson.why)
 
 
 def test_a_drawn_curve_stays_and_the_measured_one_comes_after_the_choice() -> None:

@@ -3,7 +3,8 @@
 
 Serves the page and opens all pages, thirty without a number, at once: websockets that
 say *painted* at once, as browsers of thirty machines do, for which these two cores are
-too few. Prints when the first picture of the last page came, how many pictures a second
+too few. Prints when the first picture of the last page came, the longest time that the
+server took meanwhile to say that it lives, how many pictures a second
 each got at 20 iterations a second and of searches without an end in 3 s, the memory of
 a worker, and what is left once all are closed.
 
@@ -17,120 +18,64 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
-import json
-import re
 import sys
 import tempfile
+import threading
 import time
+import urllib.request
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
 from measure_page import ANSWER, ENDLESS
-from tornado.httpclient import AsyncHTTPClient, HTTPRequest
-from tornado.websocket import (
-    WebSocketClientConnection,
-    WebSocketClosedError,
-    websocket_connect,
-)
 
 # What tests share, too
 sys.path.insert(0, str(Path(__file__).parents[1] / "helpers"))
 from browser import Server, serving
+from visitors import Visitor
 
 PACES = {"20 a second": ENDLESS, "whole in 3 s": ENDLESS.rpartition("&pace")[0]}
 SECONDS = 20.0
-PATIENT = {"connect_timeout": 600.0, "request_timeout": 600.0}
 LEAVING = 50.0
 """Seconds in which the server ends what belongs to closed pages."""
-READY = {
-    "kind": "MessageSent",
-    "msg_type": "bokeh_event",
-    "msg_data": {
-        "type": "event",
-        "name": "document_ready",
-        "values": {"type": "map", "entries": []},
-    },
-}
+LOOK = 0.1
+"""Seconds between two questions whether the server lives."""
 
 
-class Visitor:
-    """A page as a browser has it, but for what is seen of it.
+class Watch:
+    """The longest time that the server took to say that it lives, in `longest`, s."""
 
-    Attributes
-    ----------
-    pictures
-        When each came.
-    """
+    def __init__(self, server: Server) -> None:
+        self.longest = 0.0
+        self._server = server
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._ask)
 
-    def __init__(self) -> None:
-        self.pictures: list[float] = []
-        self._count = 0
+    def __enter__(self) -> Watch:
+        self._thread.start()
+        return self
 
-    async def open(self, address: str) -> None:
-        """Open a page, and go on saying what is painted."""
-        client = AsyncHTTPClient(force_instance=True)
-        answer = await client.fetch(address, **PATIENT)
-        token = re.search(r'"token":\s*"([^"]+)"', answer.body.decode())
-        assert token is not None
-        place = address.partition("?")[0].replace("http", "ws") + "/ws"
-        headers = {"Sec-WebSocket-Protocol": f"bokeh, {token[1]}"}
-        request = HTTPRequest(place, headers=headers, **PATIENT)
-        self._socket: WebSocketClientConnection = await websocket_connect(request)
-        self._pulse: str | None = None
-        # What is to be said to a page that was closed meanwhile is not.
-        with contextlib.suppress(WebSocketClosedError):
-            while (header := await self._socket.read_message()) is not None:
-                await self._take(json.loads(header))
+    def __exit__(self, *error: object) -> None:
+        self._is_over.set()
+        self._thread.join()
 
-    def close(self) -> None:
-        """Close it."""
-        self._socket.close()
-
-    async def _take(self, header: dict[str, Any]) -> None:
-        """Read a message whose header has come, and answer it."""
-        await self._socket.read_message()
-        content = str(await self._socket.read_message())
-        for _ in range(2 * header.get("num_buffers", 0)):
-            await self._socket.read_message()
-        if header["msgtype"] == "ACK":
-            await self._send("PULL-DOC-REQ", {})
-        elif header["msgtype"] == "PULL-DOC-REPLY":
-            found = re.search(
-                r'"app.browser.Pulse","id":"(\w+)"', content.replace(" ", "")
-            )
-            assert found is not None
-            self._pulse = found[1]
-            await self._send("PATCH-DOC", {"events": [READY]})
-            await self._paint(content, r'"sent":(\d+)')
-        elif self._pulse is not None:
-            await self._paint(content, rf'"{self._pulse}"}},"attr":"sent","new":(\d+)')
-
-    async def _paint(self, content: str, pattern: str) -> None:
-        if numbers := re.findall(pattern, content.replace(" ", "")):
-            self.pictures.append(time.perf_counter())
-            change = {
-                "kind": "ModelChanged",
-                "model": {"id": self._pulse},
-                "attr": "painted",
-                "new": int(numbers[-1]),
-            }
-            await self._send("PATCH-DOC", {"events": [change]})
-
-    async def _send(self, kind: str, content: dict[str, Any]) -> None:
-        self._count += 1
-        header = {"msgid": f"{id(self)}-{self._count}", "msgtype": kind}
-        for part in (header, {}, content):
-            await self._socket.write_message(json.dumps(part))
+    def _ask(self) -> None:
+        while not self._is_over.wait(LOOK):
+            began = time.perf_counter()
+            urllib.request.urlopen(self._server.health).close()
+            self.longest = max(self.longest, time.perf_counter() - began)
 
 
 async def measure(server: Server, number: int) -> None:
     idle = len(server.processes())
     for pace, query in PACES.items():
         began = time.perf_counter()
-        visitors, tasks = await opened(server, number, query)
+        with Watch(server) as watch:
+            visitors, tasks = await opened(server, number, query)
         last = max(visitor.pictures[0] for visitor in visitors) - began
-        print(f"{pace}: the last opens after {last:.1f} s")
+        print(
+            f"{pace}: the last opens after {last:.1f} s; the server answered within "
+            f"{watch.longest:.1f} s"
+        )
         before = [len(visitor.pictures) for visitor in visitors]
         began = time.perf_counter()
         await asyncio.sleep(SECONDS)

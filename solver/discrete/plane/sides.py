@@ -1,4 +1,4 @@
-"""What holds, moves and loads bodies in the plane: sides, supports, springs."""
+"""Sides of bodies in the plane, supports and springs: they hold, move and load."""
 
 from __future__ import annotations
 

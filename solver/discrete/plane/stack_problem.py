@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -155,13 +156,15 @@ def _interfaces(
 def _laws_of_contact(
     cut: CutStack, contacts: Mapping[str, Sequence[Joint]]
 ) -> Iterator[tuple[str, Contact]]:
-    """One law for all contacts with the support, and one for those of bodies."""
+    """Yield a law for all contacts with the support, and one for those of bodies."""
     alike = dict[str, list[str]]()
     for name, joints in contacts.items():
         kind = "supports" if joints[0].below is None else "contacts"
         alike.setdefault(kind, []).append(name)
     for kind, names in alike.items():
-        key = names[0] if len(names) == 1 else kind
+        key = kind
+        if len(names) == 1:
+            key = names[0]
         yield key, _contact(cut, {name: contacts[name] for name in names})
 
 
@@ -206,10 +209,9 @@ class _Pairs(NamedTuple):
 
 def _pairs_of(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> _Pairs:
     """Pairs of nodes of contacts."""
-    joints = [joint for joints in contacts.values() for joint in joints]
-    numbers = np.repeat(
-        np.arange(len(contacts)), [len(joints) for joints in contacts.values()]
-    )
+    joints = list(chain.from_iterable(contacts.values()))
+    n_joints = [len(of_contact) for of_contact in contacts.values()]
+    numbers = np.repeat(np.arange(len(contacts)), n_joints)
     nodes = [cut.pairs[joint][0] for joint in joints]
     lengths = [cut.pairs[joint][1] for joint in joints]
     counts = np.array([len(of_joint) for of_joint in nodes])
@@ -233,10 +235,13 @@ def _contact(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> Contact:
     """Law of contacts by name: of bodies with the support, or with each other."""
     stack = cut.stack
     pairs = _pairs_of(cut, contacts)
-    support = stack.support if pairs.others[0] == NO_BODY else None
     gap = np.zeros(len(pairs.nodes))
-    if support is not None:
+    slip_ratio = 1.0
+    support = stack.support
+    if support is not None and pairs.others[0] == NO_BODY:
         gap = support.gap[pairs.nodes] / stack.length
+        if support.is_image:
+            slip_ratio = 2.0
     n_nodes = max(stack.grid) + 1
     keys = pairs.contacts * n_nodes + pairs.nodes
     _, first, points = np.unique(keys, return_index=True, return_inverse=True)
@@ -254,7 +259,7 @@ def _contact(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> Contact:
         weights=pairs.areas,
         stiffness_beside=_stiffness_beside(stack, pairs),
         macro=_macro_basis(cut, pairs),
-        slip_ratio=2.0 if support is not None and support.is_image else 1.0,
+        slip_ratio=slip_ratio,
         names=names,
         interfaces=interfaces,
     )
@@ -272,12 +277,13 @@ def _components(cut: CutStack, pairs: _Pairs) -> tuple[Component, Component | No
     rows = _rows_of(cut, pairs.joints)
     has_normal = rows[0].shape[1] > 1
     if not has_normal:
-        return Component(*[rows_of_side[:, 0] for rows_of_side in rows]), None
+        sides = [rows_of_side[:, 0] for rows_of_side in rows]
+        return Component(*sides), None
     along = pairs.is_upright.astype(np.intp)
     every = np.arange(len(along))
-    tangent = Component(*[rows_of_side[every, along] for rows_of_side in rows])
-    normal = Component(*[rows_of_side[every, 1 - along] for rows_of_side in rows])
-    return tangent, normal
+    tangential = [rows_of_side[every, along] for rows_of_side in rows]
+    across = [rows_of_side[every, 1 - along] for rows_of_side in rows]
+    return Component(*tangential), Component(*across)
 
 
 def _normal_law(

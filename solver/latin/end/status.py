@@ -127,6 +127,10 @@ _FOUND = (
     " A status step found it from iterate {}, whose contact force was {} % away from "
     "it."
 )
+_FROM_ANOTHER = (
+    " A status step found it without an iteration, from where another run stuck, "
+    "slipped and opened."
+)
 _BY_INCREMENTS = (
     " It is the incremental solver's answer: the status step began at the statuses of "
     "iterate {}, whose own contact force was still {} % away from it."
@@ -209,12 +213,15 @@ def certified(
     answer, certificate
         The certified solution, and its proof.
     error
-        Relative error of the contact force of the last iterate before; NaN without one.
+        Relative error of the contact force of the last iterate before; NaN where the
+        states of another run led to the solution.
     advice
         What to try next, for a search that had to end earlier.
     """
     message = f"{_CERTIFIED} (residual {certificate.residual:.0e})."
-    if not math.isnan(error):
+    if math.isnan(error):
+        message += _FROM_ANOTHER
+    else:
         message += _way_to(answer, error)
         if advice:
             message += f" {advice}"

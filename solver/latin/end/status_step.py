@@ -22,7 +22,7 @@ from solver.laws import OPEN
 from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Incremental
-from solver.reference.rules import States
+from solver.reference.rules import HELD, States
 from solver.reference.solution import Reference
 
 STILL = 1e-3
@@ -132,12 +132,26 @@ def states_of(iterate: Iterate) -> States:
     components of open ones.
     """
     problem = iterate.problem
+    sizes = problem.rubbing.sizes
+    status = contact_status(iterate, np.minimum(STILL, FRONT / sizes**2))
+    return _of_components(problem, status)
+
+
+def states_of_solution(solution: Reference) -> States:
+    """States of a solution, as those of an iterate, (n_forces, n_instants)."""
+    return _of_components(solution.problem, solution.status)
+
+
+def _of_components(problem: Problem, status: States) -> States:
+    """States of all components of contact, by the status of the points.
+
+    The status has the shape (n_points, n_instants), the states (n_forces, n_instants).
+    """
     contacts = problem.rubbing
-    status = contact_status(iterate, np.minimum(STILL, FRONT / contacts.sizes**2))
     states = np.empty((contacts.n_forces, problem.n_instants), dtype=np.int8)
     for law, _, points, forces in contacts.stacks:
         tangential = status[points]
         if law.normal is not None:
-            states[forces[0]] = np.where(tangential == OPEN, OPEN, 0)
+            states[forces[0]] = np.where(tangential == OPEN, OPEN, HELD)
         states[forces[-1]] = tangential
     return states

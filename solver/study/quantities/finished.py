@@ -15,7 +15,7 @@ from solver.arrays import Array
 from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
-from solver.latin import Decision, Iterate, Solution, record, solve
+from solver.latin import Answer, Decision, Iterate, Solution, record, solve
 from solver.latin.end.certified import certified_answer
 from solver.latin.end.cost import costs_of
 from solver.latin.end.status import certified, jump_of, limit_of
@@ -291,9 +291,13 @@ def finished_run(
         distance = distance_to(known.reference, problem)
     # From a neighbour one status step may find the solution, without any iteration.
     if before is not None:
-        near = neighbour(problem, settings, before, cancelled)
+        near = neighbour(problem, settings, before, cancelled, spent)
         if near is not None:
-            return FinishedRun(settings, near, was_warm=True)
+            answer, decision = near
+            assert decision.status is not None
+            last = record(answer, decision, distance, watch=indicators)
+            found = Solution(answer, [last], decision.status)
+            return FinishedRun(settings, found, was_warm=True)
     solution = solve(
         problem,
         method_of(settings),
@@ -364,13 +368,25 @@ def neighbour(
     settings: Settings,
     states: States,
     stop: Callable[[], bool] | None = None,
-) -> Solution | None:
-    """Solution by a status step from the states of a run of similar settings.
+    spent: float = 0.0,
+) -> tuple[Answer, Decision] | None:
+    """Answer by a status step from the states of a run of similar settings.
 
-    The solution counts only if it is certified for the discrete problem, so that it
-    does not depend on the start. None where it is not found soon, or where `stop`
-    returns True before. A run on separated bases never starts from another one, since
-    its bases are part of its result.
+    The answer counts only if it is certified for the discrete problem, and no other
+    solution shows, so that it does not depend on the start. None where it is not found
+    soon, or where `stop` returns True before. A run on separated bases never starts
+    from another one, since its bases are part of its result.
+
+    Parameters
+    ----------
+    problem, settings
+        Problem to be solved, and the settings that it was made from.
+    states
+        States as of `states_of`, shape (n_forces, n_instants).
+    stop
+        Asked again and again whether to give up.
+    spent
+        Time that the run took before, s.
     """
     began = time.perf_counter()
     # States of another mesh, or of other instants, are no start.
@@ -378,7 +394,7 @@ def neighbour(
     if settings.finish != "at-once" or settings.linear_stage == "pgd" or not fits:
         return None
     costs = costs_of(problem, states)
-    if not costs.afford(ALONE):
+    if not costs.afford(ALONE) or _may_have_others(problem):
         return None
     try:
         solver = incremental_solver(problem, stop)
@@ -388,11 +404,24 @@ def neighbour(
         return None
     if certificate is None or certificate.residual > settings.accuracy:
         return None
+    if certificate.solution.ambiguous.any():
+        return None
     # The solution has fields of a run, too, with the k of its method.
     k = method_of(settings).direction.of(problem)
     answer = certified_answer(problem, k, certificate)
     status = certified(answer, certificate)
-    residual = certificate.residual
-    seconds = time.perf_counter() - began
-    decision = Decision(seconds, residual, certificate=certificate)
-    return Solution(answer, [record(answer, decision, None, watch=False)], status)
+    seconds = spent + time.perf_counter() - began
+    return answer, Decision(seconds, certificate.residual, status, certificate)
+
+
+def _may_have_others(problem: Problem) -> bool:
+    """Check whether friction softens or bonds break: then several solutions may exist.
+
+    Which of them a run finds depends on its start.
+    """
+    for law in problem.rubbing.laws.values():
+        friction = law.tangential
+        has_bonds = law.opens and bool(friction.bound.any())
+        if friction.softens or has_bonds:
+            return True
+    return False
