@@ -32,8 +32,8 @@ LETTERS = 115
 above the pieces, about."""
 KEYS = 78
 """Number of letters below them, with the room of their marks."""
-THICK = 56.0
-"""Largest thickness of a rod, px."""
+THICK = 0.3
+"""Largest thickness of a rod over the height for all."""
 APART = 12.0
 """Largest distance between pieces that fit, px."""
 MOTION = 18.0
@@ -57,6 +57,8 @@ NEWS = 1e-9
 BALANCED = 0.01
 """Sum of the macro forces of both sides, over the largest force, that counts as
 zero."""
+CLOSED = 1e-6
+"""Gap over the largest displacement that counts as closed."""
 KEPT = 0.3, 1.5
 """Largest values over those of a scale between which it stays."""
 SIDES = "below", "above"
@@ -153,6 +155,8 @@ class PiecesView(ExtraView):
         """Write a text into the lines above the pieces."""
         width, height = self._size.values()
         letter = LETTER * float(self._type.removesuffix("px"))
+        # A factor stays beside its sign.
+        text = text.replace("× ", "×\N{NO-BREAK SPACE}")
         lines = textwrap.wrap(text, max(int(width / letter), 20))
         self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
 
@@ -265,7 +269,8 @@ class _Placed:
         if is_plane:
             scale[:] = scale.min()
         else:
-            scale[1] = min(scale[1], THICK / float(np.median((highs - lows)[:, 1])))
+            thickness = float(np.median((highs - lows)[:, 1]))
+            scale[1] = min(scale[1], THICK * room[1] / thickness)
         self._pixels = scale
         self._origin = box.mean(axis=0) - 0.5 * (low + high) * scale
         sizes = (highs - lows) * scale
@@ -388,12 +393,12 @@ def _sentence(extra: Pieces, stage: StageFields, column: int, name: str) -> str:
     count = len(missing)
     if name == LOCAL:
         return "Local stage: joints obey their laws, but pieces are not in balance"
-    text = "Linear stage: pieces are in balance"
+    text = "Linear stage: each piece is in balance"
     if missing.any():
         text += f", macro forces differ at {missing.sum()} of {count} joints"
     elif count:
-        text += f" and macro forces, too, at {count} joints"
+        text += f", and so are macro forces at {count} joints"
     gap = float(stage.gap[column])
-    if gap > 0.0:
+    if gap > CLOSED * float(np.nanmax(np.abs(stage.moved))):
         text += f", gaps up to {unit_for(gap, 'm')(gap)}"
     return text
