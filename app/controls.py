@@ -137,8 +137,8 @@ class SettingControl:
             tooltips=False,
             size="small",
             width=WIDTH,
-            height=20,
-            margin=(-10, 0, 0, 0),
+            height=13,
+            margin=(-3, 0, 0, 0),
             **looks("under-number"),
         )
         slider.param.watch(self._move, ["value", "value_throttled"])

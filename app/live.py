@@ -12,8 +12,8 @@ from app.browser import Display
 from app.state import TABS, PageState
 from app.status import figures_line, status_line
 from app.transport import Transport
-from app.views.catalogue import CARDS
-from app.views.layout import is_high
+from app.views.catalogue import CARDS, LARGE_CARDS
+from app.views.layout import shape_of
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
@@ -22,13 +22,15 @@ from app.widgets import PlainText, looks, wrapped
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026
 """Type size of plots on a projector over the window's height."""
-LOW = 56
-HIGH = 0.13
+LOW = 60
+HIGH = 0.1
 """Height of the time line: px on the page, share of the window's on a projector."""
+ROOM = 900
+"""Height of a window, px, from which all cards have room."""
 LOOK = 1000
 """Milliseconds between two looks for a picture that got lost."""
-PRESENTED = 2
-"""Number of plots beside the scene on a projector."""
+Kinds = tuple[type[View], ...]
+"""Views of one card."""
 
 
 class Live:
@@ -43,7 +45,8 @@ class Live:
         )
         self._figures = _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
-        self._all = self._cards = [Card(kinds, state) for kinds in CARDS]
+        self._known: dict[type[View], View] = {}
+        self._cards: list[Card] = []
         self.transport = Transport(state, document)
         self.display = Display(state, document, self._write)
         document.add_root(self.display.pulse)
@@ -55,10 +58,17 @@ class Live:
         )
         self._scene = column("scene")
         self._plots = column("plots")
-        self._timeline = pn.Row(
+        self._timeline = pn.Column(sizing_mode="stretch_width", height=LOW, margin=0)
+        self._times = pn.Row(
             self.transport.play_button,
+            pn.Column(
+                self._timeline,
+                self.transport.scrub,
+                sizing_mode="stretch_width",
+                margin=0,
+            ),
+            css_classes=["times"],
             sizing_mode="stretch_width",
-            height=LOW,
             margin=0,
         )
         self._is_open = False
@@ -79,7 +89,7 @@ class Live:
         for view in self._in_sight():
             view.figure  # noqa: B018  # it is made when it is first asked for
 
-    def open(self, kinds: tuple[type[View], ...] | None) -> None:
+    def open(self, kinds: Kinds | None) -> None:
         """Show the figures once the browser has all other widgets.
 
         It would lay the figures out anew for each widget that follows.
@@ -90,41 +100,56 @@ class Live:
         for box, view in zip(boxes, self._views, strict=True):
             box.append(pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both"))
         # All at once: each change goes through all models of the document.
-        self.view.extend([self._scene, self._timeline, self._plots])
+        self.view.extend([self._scene, self._times, self._plots])
 
     # What changes within a hold is sent at once, and in this order.
     @pn.io.hold()
-    def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
+    def arrange(self, kinds: Kinds | None) -> None:
         """Show the cards, or the plots of a lesson.
 
         While its question is open, texts that give the answer away are hidden.
         """
         state = self.state
-        self._cards = self._all
-        if kinds is not None:
-            self._cards = [Card((kind,), state) for kind in kinds]
-        elif state.view != "page":
-            self._cards = self._all[:PRESENTED]
-        self._above.visible = not state.is_asked
-        self._figures.visible = not state.is_asked
-        # Without plots the scene has all the height.
-        if self._cards:
-            self._plots.css_classes = ["plots"]
-        else:
-            self._plots.css_classes = []
-        # The tabs of the cards first: of tabs that change while they are being shown
-        # some are lost.
+        is_presented = state.view == "present"
+        self._choose_cards(kinds)
+        self._above.visible = is_presented or not state.is_asked
+        for part in (self._status, self._figures, self.transport.scrub):
+            part.visible = not state.is_asked
+        self.transport.present(is_presented)
         self._fit()
-        if self._is_open:
-            self._plots[:] = [card.view for card in self._cards]
-        self.transport.view.visible = state.view == "page"
         size = TEXT
         self._timeline.height = LOW
-        if state.view == "present":
+        if is_presented:
             size = f"{LARGE * state.height:.0f}px"
             self._timeline.height = int(HIGH * state.height)
         self._magnify(size)
         self._reshape()
+
+    def _choose_cards(self, kinds: Kinds | None) -> None:
+        """Have as many cards as the window has room for, of all views or a lesson's."""
+        has_room = self.state.view == "page" and self.state.height >= ROOM
+        groups: tuple[Kinds, ...] = LARGE_CARDS
+        if kinds is None:
+            if has_room:
+                groups = CARDS
+        elif has_room:
+            groups = tuple([(kind,) for kind in kinds])
+        else:
+            groups = tuple([group for group in (kinds[:1], kinds[1:]) if group])
+        if groups == tuple([card.kinds for card in self._cards]):
+            return
+        # A figure stands in one place only.
+        for card in self._cards:
+            card.clear()
+        self._cards = [
+            Card([self._view(kind) for kind in group], self.state) for group in groups
+        ]
+
+    def _view(self, kind: type[View]) -> View:
+        """The view of a kind: one, whatever card it is in."""
+        if kind not in self._known:
+            self._known[kind] = kind(self.state)
+        return self._known[kind]
 
     def _magnify(self, size: str) -> None:
         """Set the type size of all views, as CSS has it."""
@@ -136,17 +161,17 @@ class Live:
 
     @property
     def _shape(self) -> list[str]:
-        """CSS classes: plots stand beside a high picture, unless a text does."""
+        """CSS classes: plots stand beside a high picture, and below a broad one."""
         state = self.state
         classes = ["live", state.view]
-        has_text = bool(state.lesson or state.case)
-        if not has_text and state.frame is not None:
-            if is_high(state.frame.run.geometry):
-                classes.append("high")
+        shape = []
+        if self._cards and state.frame is not None:
+            shape = [shape_of(state.frame.run.geometry)]
         case = state.trade_case
         if case is not None and case.surroundings is not None:
             if case.surroundings.is_upright:
-                classes += ["high", "upright"]
+                shape = ["high", "upright"]
+        classes += shape
         if state.is_stale:
             classes.append("stale")
         return classes
@@ -171,11 +196,23 @@ class Live:
         return self._views + seen
 
     def _fit(self) -> None:
-        if self._is_open:
-            with pn.io.hold():
-                for card in self._cards:
-                    card.fit()
-            self.look()
+        if not self._is_open:
+            return
+        with pn.io.hold():
+            # The tabs of the cards first: of tabs that change while they are being
+            # shown some are lost.
+            for card in self._cards:
+                card.fit()
+            # A card without a view would leave its place empty.
+            shown = [card.view for card in self._cards if card.seen is not None]
+            if list(self._plots) != shown:
+                self._plots[:] = shown
+            # Without plots the scene has all the height.
+            roles = []
+            if shown:
+                roles = ["plots"]
+            self._plots.css_classes = roles
+        self.look()
 
     def _write(self) -> None:
         """Set the status, the key figures and the sentence to those of the frame."""
@@ -196,12 +233,12 @@ class Live:
 class Card:
     """Views that share a place as tabs; `seen` is the one in sight."""
 
-    def __init__(self, kinds: tuple[type[View], ...], state: PageState) -> None:
+    def __init__(self, views: list[View], state: PageState) -> None:
         self._state = state
-        self.views = [kind(state) for kind in kinds]
+        self.views = views
+        self.kinds: Kinds = tuple([type(view) for view in views])
         self.seen: View | None = None
         self._offered: list[View] = []
-        self._panes: dict[View, pn.pane.Bokeh] = {}
         look = {"margin": 0, "sizing_mode": "stretch_width", **looks("small-tabs")}
         self.tabs = pmui.TabMenu(items=[], **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
@@ -213,14 +250,16 @@ class Card:
         """Offer the views that apply to the settings; show the one in the state."""
         state = self._state
         offered = [view for view in self.views if view.applies(state.settings)]
-        named = [view for view in offered if view.name in state.plots]
-        seen = next(iter(named or offered), None)
+        names = [view.name for view in offered]
+        named = [names.index(name) for name in state.plots if name in names]
+        seen = None
+        if offered:
+            seen = offered[next(iter(named), 0)]
         if offered == self._offered and seen == self.seen:
             return
         is_turned = seen is not self.seen
         self._offered = offered
         self.seen = seen
-        self.view.visible = bool(offered)
         active = 0
         if seen is not None:
             active = offered.index(seen)
@@ -232,6 +271,10 @@ class Card:
                 self.view[:] = [self.tabs, self._pane(seen)]
             else:
                 self.view[:] = [self.tabs]
+
+    def clear(self) -> None:
+        """Let go of the figures, for other cards."""
+        self.view.clear()
 
     def _choose(self, number: int) -> None:
         """Name the view of a tab in the state; the first tab needs no name."""
@@ -247,13 +290,10 @@ class Card:
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; the figure is made when first seen."""
         state = self._state
-        if view not in self._panes:
-            self._panes[view] = pn.pane.Bokeh(
-                view.layout, sizing_mode="stretch_both", margin=0
-            )
+        figure = view.layout
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
-        return self._panes[view]
+        return pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=0)
 
 
 def column(role: str, *parts: Any) -> pn.Column:

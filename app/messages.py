@@ -43,6 +43,13 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Show:
+    """Send the frame of an earlier iteration of the run, if its iterate is kept."""
+
+    iteration: int
+
+
+@dataclass(frozen=True)
 class Needs:
     """Extras and quantities that frames shall carry, and the selection."""
 
@@ -59,7 +66,7 @@ class Ready:
     """Order to send the newest frame, as the last picture is on the screen."""
 
 
-Order = Start | Pace | Step | Needs | Ready
+Order = Start | Pace | Step | Show | Needs | Ready
 
 
 @dataclass(frozen=True)
@@ -72,6 +79,13 @@ class Began:
 @dataclass(frozen=True)
 class NewFrame:
     """Report of the newest iterate of the run."""
+
+    frame: Frame
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """Report of an earlier iterate of the run, which was asked for."""
 
     frame: Frame
 
@@ -97,4 +111,4 @@ class Alive:
     """A sign of life."""
 
 
-Report = Began | NewFrame | Costly | Failed | Alive
+Report = Began | NewFrame | Earlier | Costly | Failed | Alive

@@ -18,7 +18,7 @@ from app.experiments.whatif import WhatIf
 from app.files.export import LOOK, offers
 from app.lessons.guide import Guide
 from app.link import Link, read, show
-from app.live import STYLE, Live, column
+from app.live import LARGE, STYLE, Live, column
 from app.server import PAGES
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
@@ -31,7 +31,32 @@ COMPACT = {
         "& header .title": {"display": "none"},
         "& header": {"overflowX": "auto"},
     },
+    # In a narrow window the controls are a sheet below the picture, which stays in
+    # sight while they are moved.
+    "@media (max-width: 899px)": {
+        "& nav": {"width": "0 !important"},
+        "& .main": {"marginLeft": "0 !important"},
+        "& .sidebar": {
+            "position": "fixed !important",
+            "inset": "auto 0 0 0 !important",
+            "width": "100% !important",
+            "height": "45vh !important",
+            "borderTop": "1px solid var(--mui-palette-divider)",
+            "boxShadow": "0 -2px 14px rgba(0, 0, 0, 0.25)",
+        },
+        "& .sidebar > .MuiToolbar-root": {"display": "none"},
+    },
 }
+LOADING = """
+#loader { background: none !important; }
+#loader:not(.error)::after {
+  content: "Slipfront is loading …";
+  font: 18px Roboto, sans-serif;
+}
+"""
+"""Style of what is seen until the page is there."""
+READ = 15.0
+"""Type size of the text beside the plots, px."""
 WORDS = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
 HEADINGS = {
     "components": {
@@ -95,6 +120,8 @@ class Page:
             header=[self._header()],
             main=[self._main],
             sidebar_open=not state.is_narrow,
+            sidebar_variant="persistent",
+            raw_css=[LOADING],
             busy_indicator=None,
             # As `theme` in the address has it.
             dark_theme=pn.config.theme == "dark",
@@ -168,8 +195,20 @@ class Page:
         self.state.view = "present" if self.state.view == "page" else "page"
 
     def _on_height(self) -> None:
+        self._read()
+        self._live.arrange(self._guide.kinds)
+
+    def _read(self) -> None:
+        """Have the text beside the plots as large as they are."""
+        styles = {}
         if self.state.view == "present":
-            self._dress()
+            zoom = f"{LARGE * self.state.height / READ:.2f}"
+            styles = {
+                "zoom": zoom,
+                "--zoom": zoom,
+                "--above": "4px",
+            }
+        self._guide.view.styles = styles
 
     def _put(self, event: Any) -> None:
         """Put a dialog on the page when it is first opened."""
@@ -230,6 +269,7 @@ class Page:
         alone.
         """
         self._place()
+        self._read()
         self._live.arrange(self._guide.kinds)
         self.template.sx = COMPACT if self.state.view == "page" else BARE
         self._show_controls()

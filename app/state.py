@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import count
@@ -14,7 +14,7 @@ import param
 
 from app import messages
 from app.frame import LINEAR, LOCAL, Frame, Selection
-from app.messages import Needs, Order, Pace, Ready, Report, Start, Step
+from app.messages import Needs, Order, Pace, Ready, Report, Show, Start, Step
 from app.refusals import message_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
@@ -60,7 +60,10 @@ class Poll:
 
 
 class History:
-    """Frames of a run that were shown, by iteration, thinned under a memory limit."""
+    """Frames of a run that were shown, by iteration, thinned under a memory limit.
+
+    The frame of an iteration that is missing comes from the worker (`Show`).
+    """
 
     def __init__(self) -> None:
         self._frames: list[Frame] = []
@@ -73,13 +76,13 @@ class History:
         return None
 
     def add(self, frame: Frame) -> None:
-        """Keep a frame, in place of an earlier frame of the same iterate."""
-        last = self.newest
-        if last is not None:
-            is_same_number = last.iteration == frame.iteration
-            if is_same_number and last.is_answer == frame.is_answer:
-                self._frames.pop()
-        self._frames.append(frame)
+        """Keep a frame in its order, in place of one of the same iterate."""
+        order = [_order(kept) for kept in self._frames]
+        index = bisect_left(order, _order(frame))
+        if index < len(order) and order[index] == _order(frame):
+            self._frames[index] = frame
+        else:
+            self._frames.insert(index, frame)
         while len(self._frames) > 2 and self._nbytes() > LIMIT:
             # Every other frame goes, but neither the first nor the last one, which is
             # seen.
@@ -89,20 +92,17 @@ class History:
         """The last kept frame of the search up to an iteration, or the first frame."""
         return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
 
-    def after(self, iteration: int) -> int:
-        """Number of the next kept iterate of the search, or of the answer."""
-        numbers = self._search()
-        index = bisect_right(numbers, iteration)
-        if index < len(numbers):
-            return numbers[index]
-        return self._frames[-1].iteration + 1
-
     def _search(self) -> list[int]:
         """Numbers of the kept iterates but for the answer, ascending."""
         return [kept.iteration for kept in self._frames if not kept.is_answer]
 
     def _nbytes(self) -> int:
         return sum(kept.nbytes for kept in self._frames)
+
+
+def _order(frame: Frame) -> tuple[int, bool]:
+    """Place of a frame in its run: the answer follows the last iterate."""
+    return frame.iteration, frame.is_answer
 
 
 def default_settings(scene: str) -> Settings:
@@ -316,7 +316,7 @@ class PageState(param.Parameterized):
             self.show_stage(LINEAR)
         elif shown is not None and newest is not None and shown is not newest:
             with param.parameterized.batch_call_watchers(self):
-                self.seek(self.history.after(shown.iteration))
+                self.seek((self.iteration or shown.iteration) + 1)
                 if not self.frame.is_answer:
                     self.show_stage(LOCAL)
         else:
@@ -357,7 +357,11 @@ class PageState(param.Parameterized):
         self._start(self.settings, 0.0, steps=iteration)
 
     def seek(self, iteration: int | None) -> None:
-        """Show an earlier iterate of the run; None, and beyond the last, the newest."""
+        """Show an earlier iterate of the run; None, and beyond the last, the newest.
+
+        Of an iterate that was not shown before, its frame is asked for; until it comes,
+        the last one before it is shown.
+        """
         newest = self.newest
         if newest is None:
             return
@@ -366,11 +370,13 @@ class PageState(param.Parameterized):
         # The answer has the number of the last iterate before it.
         last = newest.iteration + newest.is_answer
         if iteration is not None and iteration < last:
-            frame = self.history.at(iteration)
-            shown = frame.iteration
+            shown = max(iteration, 1)
+            frame = self.history.at(shown)
         with param.parameterized.batch_call_watchers(self):
             self.show_stage(LINEAR)
             self.param.update(iteration=shown, frame=frame, ghost=self._ghost_at(frame))
+        if shown is not None and frame.iteration != shown:
+            self.send(Show(shown))
 
     def _start(
         self, settings: Settings, pace: float | None = None, **options: Any
@@ -420,6 +426,8 @@ class PageState(param.Parameterized):
                 self.began = number
             case messages.NewFrame(frame):
                 self._show(frame)
+            case messages.Earlier(frame) if frame.run.number == self.number:
+                self._show_earlier(frame)
             case messages.Costly(number, text) if number == self.number:
                 self.is_costly = True
                 self.message = (
@@ -453,6 +461,12 @@ class PageState(param.Parameterized):
                 self.frame = frame
             else:
                 self.send(Ready())
+
+    def _show_earlier(self, frame: Frame) -> None:
+        """Keep an earlier frame, and show it if it is the one that is looked for."""
+        self.history.add(frame)
+        if self.iteration == frame.iteration:
+            self.param.update(frame=frame, ghost=self._ghost_at(frame))
 
     def send_needs(self, *, is_news: bool = True) -> None:
         """Order the extras and quantities in sight, if they differ from the last order.

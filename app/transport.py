@@ -14,6 +14,7 @@ from app.frame import Selection
 from app.server import PAGES
 from app.state import ANSWER, PACES, SEARCH, PageState, known
 from app.widgets import button, looks, wrapped
+from solver.scenes import CATALOGUE
 
 PLAYED_IN = 6.0
 """Time to play through the interval, s."""
@@ -46,7 +47,8 @@ WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 class Transport:
     """The buttons and sliders that move through a run.
 
-    `view` stands in the row above the scene, `play_button` beside the time line.
+    `view` stands in the row above the scene, `play_button` beside the time line, and
+    `scrub` below it.
     """
 
     def __init__(self, state: PageState, document: Any) -> None:
@@ -65,13 +67,16 @@ class Transport:
             _button("arrow_upward", "Contact before (I)", lambda: state.turn(-1)),
             _button("arrow_downward", "Next contact (i)", lambda: state.turn(1)),
         ]
+        self._choices = self._make_choices()
+        self.scrub = self._make_scrub()
+        self._presented: list[Any] = []
         self.view = wrapped(
             self._run,
             _button("skip_previous", "From the start (r)", state.reset),
             _button("skip_next", "One stage of an iteration (s)", state.step),
             self._pin,
             *self._turns,
-            *self._choices(),
+            *self._choices,
         )
         shown = [
             "settings",
@@ -87,8 +92,36 @@ class Transport:
         document.add_periodic_callback(self._follow, FOLLOWS)
         self._show()
 
-    def _choices(self) -> list[Any]:
-        """Widgets to choose search or answer, the pace, and the iteration."""
+    def present(self, is_presented: bool) -> None:
+        """Have the few buttons of the view for a projector, or all of the page's."""
+        if is_presented and not self._presented:
+            self._presented = self._make_presented()
+            self.view.extend(self._presented)
+        for part in (self._pin, *self._choices):
+            part.visible = not is_presented
+        for part in self._presented:
+            part.visible = is_presented
+
+    def _make_presented(self) -> list[Any]:
+        """Widgets of the view for a projector: the scene, and the way out."""
+        state = self._state
+        self._scene = pmui.Select(
+            label="Scene",
+            options={name.capitalize(): name for name in CATALOGUE},
+            value=state.settings.scene,
+            size="small",
+            width=136,
+            margin=(6, 4),
+        )
+        self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
+
+        def leave() -> None:
+            state.view = "page"
+
+        return [self._scene, _button("close", "Back to the page (p)", leave)]
+
+    def _make_choices(self) -> list[Any]:
+        """Widgets to choose search or answer, and the pace."""
         self._finish = pmui.RadioButtonGroup(
             options=WATCH,
             value="accuracy",
@@ -105,20 +138,26 @@ class Transport:
             width=136,
             margin=(6, 4),
         )
-        # Counted from the newest iterate: so its value rests while a run goes on.
-        self._iteration = pmui.IntSlider(
-            label="Iterations back",
+        return [self._finish, pace]
+
+    def _make_scrub(self) -> pmui.IntSlider:
+        """The slider that goes back through the iterations.
+
+        It counts from the newest iterate: so its value rests while a run goes on.
+        """
+        slider = pmui.IntSlider(
+            label="Iteration",
             start=-1,
             end=0,
             value=0,
             show_value=False,
             size="small",
-            width=110,
-            margin=(0, 8),
-            **looks("small-label"),
+            sizing_mode="stretch_width",
+            margin=0,
+            **looks("scrub"),
         )
-        self._iteration.param.watch(lambda event: self._seek(event.new), "value")
-        return [self._finish, pace, self._iteration]
+        slider.param.watch(lambda event: self._seek(event.new), "value")
+        return slider
 
     def keys(self) -> dict[str, Any]:
         """Actions of the keys, by their names in the browser."""
@@ -227,15 +266,12 @@ class Transport:
             self._state.select(phase=float(times[column] / times[-1]))
 
     def _move_iteration(self, step: int) -> None:
-        """Show the kept iterate before the present one (step -1), or after it (1)."""
+        """Show the iterate before the present one (step -1), or after it (1)."""
         state = self._state
-        if state.frame is None:
-            return
-        shown = state.frame.iteration
-        if step > 0:
-            state.seek(state.history.after(shown))
-        else:
-            state.seek(shown - 1)
+        shown = state.iteration
+        if shown is None:
+            shown = self._last
+        state.seek(shown + step)
 
     def _seek(self, back: int) -> None:
         """Show the iterate to which a person moved the slider, from the newest back."""
@@ -247,6 +283,8 @@ class Transport:
         if back < 0:
             iteration = self._last + back
         self._state.seek(iteration)
+        if self._state.frame is not None:
+            self.scrub.label = self._name()
 
     def _choose_finish(self, finish: str) -> None:
         if finish == self._state.settings.finish:
@@ -278,14 +316,29 @@ class Transport:
         self._pin.color = "default" if state.pinned is None else "primary"
         if state.settings.finish in WATCH.values():
             self._finish.value = state.settings.finish
+        if self._presented:
+            self._scene.value = state.settings.scene
+
+    def _name(self) -> str:
+        """Name of the iterate that is shown, among all."""
+        frame = self._state.frame
+        if frame.is_answer:
+            return f"Answer after {frame.iteration} iterations"
+        return f"Iteration {frame.iteration} of {self._state.newest.iteration}"
 
     def _follow(self) -> None:
-        """Set the slider to the shown iterate, unless it was just moved by hand."""
+        """Name the shown iterate at the slider, and set it to that iterate.
+
+        After a move by hand its value rests.
+        """
         frame = self._state.frame
-        slider = self._iteration
+        slider = self.scrub
         if self._state.is_over and not self._is_touched:
             self._enliven()
-        if frame is None or time.monotonic() < self._moved_at + HELD:
+        if frame is None:
+            return
+        slider.label = self._name()
+        if time.monotonic() < self._moved_at + HELD:
             return
         is_newest = frame is self._state.newest
         back = 0

@@ -8,7 +8,7 @@ from bokeh.models import ColumnDataSource, FreehandDrawTool
 from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
-from app.views.view import legend
+from app.views.view import FONT, legend
 from solver.settings.definitions import title_of
 from solver.study.lessons import Lesson
 
@@ -50,6 +50,7 @@ class DrawnCurve:
             "text",
             source=self.measured,
             y_offset=20,
+            text_font=FONT,
             text_font_size="12px",
             text_align="center",
             text_color=LATIN,

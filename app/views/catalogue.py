@@ -20,3 +20,6 @@ CARDS: tuple[tuple[type[View], ...], ...] = (
     (Spectra, SpaceModes, TimeFunctions, ClipErrors),
 )
 """The views of each card; the first that applies is shown first."""
+MOTION, SLIP, METHOD, BASES = CARDS
+LARGE_CARDS = (MOTION + SLIP, METHOD + BASES)
+"""The same views in two large cards: the motion, and the method."""

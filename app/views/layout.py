@@ -15,7 +15,8 @@ from solver.discrete.structure import Act, Description
 from solver.study.trade_case import Surroundings
 
 THICK = 52.0
-"""Largest thickness of a rod, px."""
+SHARE = 0.15
+"""Largest thickness of a rod: px in a low figure, share of the height in a high one."""
 BAND = 7.0
 """Thickness of the band of an interface, px."""
 FOOT = 18.0
@@ -26,7 +27,8 @@ LETTER = 0.56
 LONG = 5.0
 """Least length over height of long bodies."""
 HIGH = 3.0
-"""Largest width over height of high bodies."""
+BROAD = 8.0
+"""Largest width over height of high bodies, and of broad ones."""
 WALL = 54.0
 """Distance from a body to the wall of its spring, px."""
 DEEPEST = 18.0
@@ -104,7 +106,8 @@ class Layout:
         if description.height is None:
             # Rods have no height: they are drawn as thick as there is room, up to a
             # limit.
-            scale[1] = min(scale[1], THICK * description.bodies / top)
+            thickness = max(THICK, SHARE * self.height)
+            scale[1] = min(scale[1], thickness * description.bodies / top)
         else:
             scale[:] = scale.min()
         # Half of what the bodies leave is on either side of them.
@@ -157,13 +160,21 @@ class Layout:
         return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
 
 
-def is_high(geometry: Geometry) -> bool:
-    """Check whether a picture of bodies has more room beside plots than above."""
+def shape_of(geometry: Geometry) -> str:
+    """Shape of a picture, which says where plots stand: high, broad or long.
+
+    A high picture has more room beside plots than above them; a broad one needs as much
+    height as they do, a long one less.
+    """
     description = geometry.description
     top = float(geometry.nodes[:, 1].max())
     low, high = _extent(description.length, top, description.tilt)
     width, height = high - low
-    return description.height is not None and bool(width <= HIGH * height)
+    if description.height is None or width > BROAD * height:
+        return "long"
+    if width > HIGH * height:
+        return "broad"
+    return "high"
 
 
 def turned(points: Array, angle: float) -> Array:

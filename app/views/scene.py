@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import panel as pn
-from bokeh.core.properties import value
 from bokeh.events import Pan, PanEnd, PanStart, Tap
 from bokeh.models import LinearColorMapper
 from bokeh.palettes import Cividis256, RdBu11
@@ -108,7 +107,6 @@ class Scene(View):
             "Text",
             "x y text text_align text_color",
             text_font_style="bold",
-            text_font=value("Roboto, sans-serif"),
             text_baseline="middle",
         )
         self.mark(KEYS | {"note": UNSEEN})

@@ -45,6 +45,8 @@ SHORT = 200
 TEXT = "12px"
 WORDS = "14px"
 """Type sizes of plots, and of words at arrows, as CSS has them."""
+FONT = value("Roboto, sans-serif")
+"""The page's font, for texts that are drawn in plots."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Script that keeps sizes that are not the theme's: the browser sets those of the theme
 as it draws a figure."""
@@ -57,6 +59,17 @@ CLOSE = """
 """
 """Style sheet by which a legend of seven entries stands in one line; the theme keeps
 entries farther apart."""
+WRAPPED = """
+:host { max-width: calc(100% + 60px); }
+.bk-grid {
+  display: flex !important;
+  flex-wrap: wrap;
+  width: auto !important;
+  gap: 0 5px !important;
+}
+"""
+"""Style sheet by which a legend above a plot takes a second line where the first has no
+room."""
 
 
 HIDE = """
@@ -273,6 +286,8 @@ class View:
             empty = {column: [] for column in (*fields, *also.split())}
             self.sources[source_name] = self._source(empty)
         look = {column: column for column in fields} | look
+        if glyph == "Text":
+            look["text_font"] = FONT
         drawn = kind(**visuals(kind, look))
         return self._render(self.sources[source_name], drawn, name)
 
@@ -501,8 +516,10 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
 def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
     """A legend in one line: above the plot, where it covers no curve, or inside."""
     styles = {"font-size": TEXT}
+    sheets = [CLOSE]
     if place == "above":
         styles |= ABOVE
+        sheets.append(WRAPPED)
     box = Legend(
         items=items,
         orientation="horizontal",
@@ -514,7 +531,7 @@ def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
         glyph_width=12,
         background_fill_alpha=0.0,
         styles=styles,
-        stylesheets=[CLOSE],
+        stylesheets=sheets,
     )
     plot.add_layout(box, place)
     return box

@@ -62,6 +62,7 @@ class WorkerLoop:
         self._runner: Runner | None = None
         self._number = 0
         self._needs = Needs()
+        self._asked: int | None = None
         self._is_ready = True
         self._shown_at = time.monotonic()
         threading.Thread(target=self._beat, daemon=True).start()
@@ -81,6 +82,11 @@ class WorkerLoop:
 
     def _work(self, runner: Runner) -> None:
         """Do the next piece of work if it is due, and send a frame if it is wanted."""
+        if self._asked is not None:
+            earlier = runner.earlier(self._asked, self._needs)
+            self._asked = None
+            if earlier is not None:
+                self._send(messages.Earlier(earlier))
         if runner.rest(self._is_ready) == 0.0:
             runner.advance()
             if runner.answer is not None:
@@ -121,6 +127,8 @@ class WorkerLoop:
                 runner.has_news = runner.iterate is not None
             case messages.Step() if runner is not None:
                 runner.pacing.step()
+            case messages.Show(iteration):
+                self._asked = iteration
 
     def _begin(self, start: Start) -> None:
         """Take up a run; ask first if it takes long or much memory."""
@@ -128,6 +136,7 @@ class WorkerLoop:
         self._send(messages.Began(start.number))
         self._number = start.number
         self._runner = None
+        self._asked = None
         before = None
         if self._last is not None:
             before = self._last.start_of(start, self._needs)

@@ -11,7 +11,16 @@ from app.frame import Frame
 from app.messages import WHOLE, Needs, Start
 from app.worker.references import LastAnswer, ReferenceCache, has_reference
 from app.worker.sampling import Sampler
-from solver.latin import Decision, Ending, Iterate, Record, Status, judged, record
+from solver.latin import (
+    Answer,
+    Decision,
+    Ending,
+    Iterate,
+    Record,
+    Status,
+    judged,
+    record,
+)
 from solver.latin.end.cost import RunCost, run_cost
 from solver.latin.end.status import collapses
 from solver.latin.end.status_step import Certificate
@@ -30,6 +39,9 @@ FIRST = 0.25
 """Time of a search at the pace `WHOLE`, and time before its second iterate, s.
 Intervals shrink by one ratio: the first iterates are seen one by one, and a hundred
 iterations last as long as thirty."""
+KEPT = 48_000_000
+"""Largest memory of the iterates of a run that are kept to be shown again, bytes;
+beyond, every other one is dropped."""
 LATE = 0.1
 """Longest delay, s, that iterations make up for. Pictures are painted between them."""
 
@@ -124,6 +136,7 @@ class Runner:
         self.answer: LastAnswer | None = None
         self._certificate: Certificate | None = None
         self.has_news = False
+        self._kept: dict[int, Iterate] = {}
         self.pacing = Pacing(start.pace, start.steps)
         self._before = before
         self._iterates: Iterator[tuple[Iterate, Decision]] | None = None
@@ -173,6 +186,23 @@ class Runner:
         self.has_news = False
         return self.sampler.frame(self.iterate, self.history, self.status, needs)
 
+    def earlier(self, iteration: int, needs: Needs) -> Frame | None:
+        """Frame of an earlier iteration as it was; None where it is not kept."""
+        iterate = self._kept.get(iteration)
+        if iterate is None:
+            return None
+        history = self.history[:iteration]
+        return self.sampler.frame(iterate, history, None, needs)
+
+    def _keep(self, iterate: Iterate) -> None:
+        """Keep an iterate of the search, to be shown again."""
+        self._kept[iterate.number] = iterate
+        # An iterate has four fields of this size.
+        most = max(KEPT // (4 * iterate.outgoing.nbytes), 2)
+        if len(self._kept) > most:
+            for number in list(self._kept)[1::2]:
+                del self._kept[number]
+
     def _start_near(self, before: States) -> None:
         """Seek the answer from the states of another run, once."""
         self._before = None
@@ -205,6 +235,8 @@ class Runner:
             # The iterate before stays, whose numbers can be drawn.
             return
         self.iterate = iterate
+        if not isinstance(iterate, Answer):
+            self._keep(iterate)
         self.sampler.keep(iterate)
         self.history.append(record(iterate, decision, self._distance))
         if self.status is not None and decision.certificate is not None:

@@ -1,4 +1,4 @@
-"""Back and forth go among the iterates that were shown, though not each was."""
+"""Back and forth go through all iterates, though not each was shown."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import app.browser
 from app.browser import Display
 from app.frame import Frame
-from app.messages import Needs, NewFrame, Ready, Start, Step
+from app.messages import Earlier, Needs, NewFrame, Ready, Show, Start, Step
 from app.state import History, PageState, default_settings
 from app.status import status_line
 from app.worker.references import ReferenceCache
@@ -33,33 +34,53 @@ def answer() -> Frame:
     return runner.frame(Needs())
 
 
-def test_one_steps_by_stages_of_kept_iterates_and_at_last_to_the_answer(
-    answer: Frame,
-) -> None:
-    last = answer.iteration
-    kept = [
-        replace(answer, iteration=number, is_answer=False, status=None)
-        for number in (1, 4, last - 2)
-    ]
-    state = PageState(answer.run.settings)
-    state.history = History()
-    for frame in (*kept, answer):
-        state.history.add(frame)
-    state.newest = answer
+def test_iterates_that_were_not_shown_come_from_the_worker() -> None:
+    settings = default_settings("bar").replace(elements=10, instants=11)
+    runner = Runner(Start(0, settings, math.inf), ReferenceCache(), lambda: False)
+    state = PageState(settings)
+    frames = {}
+    while runner.rest() is not None:
+        runner.advance()
+        frames[len(runner.history)] = runner.frame(Needs())
+    asked = []
+
+    def answer(order: object) -> None:
+        if isinstance(order, Show):
+            asked.append(order.iteration)
+            state.take(Earlier(runner.earlier(order.iteration, Needs())))
+
+    state.send = answer
+    newest = runner.frame(Needs())
+    for frame in (frames[1], frames[4], newest):
+        state.take(NewFrame(frame))
     seen = []
     state.seek(1)
-    while state.frame is not answer:
-        seen.append((state.frame.iteration, state.selection.stage))
+    while state.frame is not newest:
+        number = state.frame.iteration
+        seen.append(number)
+        assert np.array_equal(state.frame.loop, frames[number].loop)
+        assert len(state.frame.history["indicator"]) == number
+        # The local stage of the next iterate, and its linear one.
         state.step()
-    assert seen == [
-        (1, "linear"),
-        (4, "local"),
-        (4, "linear"),
-        (last - 2, "local"),
-        (last - 2, "linear"),
-    ]
+        state.step()
+    assert seen == list(range(1, newest.iteration + newest.is_answer))
+    assert asked == [number for number in seen if number not in (1, 4)]
     state.seek(3)
-    assert state.frame is kept[0]
+    state.seek(5)
+    assert len(asked) == len(seen) - 2
+
+
+def test_an_iterate_that_is_gone_holds_nobody_up(answer: Frame) -> None:
+    state = PageState(answer.run.settings)
+    first = replace(answer, iteration=1, is_answer=False, status=None)
+    state.history = History()
+    for frame in (first, answer):
+        state.history.add(frame)
+    state.newest = answer
+    state.seek(1)
+    for _ in range(2 * answer.iteration):
+        state.step()
+    assert state.frame is answer
 
 
 def test_a_step_is_a_stage_and_the_worker_does_both_at_once(answer: Frame) -> None:

@@ -386,7 +386,7 @@ def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -
 
 def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> None:
     state = PageState(default_settings("strand"))
-    card = Card(CARDS[0], state)
+    card = Card([kind(state) for kind in CARDS[0]], state)
     card.fit()
     assert isinstance(card.seen, ContactForce)
     card.tabs.active = 1
@@ -410,7 +410,7 @@ def test_a_view_that_comes_in_sight_later_has_the_type_of_a_projector() -> None:
 def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     frame = frames_of("bar")[1]
     state = PageState(frame.run.settings, frame=frame, newest=frame)
-    card = Card((ContactForce, HysteresisLoop), state)
+    card = Card([ContactForce(state), HysteresisLoop(state)], state)
     card.fit()
     card.tabs.active = 1
     card.fit()

@@ -56,18 +56,21 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     expect(status(page)).to_contain_text(re.compile(r"search: \d+ iterations"))
 
     last = iteration(page)
-    scrub = slider(page, "Iterations back")
-    drag(page, scrub, 0.5, -4.0)
+    scrub = slider(page, f"Answer after {last} iterations")
+    drag(page, page.locator(".times"), 0.9, 0.5, height=0.97)
     expect(status(page)).to_contain_text(re.compile(rf"iteration \d+ of {last}"))
     page.mouse.up()
+    scrub = slider(page, "Iteration")
     # Pictures follow a hand with some delay; counted back from the answer, which comes
-    # after the last iterate; not each was shown.
-    wait_for(lambda: iteration(page) <= last + 1 + int(scrub.input_value()))
+    # after the last iterate.
+    wait_for(lambda: iteration(page) == last + 1 + int(scrub.input_value()))
+    # Not each was painted, but each can be seen.
     back = iteration(page)
     page.locator(".sentence").click()
-    page.keyboard.press("Shift+ArrowRight")
-    expect(status(page)).not_to_contain_text(f"iteration {back} of")
-    assert back < iteration(page) <= last
+    for number in range(back - 1, back - 6, -1):
+        page.keyboard.press("Shift+ArrowLeft")
+        expect(status(page)).to_contain_text(f"iteration {number} of")
+    expect(slider(page, f"Iteration {number} of {last}")).to_be_visible()
     scrub.press("End")
     expect(status(page)).to_contain_text("certified")
 
@@ -85,6 +88,12 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     is_solved(page)
     expect(status(page)).to_contain_text("search:")
     expect(page).to_have_url(re.compile("peak="))
+
+
+def heights_of_plots(page: Page) -> list[float]:
+    """Heights of the figures in the cards, px."""
+    boxes = [figure(page, number).bounding_box() for number in (2, 3)]
+    return [box["height"] for box in boxes if box is not None]
 
 
 def has_plots_beside(page: Page) -> bool:
@@ -105,6 +114,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
         is_solved(page)
         told.append(sentence.inner_text())
         wait_for(lambda scene=scene: has_plots_beside(page) == (scene in HIGH))
+        assert min(heights_of_plots(page)) >= 200.0
         page.wait_for_function(WHOLE)
         page.wait_for_function(PIECES)
     assert len(set(told)) == 1 + len(CATALOGUE)
