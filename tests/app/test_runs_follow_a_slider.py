@@ -160,7 +160,9 @@ def test_what_is_there_to_be_seen_from_its_start_starts_from_nothing(
 def test_a_run_that_follows_a_slider_is_compared_with_its_own_solution(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    found = dragged(of("block"))
+    begin = of("block")
+    moved = begin.with_change("friction", 1.02 * begin.values()["friction"])
+    found = dragged(moved, states_after(dragged(begin), moved))
     fresh = reference_of(found.sampler.problem)
 
     def refuse(*arguments: Any) -> None:
