@@ -214,6 +214,15 @@ class Browser(DataModel):
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
 
 
+def fade_first(state: PageState, act: Callable[[], None]) -> None:
+    """Fade what is shown, and do in the next step what takes a while and replaces it.
+
+    Within one step the browser would hear of the fading at its end.
+    """
+    state.is_stale = state.frame is not None
+    pn.state.execute(act, schedule=True)
+
+
 class Echoes:
     """Values that the page gave a widget lately, to tell them from those of a person.
 

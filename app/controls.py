@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 import param
 
-from app.browser import Echoes
+from app.browser import Echoes, fade_first
 from app.files.opener import files_panel
 from app.files.points import CurveDialog
 from app.state import PageState
@@ -287,7 +288,7 @@ class Controls:
             sx=pictures,
             **looks("pictures"),
         )
-        self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
+        self._scene.param.watch(lambda event: self._choose_scene(event.new), "value")
         self._chief = pn.Column(margin=0)
         self._groups = pmui.Accordion(
             margin=(10, 0),
@@ -304,6 +305,11 @@ class Controls:
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
         self.update()
+
+    def _choose_scene(self, scene: str) -> None:
+        # The page itself sets the widget, too.
+        if scene != self._state.settings.scene:
+            fade_first(self._state, partial(self._state.choose_scene, scene))
 
     def update(self) -> None:
         """Show the present values.

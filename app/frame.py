@@ -130,6 +130,30 @@ class Run:
     is_idle: bool = False
     """Whether nothing acts, so that nothing moves."""
 
+    @property
+    def structure(self) -> tuple[object, ...]:
+        """Scene, size and supports: only runs with equal ones are compared."""
+        drawn = self.geometry.description
+        held = {(hold.kind, hold.side) for hold in drawn.holds}
+        # An end that is moved is held, too.
+        for act in drawn.acts:
+            side = act.where.partition(" ")[0]
+            if act.unit == "m" and side in ("left", "right"):
+                held.add(("clamp", side))
+        size = drawn.bodies, drawn.length, drawn.height, drawn.broken
+        return self.settings.scene, *size, held
+
+    @property
+    def surfaces(self) -> list[str]:
+        """Names of the interfaces at which bodies touch, without springs."""
+        return [name for name, each in self.interfaces.items() if not each.is_spring]
+
+    def x_title(self, name: str) -> str:
+        """Title of positions along an interface, with its name among several."""
+        if len(self.surfaces) > 1:
+            return f"{name}: x"
+        return "x"
+
     def interface(self, name: str) -> str:
         """The interface of a name.
 

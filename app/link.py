@@ -11,7 +11,14 @@ import param
 
 from app.browser import Browser
 from app.frame import Selection
-from app.lessons.catalogue import KINDS, KNOWN, LESSONS, plots_of, settings_of
+from app.lessons.catalogue import (
+    CASES,
+    KINDS,
+    KNOWN,
+    LESSONS,
+    plots_of,
+    settings_of,
+)
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from solver.files.saved import dump
@@ -22,6 +29,17 @@ from solver.settings.scene import Settings
 
 SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """Parts of a page's state in its address, beside settings."""
+BESIDE = (
+    "tab",
+    "question",
+    "instant",
+    "interface",
+    "iteration",
+    "pace",
+    "plots",
+    "view",
+)
+"""Parts of an address beside settings, lesson, case and class."""
 DEFAULTS = {name: PageState.param[name].default for name in SHARED}
 LONGEST = 1500
 """Largest number of characters of a value in an address: mail, chat and proxies cut
@@ -30,7 +48,8 @@ much longer addresses."""
 Shown = dict[str, Any]
 """The state that an address shows, by the names of `PageState`: always `settings`; the
 room is "class" in the address. It may also have the `instant` as a share of the
-interval, and the `iteration` at which the run waits."""
+interval, the `interface` that is selected, and the `iteration` at which the run
+waits."""
 _CHECKED: dict[str, Any] = {
     "instant": SettingGroup("").quantity(0.0, (0.0, 1.0), (0.0, 1.0), ""),
     "iteration": SettingGroup("").count(0, (0, 100_000), (0, 100_000), ""),
@@ -111,6 +130,8 @@ def show(state: PageState, shown: Shown) -> None:
         state.param.update(**values)
         if "instant" in shown:
             state.select(phase=shown["instant"])
+        if "interface" in shown:
+            state.select(interface=shown["interface"])
         if dump(shown["settings"]) != dump(state.settings):
             state.adopt(shown["settings"])
     if shown.get("iteration"):
@@ -118,18 +139,19 @@ def show(state: PageState, shown: Shown) -> None:
 
 
 def shown_by(state: PageState) -> Shown:
-    """The state that a page shows, without the instant and the iteration."""
+    """The state that a page shows, without instant, interface and iteration."""
     return {name: getattr(state, name) for name in ("settings", *SHARED)}
 
 
 def link_of(state: PageState) -> tuple[str, str]:
-    """The whole link, with instant and iteration, and a message on values left out."""
+    """The whole link, with all that is selected, and a message on values left out."""
     frame = state.frame
     is_held = not state.running or state.frame is not state.newest
     is_waiting = frame is not None and not frame.is_answer and is_held
     shown = shown_by(state)
     # The leader of a class has its key there, too, which is not handed on.
     shown["room"] = state.room.partition(".")[0]
+    shown["interface"] = state.selection.interface
     shown["instant"] = round(state.selection.phase, 4)
     shown["iteration"] = 0
     if is_waiting:
@@ -171,17 +193,21 @@ def query_of(shown: Shown) -> str:
 
 def _beside_settings(shown: Shown) -> dict[str, str]:
     """Parts of an address beside settings, where they differ from a new page's."""
-    instant = Selection().phase
+    selection = Selection()
     lesson = LESSONS.get(shown.get("lesson", ""))
     if lesson:
-        instant = lesson.instant
+        selection = Selection(lesson.instant, lesson.interface)
+    case = CASES.get(shown.get("case", ""))
+    if case:
+        selection = Selection(case.instant)
     first = DEFAULTS | {
         "plots": plots_of(shown.get("case", "")),
         "iteration": 0,
-        "instant": instant,
+        "instant": selection.phase,
+        "interface": selection.interface,
     }
     pairs = {}
-    for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view"):
+    for name in BESIDE:
         value = shown.get(name, first[name])
         if value == first[name]:
             continue
@@ -209,10 +235,12 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     }
     base, opened = _base(pairs, refused)
     shown |= opened
-    if "lesson" in opened:
-        shown["instant"] = LESSONS[opened["lesson"]].instant
+    for kind, name in opened.items():
+        shown["instant"] = KNOWN[kind][name].instant
     shown["plots"] = _plots(pairs, opened.get("case", ""), refused)
     shown |= _checked(pairs, refused)
+    if "interface" in pairs:
+        shown["interface"] = pairs.pop("interface")
     base = _with_file(base, pairs, present, refused)
     values = {name: parse(text) for name, text in pairs.items()}
     shown["settings"] = _together(base, values, refused)

@@ -79,6 +79,7 @@ class Live:
         state.param.watch(
             lambda *events: self._write(), ["running", "message", "refusal"]
         )
+        state.param.watch(lambda event: self._fade(), "is_stale")
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
@@ -163,12 +164,25 @@ class Live:
         """CSS classes: plots stand beside a high picture, and below a broad one."""
         state = self.state
         classes = ["live", state.view]
+        shape = []
         if self._cards and state.frame is not None:
-            classes.append(shape_of(state.frame.run.geometry))
+            shape = [shape_of(state.frame.run.geometry)]
+        case = state.trade_case
+        if case is not None and case.surroundings is not None:
+            if case.surroundings.is_upright:
+                shape = ["high", "upright"]
+        classes += shape
+        if state.is_stale:
+            classes.append("stale")
         return classes
 
     def _reshape(self) -> None:
         self.view.css_classes = self._shape
+
+    def _fade(self) -> None:
+        """Fade what is of a run before the present one."""
+        self._reshape()
+        self._write()
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
@@ -206,7 +220,10 @@ class Live:
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
-            self._sentence.object = frame.run.sentence
+            sentence = frame.run.sentence
+            if self.state.trade_case is not None:
+                sentence = self.state.trade_case.sentence_on(sentence)
+            self._sentence.object = sentence
             if self._shape != self.view.css_classes:
                 # In one step with new data the browser would paint the old ones in the
                 # new shape.

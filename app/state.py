@@ -21,6 +21,7 @@ from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
+from solver.study.trade_case import Case, cases_by_name
 
 LIMIT = 24_000_000
 """Largest memory of the frames of a run, bytes; beyond, every other frame is
@@ -144,6 +145,9 @@ class PageState(param.Parameterized):
         doc="Names of the extras that views in sight need.",
     )
     readings = param.List(default=[], doc="Quantities that a lesson or a case names.")
+    is_stale = param.Boolean(
+        doc="Whether what is shown is of a run before the present."
+    )
     is_dragged = param.Boolean(doc="Whether a slider or an arrow is being dragged.")
     lesson = param.String(doc="Name of the lesson.")
     case = param.String(doc="Name of the case; in a lesson there is none.")
@@ -276,6 +280,16 @@ class PageState(param.Parameterized):
             is_answered = self.poll.is_answered
         return bool(self.lesson) and not is_answered
 
+    @property
+    def trade_case(self) -> Case | None:
+        """The case that the page is in, if the frame is of its scene."""
+        case = cases_by_name().get(self.case)
+        if case is None or self.frame is None:
+            return None
+        if case.settings.scene != self.frame.run.settings.scene:
+            return None
+        return case
+
     def pause(self) -> None:
         """Have the run wait."""
         self.running = False
@@ -369,12 +383,15 @@ class PageState(param.Parameterized):
     ) -> None:
         """Order a run with options of `Start`, by default at the page's pace."""
         self.number = next(RUNS)
+        is_dragged = options.get("is_dragged", False)
         self.show_stage(LINEAR)
         self.param.update(
             is_costly=False,
             message="",
             iteration=None,
-            is_dragged=options.get("is_dragged", False),
+            is_dragged=is_dragged,
+            # A slider moves on before each of its runs is shown.
+            is_stale=self.frame is not None and not is_dragged,
         )
         if pace is None:
             pace = PACES[self.pace]
@@ -387,7 +404,10 @@ class PageState(param.Parameterized):
             self.ghost = self._ghost_at(self.frame)
 
     def _ghost_at(self, frame: Frame) -> Frame | None:
-        """The frame to compare a frame with, of the pinned or last run of the scene."""
+        """The frame to compare a frame with, of the pinned or the last run.
+
+        There is none where that run is of another structure.
+        """
         ghost = self._last_run
         pinned = self.pinned
         if pinned is not None and pinned is not self.history:
@@ -395,7 +415,7 @@ class PageState(param.Parameterized):
                 ghost = pinned.newest
             else:
                 ghost = pinned.at(frame.iteration)
-        if ghost is None or ghost.run.settings.scene != frame.run.settings.scene:
+        if ghost is None or ghost.run.structure != frame.run.structure:
             return None
         return ghost
 
@@ -432,6 +452,7 @@ class PageState(param.Parameterized):
         is_next = is_stepped and frame.iteration > last.iteration
         self.history.add(frame)
         with param.parameterized.batch_call_watchers(self):
+            self.is_stale = False
             if is_next and not frame.is_answer:
                 self.show_stage(LOCAL)
             self.newest = frame
@@ -464,6 +485,17 @@ class PageState(param.Parameterized):
         if is_news or needs != self._sent:
             self._sent = needs
             self.send(needs)
+
+    def turn(self, step: int) -> None:
+        """Select the interface that is a number of interfaces further."""
+        if self.frame is None:
+            return
+        run = self.frame.run
+        names = run.surfaces
+        shown = self.selection.interface_of(run)
+        if shown in names:
+            shown = names[(names.index(shown) + step) % len(names)]
+            self.select(interface=shown)
 
     def select(self, **values: Any) -> None:
         """Change the selection."""

@@ -9,7 +9,7 @@ import numpy as np
 from app.frame import LOCAL, Frame, Selection
 from app.refusals import advice_in_titles
 from app.state import PageState
-from app.units import number, percent, unit_for
+from app.units import number, percent, settled, unit_for
 from app.widgets import html
 from solver.latin import Ending
 from solver.study.quantities.finished import KeyFigure, key_figures, slipping_shares
@@ -48,6 +48,8 @@ def status_line(state: PageState) -> str:
 
 def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     """State of the run in bold, and its iterations and error."""
+    if state.is_stale:
+        return "solving …", ""
     wrong = percent(frame.error)
     counted = f"iteration {frame.iteration}"
     if state.selection.stage == LOCAL:
@@ -133,7 +135,10 @@ def figures_line(frame: Frame, selection: Selection) -> str:
             springs.append(chain)
     status = frame.deformed.status[~np.isin(run.geometry.chains, springs)]
     figures["Slips"] = percent(float(slipping_shares(status)[column]))
-    figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
+    # Beside the work that the largest force does on the largest displacement.
+    work = float(np.abs(frame.loop).max(axis=1).prod())
+    energy = settled(frame.energy, work)
+    figures["Energy lost"] = unit_for(abs(energy), "J")(energy)
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['brought'].source}"] = percent(beside["distance"])

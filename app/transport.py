@@ -63,6 +63,10 @@ class Transport:
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
         self._pin = _button("push_pin", PIN, state.pin)
+        self._turns = [
+            _button("arrow_upward", "Contact before (I)", lambda: state.turn(-1)),
+            _button("arrow_downward", "Next contact (i)", lambda: state.turn(1)),
+        ]
         self._choices = self._make_choices()
         self.scrub = self._make_scrub()
         self._presented: list[Any] = []
@@ -71,6 +75,7 @@ class Transport:
             _button("skip_previous", "From the start (r)", state.reset),
             _button("skip_next", "One stage of an iteration (s)", state.step),
             self._pin,
+            *self._turns,
             *self._choices,
         )
         shown = [
@@ -161,6 +166,8 @@ class Transport:
             "s": self._state.step,
             "r": self._state.reset,
             "t": self.play,
+            "i": lambda: self._state.turn(1),
+            "I": lambda: self._state.turn(-1),
             "ArrowLeft": lambda: self._move(-1),
             "ArrowRight": lambda: self._move(1),
             "Shift+ArrowLeft": lambda: self._move_iteration(-1),
@@ -303,6 +310,9 @@ class Transport:
             self._run.icon = "replay"
         else:
             self._run.icon = "play_arrow"
+        has_several = state.frame is not None and len(state.frame.run.surfaces) > 1
+        for turn in self._turns:
+            turn.visible = has_several
         self._pin.color = "default" if state.pinned is None else "primary"
         if state.settings.finish in WATCH.values():
             self._finish.value = state.settings.finish

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 from functools import cache
 
 import param
 
 from solver.files.columns import size_in
+from solver.files.numerals import leading_number
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import Parameter, about
 
@@ -20,12 +20,11 @@ TIMES = {"s": 1.0, "h": 3600.0, "d": 86400.0}
 LATER = {"GPa": 10.0, "GN/m²": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
 """Least value in a unit with which the unit is taken, where it is not 1: a stress of
 3000 MPa is not read in GPa."""
-TYPED = re.compile(
-    r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?)\s*(.*)", re.IGNORECASE
-)
-"""Pattern of a typed number, and of the unit behind it."""
 OTHER_SIZES = {"Pa": 1e6, "m": 1e-3}
 """Typical values, in SI, of a path whose default points are of another quantity."""
+ROUNDING = 1e-7
+"""Share of the largest value of its kind below which a value is rounding: frames have
+seven digits."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -108,14 +107,21 @@ def typed(text: str, unit: Unit, si: str) -> float:
         If the text is no number, or its unit is of another quantity; it says what to
         write instead.
     """
-    match = TYPED.fullmatch(text.strip().replace("−", "-"))
-    if match is None:
+    value, behind = leading_number(text)
+    if not math.isfinite(value):
         raise ValueError("write a number")
     sizes = {**sizes_of(si), "": unit.factor, unit.name: unit.factor}
-    size = sizes.get(match[2]) or size_in(match[2], si)
+    size = sizes.get(behind) or size_in(behind, si)
     if size is None:
         raise ValueError(f"write a number in {unit.name or 'no unit'}")
-    return float(f"{float(match[1].replace(',', '.')) * size:.15g}")
+    return float(f"{value * size:.15g}")
+
+
+def settled(value: float, size: float) -> float:
+    """A value, or 0 where it is rounding beside a size of its kind, both in SI."""
+    if abs(value) <= ROUNDING * abs(size):
+        return 0.0
+    return value
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -12,24 +12,29 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import panel as pn
 import panel_material_ui as pmui
 from bokeh.document import Document
 from bokeh.embed import file_html
-from bokeh.layouts import column, grid
 from bokeh.model import Model
 from bokeh.models import CustomJS, Div, PointDrawTool, SaveTool, Slider
 from bokeh.resources import INLINE
 
 from app.charts import library
-from app.frame import Frame, Selection
+from app.frame import OPEN, Frame, Run, Selection
 from app.state import PageState
-from app.units import unit_for
+from app.status import figures_line, status_line
+from app.units import unit_for, unit_of
+from app.views.layout import is_high
+from app.views.scene import Scene
 from app.views.view import View
-from app.widgets import TEMPLATES, download, html
+from app.widgets import TEMPLATES, download
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
 from solver.files.saved import dump
+from solver.settings.definitions import Parameter, title_of
 from solver.settings.scene import Settings
+from solver.study.comparison import PER
 
 LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\
@@ -44,11 +49,25 @@ for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)
 print(solution.status.ending)
 """
+STATUSES = {-1: "slip backward", 0: "stick", 1: "slip forward", OPEN: "open"}
+"""Words for the status of a point in tables."""
 MOST_INSTANTS = 60
 """Largest number of instants on the page that is saved."""
-HEIGHTS = {"Scene": 260, "Load path": 70}
+WIDE = {"Scene": "scene", "Load path": "timeline"}
+"""Names in the page that is saved of the views that are as wide as it."""
+LOW = 90
 HEIGHT = 300
-"""Heights of figures by the name of their view, and of all other figures, px."""
+"""Height of the time line and of plots there, px."""
+SIZES = {
+    (False, False): (1000.0, 230.0),
+    (False, True): (1000.0, 460.0),
+    (True, False): (600.0, 300.0),
+    (True, True): (600.0, 420.0),
+}
+"""Sizes of pictures, px, by whether they are without loads, and whether the structure
+is high."""
+APART = "span { margin-right: 14px; display: inline-block; }"
+"""Style sheet of key figures."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -64,19 +83,37 @@ def program(settings: Settings) -> str:
 
 
 def history_table(frame: Frame) -> str:
-    """Scalars of every iteration of a run (CSV, with comments that begin with #)."""
-    head = ["one line an iteration; seconds of run time"]
-    return _csv(frame, head, pd.DataFrame(dict(frame.history)))
+    """Scalars of every iteration of a run, a line each (CSV with one line of heads)."""
+    table = pd.DataFrame(dict(frame.history)).rename(columns={"seconds": "seconds, s"})
+    return table.to_csv(index=False)
 
 
-def plot_table(view: View, frame: Frame) -> str:
-    """Points of a plot's curves, a line each (CSV, with comments that begin with #).
+def contact_table(frame: Frame, selection: Selection) -> str:
+    """Contact at all points and instants of the selected interface.
+
+    CSV with one line of heads, in SI: position x, time t, friction force on the body
+    above, pressure where it is found, and status. It can be opened as the results of
+    another program.
+    """
+    run = frame.run
+    name = selection.interface_of(run)
+    fields = frame.contact[name]
+    unit = PER[run.settings.kind]
+    x, t = np.meshgrid(run.interfaces[name].positions, run.instants, indexing="ij")
+    columns = {"x, m": x, "t, s": t, f"friction force, {unit}": fields.friction}
+    if fields.pressure is not None:
+        columns["pressure, Pa"] = fields.pressure
+    table = pd.DataFrame({head: field.ravel() for head, field in columns.items()})
+    table["status"] = pd.Series(fields.status.ravel()).map(STATUSES)
+    return table.to_csv(index=False)
+
+
+def plot_table(view: View) -> str:
+    """Points of a plot's curves, a line each (CSV with one line of heads).
 
     Columns are those of the plot's sources, in the units of its axes; paths are
     numbered, and a curve has the name of its source.
     """
-    axes = [*view.figure.xaxis[:1], *view.figure.yaxis[:1]]
-    names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
     tables = []
     for key, source in view.sources.items():
         columns = {name: list(column) for name, column in source.data.items()}
@@ -88,37 +125,26 @@ def plot_table(view: View, frame: Frame) -> str:
             table = table.explode(paths).rename_axis("path").reset_index()
         table.insert(0, "curve", key)
         tables.append(table)
-    return _csv(frame, [view.name, *names], pd.concat(tables))
+    heads = {}
+    # The title of the figure is that of its x axis.
+    if view.figure.title is not None and view.figure.title.text:
+        heads["x"] = view.figure.title.text
+    for axis in view.figure.yaxis[:1]:
+        heads["y"] = (axis.axis_label or "y").replace("\n", " ")
+    return pd.concat(tables).rename(columns=heads).to_csv(index=False)
 
 
-def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
-    settings = frame.run.settings
-    at = f"iteration {frame.iteration}"
-    if frame.is_answer:
-        at = "answer"
-    first = [
-        f"Slipfront, {settings.scene}, {at}",
-        *head,
-        "settings:",
-        *dump(settings).splitlines(),
-    ]
-    comments = "".join([f"# {line}\n" for line in first])
-    return comments + table.to_csv(index=False)
+def offline_page(state: PageState, views: Sequence[View]) -> str:
+    """The run that is shown as a page that loads nothing (HTML).
 
-
-def offline_page(
-    frame: Frame, views: Sequence[View], selection: Selection, ghost: Frame | None
-) -> str:
-    """A run as a page that loads nothing (HTML), with its plots at all instants.
-
-    Views and ghost are those in sight; they are not changed. The save buttons of the
-    plots write SVG.
+    It has the views in sight, which are not changed, at all instants, the status, the
+    key figures and all settings, light or dark as the page.
     """
-    copies = _copies(views)
-    instants = frame.run.instants
-    end = float(instants[-1])
-    columns = thinned(len(instants), MOST_INSTANTS)
-    selected = int(np.argmin(np.abs(columns - frame.run.column(selection.phase))))
+    frame = state.frame
+    run = frame.run
+    copies = _copies(views, run)
+    columns = thinned(len(run.instants), MOST_INSTANTS)
+    selected = int(np.argmin(np.abs(columns - run.column(state.selection.phase))))
     slider = Slider(
         start=0,
         end=len(columns) - 1,
@@ -126,68 +152,112 @@ def offline_page(
         title="Instant",
         sizing_mode="stretch_width",
     )
-    caption = Div(text="", render_as_text=True, sizing_mode="stretch_width")
-    page = _document(slider, caption, copies, frame.run.settings)
+    instant = Div(text="", render_as_text=True, sizing_mode="stretch_width")
+    figures = Div(text="", sizing_mode="stretch_width", stylesheets=[APART])
+    page = _document(copies, slider=slider, instant=instant, figures=figures)
 
     def show(number: int) -> None:
-        time = float(instants[columns[number]])
-        unit = unit_for(end, "s")
-        caption.text = f"{frame.run.sentence} At {unit(time)} of {unit(end)}."
-        phase = 0.0
-        if end:
-            phase = time / end
+        selection = _at(state.selection, run, columns[number])
+        instant.text = _instant(run, columns[number])
+        figures.text = figures_line(frame, selection)
         for view in copies:
-            view.update(frame, replace(selection, phase=phase), ghost)
+            view.update(frame, selection, state.ghost)
 
     slider.js_on_change("value", _replay(page, len(columns), show))
     # The page begins with the selected instant.
     show(selected)
+    is_dark = pn.config.theme == "dark"
     return file_html(
         page,
         INLINE,
-        f"Slipfront: {frame.run.settings.scene}",
+        f"Slipfront: {run.settings.scene}",
         template=TEMPLATES.get_template("files/export.html"),
-        template_variables={"library": library("bokeh-widgets")},
+        template_variables={
+            "library": library("bokeh-widgets"),
+            "is_dark": is_dark,
+            "sentence": run.sentence,
+            "status": status_line(state),
+            "plots": {
+                view.figure.name: view.name for view in copies if view.name not in WIDE
+            },
+            "settings": _settings_table(run.settings),
+            "saved": dump(run.settings),
+        },
+        theme="dark_minimal" if is_dark else None,
         # Handlers of drags and taps do nothing there.
         suppress_callback_warning=True,
     )
 
 
-def _document(
-    slider: Slider, caption: Div, views: Sequence[View], settings: Settings
-) -> Document:
-    """The page: wide figures, a grid of plots, and settings, one below the other."""
-    wide = [view.figure for view in views if view.name in HEIGHTS]
-    plots = [view.figure for view in views if view.name not in HEIGHTS]
+def _at(selection: Selection, run: Run, column: int) -> Selection:
+    """A selection with the instant of a column of the run."""
+    phase = 0.0
+    if run.instants[-1]:
+        phase = float(run.instants[column] / run.instants[-1])
+    return replace(selection, phase=phase)
+
+
+def _instant(run: Run, column: int) -> str:
+    """Words on the instant of a column of the run."""
+    end = float(run.instants[-1])
+    unit = unit_for(end, "s")
+    return f"At {unit(float(run.instants[column]))} of {unit(end)}."
+
+
+def _document(views: Sequence[View], **widgets: Model) -> Document:
+    """A document of figures and of widgets, which the template finds by their names."""
     page = Document()
-    page.add_root(
-        column(
-            slider,
-            caption,
-            *wide,
-            grid(plots, ncols=2, sizing_mode="stretch_width"),
-            Div(text=html("files/settings.html", settings=dump(settings))),
-            sizing_mode="stretch_width",
-        )
-    )
+    for name, widget in widgets.items():
+        widget.name = name
+        page.add_root(widget)
+    for number, view in enumerate(views):
+        view.figure.name = WIDE.get(view.name, f"plot-{number}")
+        page.add_root(view.figure)
     return page
 
 
-def _copies(views: Sequence[View]) -> list[View]:
+def _copies(views: Sequence[View], run: Run) -> list[View]:
     """Views of the same kinds with new figures, in which nothing is dragged."""
     # Models of a figure cannot stand in two documents.
     copies = [type(view)(view.state) for view in views]
     for view in copies:
         plot = view.figure
-        plot.output_backend = "svg"
-        plot.sizing_mode = "stretch_width"
-        plot.height = HEIGHTS.get(view.name, HEIGHT)
+        plot.update(sizing_mode="stretch_width", height=HEIGHT)
+        if view.name in WIDE:
+            plot.height = LOW
+        if isinstance(view, Scene):
+            # Nobody tells the size of the figure there: the picture is scaled as one.
+            width, height = SIZES[view.is_bare, is_high(run.geometry)]
+            view.lay_out(width, height)
+            plot.update(sizing_mode="scale_width", aspect_ratio=width / height)
+            plot.min_width = int(0.6 * width)
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]
         for tool in plot.select({"type": SaveTool}):
             tool.filename = view.name
     return copies
+
+
+def _settings_table(settings: Settings) -> list[dict[str, str]]:
+    """Title, value with its unit, and name of the settings that do something."""
+    rows = []
+    for name, definition in settings.definitions().items():
+        if settings.applies(name):
+            value = _written(getattr(settings, name), definition)
+            rows.append({"title": title_of(definition), "value": value, "name": name})
+    return rows
+
+
+def _written(value: Any, definition: Parameter) -> str:
+    """A value of a setting as it is read."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | float):
+        return unit_of(definition)(value, digits=6)
+    if isinstance(value, tuple):
+        return f"{len(value)} points"
+    return str(value)
 
 
 def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS:
@@ -222,13 +292,18 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
     frame = state.frame
     if frame is None:
         return [pmui.Typography("There is no run yet.")]
-    page = partial(offline_page, frame, views, state.selection, state.ghost)
+    page = partial(offline_page, state, views)
     files = {
-        "The run as one page, plots as SVG (.html)": (".html", page),
+        "The run as one page (.html)": (".html", page),
         "The run as a program (.py)": (".py", partial(program, frame.run.settings)),
     }
     tables = {"All iterations": partial(history_table, frame)}
-    tables |= {view.name: partial(plot_table, view, frame) for view in views}
+    if state.selection.interface_of(frame.run) in frame.contact:
+        contact = partial(contact_table, frame, state.selection)
+        tables["Contact over x and t"] = contact
+    # A picture of bodies has no curves.
+    plots = [view for view in views if not isinstance(view, Scene)]
+    tables |= {view.name: partial(plot_table, view) for view in plots}
     for title, make in tables.items():
         slug = title.lower().replace(" ", "-").replace("/", "-")
         files[f"{title} (.csv)"] = f"-{slug}.csv", make

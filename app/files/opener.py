@@ -42,6 +42,8 @@ HEADS = (
     "[mm], force [kN]`. Others are passed over; one name more is that of the row's "
     "number."
 )
+FOCUS = {"&:focus-within": {"outline": "2px solid", "outlineOffset": "2px"}}
+"""Look of a file button while keys go to it: its focus lies on a field within it."""
 SHOWN = 5
 """Number of rows of a table that are shown."""
 
@@ -97,6 +99,7 @@ class TableOpener:
         for field in (self.use, self.heads):
             field.param.watch(lambda event: self._reread(), "value")
         state.param.watch(lambda event: self._on_brought(), "brought")
+        state.param.watch(self._on_settings, "settings")
         self._on_brought()
 
     def _make_buttons(self, label: str, accept: str, width: int) -> None:
@@ -106,8 +109,15 @@ class TableOpener:
             "width": width,
             "variant": "outlined",
         }
+        # The button keeps its name: the message tells what became of a file.
         self.file = pmui.FileInput(
-            label=label, accept=accept, description=HELP, **outlined
+            label=label,
+            uploaded_label=label,
+            icon="upload_file",
+            accept=accept,
+            description=HELP,
+            sx=FOCUS,
+            **outlined,
         )
         self.message = PlainText(margin=0)
         self.columns_button = button(
@@ -149,6 +159,7 @@ class TableOpener:
         if not self.file.value:
             return
         self._table = None
+        self._say("")
         content = self._take(partial(self._read, self.file.filename, self.file.value))
         self.columns_button.visible = self._table is not None
         if isinstance(content, MeasuredLoop):
@@ -199,16 +210,29 @@ class TableOpener:
         try:
             content, message = read()
         except RefusedError as refused:
-            self._state.refusal = message = message_of(refused, self._state.settings)
+            reason = message_of(refused, self._state.settings)
+            message = f"{self.file.filename} was refused. {reason}"
+            self._state.refusal = reason
         if isinstance(content, Settings):
             self._state.adopt(content)
         elif content is not None:
-            self._state.brought = content
-        self.message.object = self._understood.object = message
+            self._state.param.update(brought=content, refusal="")
+        self._say(message)
         return content
 
+    def _say(self, message: str) -> None:
+        """Show a message on the file beside its button and in the dialog."""
+        self.message.object = self._understood.object = message
+
+    def _on_settings(self, event: Any) -> None:
+        """Take back the message on a file when another scene is chosen."""
+        if event.new.scene != event.old.scene:
+            self._say("")
+            self._table = None
+            self.columns_button.visible = False
+
     def _forget(self) -> None:
-        self.message.object = ""
+        self._say("")
         self._state.brought = None
 
     def _on_brought(self) -> None:

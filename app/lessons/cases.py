@@ -9,17 +9,12 @@ from functools import partial
 
 import panel as pn
 
-from app.lessons.catalogue import CASES, PENDING, settings_of
+from app.lessons.catalogue import CASES, PENDING
 from app.state import PageState
 from app.units import number, unit_for
 from app.widgets import button, looks, mask_of
-from solver.settings.definitions import about
-from solver.settings.scene import Settings
 from solver.study.quantities.quantity import Quantity
 from solver.study.trade_case import Case
-
-ANSWERS_STAY = "Decomposition", "Method", "Stop"
-"""Groups of settings on which the known value does not depend."""
 
 
 def gallery(begin: Callable[[str], None]) -> pn.FlexBox:
@@ -56,7 +51,7 @@ def _known_beside_found(case: Case, state: PageState) -> str:
     """The known value of a quantity beside that of the run so far (Markdown)."""
     frame = state.frame
     quantity = case.quantity
-    is_known = _is_known(case, state.settings)
+    is_known = case.knows(state.settings)
     found = math.nan
     if frame is not None:
         found = frame.readings.get(quantity.name, math.nan)
@@ -71,17 +66,6 @@ def _known_beside_found(case: Case, state: PageState) -> str:
         known = "known"
     words = f"{known} **{_written(case.known, quantity)}**, this run **{run}**{off}"
     return f"{quantity.title}: {words}"
-
-
-def _is_known(case: Case, settings: Settings) -> bool:
-    """Check whether settings differ from those of a case only in mesh and method."""
-    definitions = settings.definitions()
-    # They change what is found, and not what is known.
-    mesh = {*settings.MESH, "instants"}
-    return all(
-        name in mesh or about(definitions[name]).group in ANSWERS_STAY
-        for name in settings.changed(settings_of(case))
-    )
 
 
 def _written(value: float, quantity: Quantity) -> str:

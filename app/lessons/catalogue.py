@@ -16,7 +16,7 @@ from app.views.view import View
 from solver.settings.scene import Settings
 from solver.study.lessons import SUBJECTS, Lesson, lesson_from_file
 from solver.study.quantities import reading
-from solver.study.trade_case import Case, all_cases
+from solver.study.trade_case import Case, cases_by_name
 
 _IN_ORDER = sorted(
     map(lesson_from_file, Path(__file__).parent.glob("*.toml")),
@@ -24,7 +24,7 @@ _IN_ORDER = sorted(
 )
 LESSONS = {lesson.name: lesson for lesson in _IN_ORDER}
 """Lessons by name, in order, those of a subject together."""
-CASES = {case.name: case for case in all_cases()}
+CASES = cases_by_name()
 """Cases by name, in order."""
 KNOWN: dict[str, Mapping[str, Lesson | Case]] = {"lesson": LESSONS, "case": CASES}
 """Lessons and cases, by their kind as addresses and states call it."""

@@ -11,6 +11,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
+from app.browser import fade_first
 from app.controls import SettingControl
 from app.frame import Selection
 from app.lessons.cases import gallery, texts_of
@@ -75,8 +76,13 @@ class Guide:
     def open(self, kind: str, name: str) -> None:
         """Begin a lesson or a case with its settings, in place of another."""
         self.dialogs[kind].open = False
+        fade_first(self._state, partial(self._open, kind, name))
+
+    def _open(self, kind: str, name: str) -> None:
         opened = {"lesson": "", "case": "", kind: name}
         plots = plots_of(opened["case"])
+        if kind == "case":
+            self._state.select(phase=CASES[name].instant)
         # In one step: else the text would be built once with the scene before.
         with param.parameterized.batch_call_watchers(self._state):
             self._state.param.update(**opened, prediction=None, plots=plots)

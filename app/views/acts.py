@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from app.units import Unit, unit_for
+from app.units import Unit, settled, unit_for
 from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import BAND, WALL, Layout, beside, is_aside
 from app.worker.geometry import PITCH, THICKNESS
@@ -19,6 +20,8 @@ LONGEST = 1.6
 """Largest length over that of the largest value when arrows were scaled."""
 WORD = 12
 """Letters of a value, about."""
+SNAP = 4.0
+"""Distance from zero within which a dragged load is zero, px."""
 HEAD = 9.0
 """Length of the head of an arrow, px."""
 BOW = 0.22
@@ -33,6 +36,24 @@ RADIUS = 4.0
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 13)
 RING = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 """Points of a circle of radius 1, shape (13, 2)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """A load of a setting that was dragged to zero: a handle without an arrow.
+
+    The handle is in px from the middle of the bodies' foot, (2,); `per_px` is the value
+    of the setting for each px along x and y, (2,).
+    """
+
+    act: Act
+    setting: str
+    handle: Array
+    per_px: Array
+
+    def scaled(self, present: float, pointer: Array) -> float:
+        """Value of the setting with the handle at a pointer, (2,), px."""
+        return float((pointer - self.handle) @ self.per_px)
 
 
 class Arrows:
@@ -75,6 +96,9 @@ class Arrows:
         handles = np.where(pushes, base - span, base + span)
         tails = np.where(pushes, handles, base)
         heads = np.where(pushes, base, handles)
+        self._layout = layout
+        self._places = act.points[is_shown]
+        self._distance = distance
         self.base = base
         self.handles = handles
         self.lines = np.stack([tails, heads], axis=1)
@@ -126,7 +150,20 @@ class Arrows:
         """Value of the setting with the handle at a pointer, (2,), px."""
         base = self.base[self._longest]
         along = self.handle - base
-        return float(present * ((pointer - base) @ along) / (along @ along))
+        share = float((pointer - base) @ along / (along @ along))
+        # Zero is a place that a hand finds.
+        if abs(share) * np.hypot(*along) < SNAP:
+            return 0.0
+        return present * share
+
+    def rest(self, present: float) -> Rest:
+        """The handle that stays once the setting goes from a present value to zero."""
+        place = self._places[self._longest] * self._layout.size
+        away = self._distance * np.array(self.act.away)
+        along = self.handle - self.base[self._longest]
+        per_px = present * along / (along @ along)
+        handle = self._layout.local(place) + away
+        return Rest(self.act, self.setting or "", handle, per_px)
 
 
 def _bows(lines: Array, lengths: Array, away: Array) -> Array:
@@ -157,7 +194,8 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         length, height = layout.size * layout.scale
         if length < 0.5 * layout.width:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
-        return np.array([0.0, 0.5 * height + 14.0]), "center"
+        above = height + layout.arrow + 6.0 + layout.letter
+        return np.array([0.0, above]), "center"
     away = act.away[0]
     if is_aside(act):
         shift = [22.0 * away, -16.0]
@@ -219,8 +257,7 @@ def text_of(act: Act, column: int) -> str:
     peak = float(np.abs(act.values).max())
     ends = now[[0, -1]][: len(now)]
     # Rounding of a load path leaves a value near zero, as of sin(pi).
-    ends[np.abs(ends) < 1e-6 * peak] = 0.0
-    texts = [unit(float(value)) for value in ends]
+    texts = [unit(settled(float(value), peak)) for value in ends]
     return f"{act.symbol} = {' to '.join(texts)}"
 
 
@@ -251,13 +288,29 @@ def strokes_of(layout: Layout, factor: float, column: int, feet: Array) -> list[
                 lines.append(hatched(edge + shift + [-along, along], away))
             case "rollers":
                 lines.append(_rollers(edge, away))
-            case "support":
+            case "support" if layout.surroundings is None or layout.is_bare:
                 lines.append(hatched(_support(layout, factor, edge, hold.gap), away))
             case "spring":
                 wall = edge[0, 0] + WALL * away[0] + shift[0]
                 foot = feet[int(hold.side == "right")]
                 lines.append(_spring(foot, float(wall), away))
     return lines
+
+
+def ground_edge(layout: Layout, factor: float) -> Array:
+    """Line, (n, 2), px, along which bodies touch the ground of a case below them."""
+    gap = None
+    for hold in layout.description.holds:
+        if hold.kind == "support":
+            gap = hold.gap
+    foot = layout.local(on_side("bottom", [0.0, 1.0]) * layout.size)
+    edge = _support(layout, factor, foot, gap)
+    surroundings = layout.surroundings
+    if surroundings is None or surroundings.place == "around":
+        return edge
+    # Bodies that move stay on what is below them.
+    beyond = 3.0 * BEYOND + layout.motion[0]
+    return edge + np.outer(np.linspace(-1.0, 1.0, len(edge)), [beyond, 0.0])
 
 
 def hatched(edge: Array, away: Array) -> Array:

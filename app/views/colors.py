@@ -15,15 +15,21 @@ EXACT = "#56B48C"
 GHOST = "#9467BD"
 BESIDE = "#B58500"
 FORCE = "#D55E00"
-STICK = "#C9CDD1"
+STICK = "#8E979F70"
 FORWARD = "#E69F00"
 BACKWARD = "#0072B2"
-OPENED = "#4D4D4D"
+OPENED = "#CC79A7"
+HALO = "#D55E0066"
+"""Colour round the selected interface."""
 STATUS = {-1: BACKWARD, 0: STICK, 1: FORWARD, 2: OPENED}
 KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENED}
 """Colours of the status by its names in legends."""
 BODY = "#8FAAC2"
 EDGE = "#607D8B"
+FLAG = "#00966E"
+"""Colour of the known number of a case."""
+GROUND = "#A07C4C"
+"""Colour of the ground in which the bodies of a case are drawn."""
 MACRO = {"above": "#D55E00", "below": "#00795A"}
 MICRO = {"above": "#F0A868", "below": "#6CC5A4"}
 """Colours of macro and micro forces on the pieces above, or right, and below joints."""

@@ -89,6 +89,7 @@ class ContactForce(View):
             self.y.rename("traction", "Pa")
         else:
             self.y.rename("force", "N/m")
+        self.x.rename(run.x_title(name), "m")
         exact = _closed_forms(run, has_pressure=fields.pressure is not None)
         self._scale(frame, name, fields, [curve.up for curve in exact])
         self._show_forces(interface, fields, run.reference.get(name), column)

@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from bokeh.core.properties import value
+from bokeh.events import Tap
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
 from app.frame import LOCAL, Floats, Frame, Selection
-from app.views.axis import rounded_up, whole
+from app.units import percent
+from app.views.axis import extent, rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
 from app.views.view import View, hover
 from app.worker.references import has_reference
 
-SEEN = (1e-4, 10.0)
-"""Errors that are in sight in any case. Indicators do not widen the axis: they are
-numbers of other sizes."""
+SEEN = (1e-3, 10.0)
+"""Errors that are in sight in any case. Indicators widen the axis downwards alone:
+they are numbers of other sizes."""
+HEIGHT = 160.0
+"""Height of a plot until the browser reports its own, px."""
+LEAST = 1e-14
+"""Least value that is in sight: what is smaller is rounding."""
+NAMED = 1.25
+"""Length of the axis of iterations over that of the curves, at whose ends their names
+stand."""
+APART = 1.05
+"""Least distance of two of these names over their type size."""
 SEEN_IN_TIME = (1e-2, 2.0)
 """Errors over run time that are in sight in any case."""
 SHORTEST = 20
@@ -58,7 +71,11 @@ class ErrorPlot(View):
 
 
 class Convergence(ErrorPlot):
-    """Errors and indicators over iterations; the error of the force is bold."""
+    """Errors and indicators over iterations; the error of the force is bold.
+
+    The answer stands at the foot, as its error is that of rounding. A tap goes back to
+    an iteration.
+    """
 
     name = "Convergence"
 
@@ -67,21 +84,29 @@ class Convergence(ErrorPlot):
         plot = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=SEEN)
         whole(plot.xaxis[0])
         self.add("shown", "VSpan", "x", color=REFERENCE, line_width=1.5)
+        self.add("goal", "HSpan", "y", color=ERROR, line_dash="dashed", line_alpha=0.6)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         lines = []
-        titles = {}
-        for column, (title, color, width, dash) in reversed(CURVES.items()):
+        for column, (_, color, width, dash) in reversed(CURVES.items()):
             lines.append(self.add(column, color=color, width=width, dash=dash))
-            titles[column] = title
         self.add("newest", "Scatter", color=ERROR, size=8)
         ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
         self.add("answer", "Scatter", size=11, **ring)
-        # Curves were added from below; the legend has the uppermost first.
-        titles = dict(reversed(titles.items()))
+        self.add(
+            "names",
+            "Text",
+            "x y text text_color",
+            x_offset=6,
+            text_baseline="middle",
+            text_font=value("Roboto, sans-serif"),
+            text_font_size=self.words,
+        )
         self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
-        titles["stage"] = "local stage"
-        self.legend(**titles, answer="answer", ghost="ghost")
+        self.legend(stage="local stage", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
+        plot.on_event(Tap, self._go_back)
+        self._inner_height = HEIGHT
+        plot.on_change("inner_height", self._resize)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
@@ -92,22 +117,75 @@ class Convergence(ErrorPlot):
         errors = self.sources["error_force"].data
         self.draw("newest", errors["x"][-1:], errors["y"][-1:])
         self._show_ghost(ghost, has_errors=len(errors["x"]) > 0)
-        ghosts = self.sources["ghost"].data
-        self.y.hold(newest.run.number, SEEN, errors["y"])
-        ends = [float(newest.iteration), *map(float, ghosts["x"][-1:])]
-        self.x.hold(newest.run.number, [0.0, rounded_up(max(*ends, SHORTEST))])
+        self._scale(newest)
         is_local = selection.stage == LOCAL
         is_back = frame is not newest and not frame.is_answer
         # The local stage lies between two whole iterates.
         at = frame.iteration - 0.5 * is_local
         self.fill("shown", x=[at] if is_back or is_local else [])
         self.show("stage", is_local)
-        # The ring of the answer, whose error is nearly zero, stands at the foot.
+        # The answer, whose error is nearly zero, stands at the foot.
         answers = []
         if newest.is_answer:
             answers = [newest.iteration]
         foot = 1.6 * self.figure.y_range.reset_start
         self.draw("answer", answers, [foot] * len(answers))
+        self.fill("goal", y=[newest.run.settings.accuracy])
+        self._show_names(newest)
+
+    def _scale(self, newest: Frame) -> None:
+        """Have all that is drawn in sight; indicators only from their largest error."""
+        number = newest.run.number
+        curves = [self.sources[column].data["y"] for column in CURVES]
+        low, _ = extent([SEEN, *curves])
+        errors = self.sources["error_force"].data["y"]
+        self.y.hold(number, SEEN, [max(low, LEAST)], errors)
+        ghosts = self.sources["ghost"].data["x"]
+        ends = [float(newest.iteration), *map(float, ghosts[-1:])]
+        self.x.hold(number, [0.0, rounded_up(NAMED * max(*ends, SHORTEST))])
+
+    def _show_names(self, newest: Frame) -> None:
+        """Write the names of curves at their ends, one above the other, and the goal.
+
+        Heights are logarithms, over the height of the axis.
+        """
+        low, high = np.log10(
+            [self.figure.y_range.reset_start, self.figure.y_range.reset_end]
+        )
+        names = []
+        for column, (title, color, *_) in CURVES.items():
+            data = self.sources[column].data
+            if len(data["x"]):
+                height = (np.log10(data["y"][-1]) - low) / (high - low)
+                names.append((height, float(data["x"][-1]), title, color))
+        goal = newest.run.settings.accuracy
+        height = (np.log10(goal) - low) / (high - low)
+        names.append((height, float(newest.iteration), f"goal {percent(goal)}", ERROR))
+        for iteration in self.sources["answer"].data["x"]:
+            names.append((0.04, float(iteration), "exact", ERROR))
+        names.sort()
+        apart = APART * self.type_size / self._inner_height
+        heights = spread([height for height, *_ in names], apart)
+        self.fill(
+            "names",
+            x=[x for _, x, *_ in names],
+            y=(10.0 ** (low + (high - low) * heights)).tolist(),
+            text=[title for *_, title, _ in names],
+            text_color=[color for *_, color in names],
+        )
+
+    @property
+    def words(self) -> str:
+        """Type size of the names of curves, as CSS has it: that of the axes."""
+        return f"{self.type_size:g}px"
+
+    def _resize(self, name: str, old: float, new: float) -> None:
+        # A figure that is out of sight reports a size of zero.
+        self._inner_height = max(float(new), 60.0)
+
+    def _go_back(self, event: Any) -> None:
+        """Show the iterate nearest to a tap."""
+        self.state.seek(max(round(event.x), 1))
 
     def _show_ghost(self, ghost: Frame | None, *, has_errors: bool) -> None:
         """Show the errors of another run; its estimates if this run has no errors."""
@@ -118,6 +196,15 @@ class Convergence(ErrorPlot):
         if has_errors:
             column = "error_force"
         self._plot("ghost", past, "iteration", column, self.ghost_name)
+
+
+def spread(heights: Sequence[float], apart: float) -> Floats:
+    """Ascending heights between 0 and 1, moved until they are `apart`, shape (n,)."""
+    steps = apart * np.arange(len(heights))
+    moved = np.maximum.accumulate(np.array(heights) - steps)
+    # What was pushed beyond the upper end goes down, and others before it.
+    highest = 1.0 - apart * len(heights)
+    return np.asarray(np.minimum(moved, highest) + steps)
 
 
 def _searched(frame: Frame) -> dict[str, Floats]:

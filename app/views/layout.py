@@ -12,6 +12,7 @@ from app.frame import Geometry
 from app.views.axis import rounded_up
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
+from solver.study.trade_case import Surroundings
 
 THICK = 52.0
 SHARE = 0.15
@@ -33,6 +34,10 @@ WALL = 54.0
 DEEPEST = 18.0
 IMAGE = 26.0
 """Largest depth of a gap in a low figure, and depth of the image below bodies, px."""
+MOST = 1.25
+"""Largest motion over the room for it with which a magnification is kept."""
+GROUND = 26.0
+"""Depth of the ground of a case, px."""
 NARROW = 560.0
 """Width below which keys take two lines, px."""
 
@@ -43,9 +48,14 @@ class Layout:
     Arrays have shape (2,), along x and y. The bodies have the `size` in m, length and
     height as they are drawn; bare ones show no loads. `scale` is in px/m: only of rods
     it differs along x and y. `origin` is the middle of their foot, px. An arrow is
-    `arrow` px long at its largest value, and a letter of its words `letter` px wide;
+    `arrow` px long at its largest value, a letter of its words `letter` px wide, and a
+    line of them `row` px high;
     the largest displacement takes `motion` px at most. Keys stand below the bodies in
     `key_rows`, or at their left if there are none.
+
+    Bodies that stand upright, by the `surroundings` of a case, are laid out in a figure
+    that is turned by a quarter to the right: their left end is on top. `angle` is that
+    of this turn, rad.
     """
 
     def __init__(
@@ -56,17 +66,25 @@ class Layout:
         width: float,
         height: float,
         key_rows: int,
+        surroundings: Surroundings | None = None,
     ) -> None:
         self.is_bare = is_bare
         self.width = width
         self.height = height
         self.key_rows = key_rows
+        self.surroundings = surroundings
         self.letter = LETTER * type_size
+        self.row = 1.3 * type_size
         self.description = geometry.description
         if is_bare:
             self.description = replace(self.description, acts=())
         top = float(geometry.nodes[:, 1].max())
         self.size = np.array([self.description.length, top])
+        self.angle = 0.0
+        # Rods alone are drawn level, whatever they are.
+        is_rod = self.description.height is None
+        if surroundings is not None and surroundings.is_upright and is_rod:
+            self.angle = -0.5 * math.pi
         self.arrow = min(max(0.19 * height, 18.0), 38.0)
         self.deepest = max(DEEPEST, 0.1 * height)
         self._fit()
@@ -75,20 +93,13 @@ class Layout:
         """Fit the bodies and their largest motion between the margins."""
         description = self.description
         top = float(self.size[1])
-        left, right, below, above = _margins(
-            description, self.arrow, self.letter, self.deepest
-        )
-        if not self.key_rows:
-            left += COLUMN
-        below += FOOT * self.key_rows
-        free = [self.width - left - right, self.height - below - above]
-        room = np.maximum(free, 24.0)
+        corner, room, figure = self._free()
         low, high = _extent(description.length, top, description.tilt)
         # Displacements get their room first: of long bodies more across, as they bend.
         share = 0.06
         if description.length > LONG * top:
             share = 0.12
-        motion = np.array([0.04 * self.width, share * self.height])
+        motion = figure * [0.04, share]
         if description.height is None:
             motion[1] = 0.0
         scale = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
@@ -103,8 +114,32 @@ class Layout:
         rest = room - (high - low) * scale
         motion[0] = min(motion[0], 0.12 * description.length * scale[0])
         self.scale = scale
-        self.origin = np.array([left, below]) + 0.5 * rest - low * scale
+        self.origin = corner + 0.5 * rest - low * scale
+        if self.angle:
+            along, across = self.origin
+            self.origin = np.array([across, self.height - along])
         self.motion = motion
+
+    def _free(self) -> tuple[Array, Array, Array]:
+        """Lower corner and size of the place between the margins; size of the figure.
+
+        All are along and across the bodies, (2,), px.
+        """
+        left, right, below, above = _margins(
+            self.description, self.arrow, self.letter, self.deepest, self.surroundings
+        )
+        figure = np.array([self.width, self.height])
+        if not self.key_rows:
+            left += COLUMN
+        # Upright bodies have words in rows above them, and keys below them.
+        if self.angle:
+            figure = figure[::-1]
+            left += self.row * len(self.description.acts)
+            right += FOOT * self.key_rows
+        else:
+            below += FOOT * self.key_rows
+        room = np.maximum(figure - [left + right, below + above], 24.0)
+        return np.array([left, below]), room, figure
 
     def local(self, positions: Array) -> Array:
         """Positions, px, from the middle of the foot, for positions, m, (..., 2)."""
@@ -120,7 +155,7 @@ class Layout:
         if share <= 0.0:
             return factor or 1.0
         # A factor that followed each frame would hide that displacements change.
-        if factor is not None and 0.2 <= factor * share <= 1.8:
+        if factor is not None and 0.2 <= factor * share <= MOST:
             return factor
         return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
 
@@ -161,14 +196,22 @@ def is_opposite(act: Act, other: Act) -> bool:
 
 @lru_cache(maxsize=16)
 def layout_of(
-    geometry: Geometry, is_bare: bool, type_size: float, width: float, height: float
+    geometry: Geometry,
+    is_bare: bool,
+    type_size: float,
+    width: float,
+    height: float,
+    surroundings: Surroundings | None = None,
 ) -> Layout:
     """The layout with larger bodies in a figure in px: keys below, or at the left."""
     rows = 1
     if width < NARROW:
         rows = 2
-    below = Layout(geometry, is_bare, type_size, width, height, rows)
-    beside = Layout(geometry, is_bare, type_size, width, height, 0)
+    size = type_size, width, height
+    if surroundings is not None and surroundings.is_upright:
+        return Layout(geometry, is_bare, *size, 4, surroundings)
+    below = Layout(geometry, is_bare, *size, rows, surroundings)
+    beside = Layout(geometry, is_bare, *size, 0, surroundings)
     if beside.scale[0] > below.scale[0]:
         return beside
     return below
@@ -189,7 +232,11 @@ def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array
 
 
 def _margins(
-    description: Description, arrow: float, letter: float, deepest: float
+    description: Description,
+    arrow: float,
+    letter: float,
+    deepest: float,
+    surroundings: Surroundings | None,
 ) -> tuple[float, float, float, float]:
     """Margins for supports and loads on the left, on the right, below and above, px."""
     room = {
@@ -205,9 +252,17 @@ def _margins(
             # An open gap is drawn, too.
             size += deepest
         room[hold.side] = max(room[hold.side], size)
+    is_upright = False
+    if surroundings is not None:
+        is_upright = surroundings.is_upright
+        room["bottom"] = max(room["bottom"], GROUND + 16.0)
+        if surroundings.place == "around":
+            room["top"] = max(room["top"], GROUND + 16.0)
     for act in description.acts:
         side = act.where.partition(" ")[0]
-        if side in ("left", "right"):
+        if is_upright:
+            size = arrow + 10.0
+        elif side in ("left", "right"):
             size = 20.0 + letter * (len(act.symbol) + len(act.unit) + 9)
         elif side not in ("top", "bottom"):
             continue
@@ -215,7 +270,10 @@ def _margins(
             size = beside(description, side) + 11.0
         else:
             size = arrow + 10.0
-        room[side] = max(room[side], size)
+        room[side] = max(room.get(side, 0.0), size)
+    if any(act.where.startswith("body") for act in description.acts):
+        # Their words stand above the arrows on top.
+        room["top"] = max(room["top"], arrow + 10.0) + 2.2 * letter
     return room["left"], room["right"], room["bottom"], room["top"]
 
 

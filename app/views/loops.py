@@ -56,6 +56,7 @@ class HysteresisLoop(View):
         self.add("beside", color=BESIDE, width=2, dash="dashed")
         latin = self.add("LATIN", color=LATIN, width=2.5)
         self.add("now", "Scatter", color=ERROR, size=10)
+        self.add_flag()
         self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
         hover(plot, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
@@ -87,6 +88,7 @@ class HysteresisLoop(View):
         self.draw("ghost", *_ghost_of(run, ghost), self.ghost_name)
         self.draw("beside", *beside, source)
         self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
+        self.show_flag(frame)
 
 
 def _ghost_of(run: Run, ghost: Frame | None) -> Floats:
@@ -182,6 +184,7 @@ class CycleEnergy(CyclePlot):
         plot = self.begin(("cycle",), ("energy", "J"))
         whole(plot.xaxis[0])
         bars = self.add("bars", "VBar", "x top color", width=0.7)
+        self.add_flag()
         self._add_legend()
         hover(plot, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
@@ -190,10 +193,12 @@ class CycleEnergy(CyclePlot):
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
-        self.y.hold(frame.stage, [0.0], energy, 1.1 * energy)
+        # Room for the name of a known number.
+        self.y.hold(frame.stage, [0.0], 1.5 * energy)
         self.fill(
             "bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count)
         )
+        self.show_flag(frame)
 
 
 class SlipPlane(View):

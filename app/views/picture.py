@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -10,9 +10,19 @@ import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrows, anchor_of, color_of, gapped, strokes_of, text_of
-from app.views.colors import EDGE, ERROR, FORCE, STATUS
-from app.views.layout import BAND, IMAGE, Layout, is_opposite, turned
+from app.views.acts import (
+    Arrows,
+    Rest,
+    anchor_of,
+    color_of,
+    gapped,
+    ground_edge,
+    strokes_of,
+    text_of,
+)
+from app.views.colors import EDGE, ERROR, FORCE, HALO, STATUS
+from app.views.colors import GROUND as GROUND_COLOR
+from app.views.layout import BAND, GROUND, IMAGE, Layout, is_opposite, turned
 from solver.arrays import Array
 from solver.discrete.structure import Act
 
@@ -29,7 +39,9 @@ Strokes = list[tuple[Array, str, float]]
 class Picture:
     """A frame at the instant of a column, with displacements magnified by a factor.
 
-    `peaks` has the value of an arrow of full length for each load, by where it acts.
+    `peaks` has the value of an arrow of full length for each load, by where it acts. Of
+    several interfaces the `selected` one has a halo. `rests` are loads that were
+    dragged to zero.
     """
 
     def __init__(
@@ -39,18 +51,22 @@ class Picture:
         layout: Layout,
         factor: float,
         peaks: Mapping[str, float],
+        selected: str = "",
+        rests: Sequence[Rest] = (),
     ) -> None:
         self.frame = frame
         self.column = column
         self.layout = layout
         self._factor = factor
         self._peaks = peaks
+        self._selected = selected
+        self._rests = rests
         self._geometry = frame.run.geometry
         self._description = layout.description
         # Values of a description are not thinned.
         instant = frame.run.instants[column]
         self._now = int(np.argmin(np.abs(self._description.instants - instant)))
-        self.tilt = 0.0
+        self.tilt = layout.angle
         if self._description.tilt is not None:
             self.tilt = float(self._description.tilt[self._now])
 
@@ -86,9 +102,9 @@ class Picture:
         return arrows
 
     @property
-    def draggable(self) -> list[Arrows]:
-        """The arrows whose load is a setting."""
-        draggable = []
+    def draggable(self) -> list[Arrows | Rest]:
+        """The arrows whose load is a setting, and handles of those that are zero."""
+        draggable: list[Arrows | Rest] = list(self._rests)
         for arrows in self.arrows:
             if arrows.setting and len(arrows.handles):
                 draggable.append(arrows)
@@ -98,6 +114,7 @@ class Picture:
         """Columns of all sources, by their names."""
         bodies = _drawn(self._geometry.outlines, self.nodes)
         return {
+            "ground": self._ground(),
             "image": self._line(self._image(bodies)),
             "bodies": self._line(bodies),
             "strokes": self._columns(self._strokes()),
@@ -105,6 +122,26 @@ class Picture:
             "marks": self._marks(),
             "words": self._words(),
         }
+
+    @property
+    def _is_around(self) -> bool:
+        """Check whether the ground of a case is all around the bodies."""
+        surroundings = self.layout.surroundings
+        return surroundings is not None and surroundings.place == "around"
+
+    def _ground(self) -> Columns:
+        """Patches of the ground of a case, below the bodies or on both sides."""
+        if self.layout.surroundings is None or self.layout.is_bare:
+            return {"xs": [], "ys": []}
+        edge = ground_edge(self.layout, self._factor)
+        low = edge[:, 1].min() - GROUND
+        foot = np.array([[edge[-1, 0], low], [edge[0, 0], low]])
+        patch = np.concatenate([edge, foot])
+        patches = [patch]
+        if self._is_around:
+            top = self.layout.size[1] * self.layout.scale[1]
+            patches.append([0.0, top] - [-1.0, 1.0] * patch)
+        return self.many(np.stack(patches))
 
     def _image(self, bodies: Array) -> Array:
         """The bodies turned by half a turn, if a support is such an image.
@@ -227,21 +264,37 @@ class Picture:
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
+        if self._is_around:
+            # The other side of bodies that the ground is all around of.
+            top = self.layout.size[1] * self.layout.scale[1]
+            for kind, line in lines.items():
+                lines[kind] = np.concatenate([line, [0.0, top] - [-1.0, 1.0] * line])
         height = self.layout.size[1] * self.layout.scale[1] / self._description.bodies
         width = min(BAND, 0.35 * height)
         # Broad bands of many interfaces, as in a wall, would cover the bodies.
         if chains.max() >= self._description.bodies:
             width = min(width, 5.0)
-        # A dark rim below all colours, but for open stretches.
-        closed = [line for kind, line in lines.items() if kind != OPEN]
-        rims = np.concatenate([np.zeros((0, 2)), *closed])
-        strokes: Strokes = [(rims, EDGE, width + 2.0)]
+        # A dark rim below what slips: what sticks is quiet.
+        slipping = [line for kind, line in lines.items() if kind in (-1, 1)]
+        rims = np.concatenate([np.zeros((0, 2)), *slipping])
+        strokes: Strokes = [
+            (self._halo(), HALO, width + 9.0),
+            (rims, EDGE, width + 2.0),
+        ]
         for kind, line in lines.items():
             if kind == OPEN:
                 strokes.append((line, STATUS[kind], 0.5 * width))
             else:
                 strokes.append((line, STATUS[kind], width))
         return strokes
+
+    def _halo(self) -> Array:
+        """Line along the selected interface, (n, 2), px, if there are several."""
+        run = self.frame.run
+        if self._selected not in run.surfaces or len(run.surfaces) == 1:
+            return np.zeros((0, 2))
+        chain = list(run.interfaces).index(self._selected)
+        return self.points[self._geometry.chains == chain]
 
     def _words(self) -> Columns:
         """Symbols and values of the loads, and the slope, inside the figure."""
@@ -256,10 +309,28 @@ class Picture:
             if self._is_repeated(act):
                 continue
             anchor, align = anchor_of(arrows, layout)
+            anchor = self.page(anchor)
+            if layout.angle:
+                # In rows above what stands upright.
+                above = layout.height - (len(texts) + 0.5) * layout.row
+                anchor = np.array([layout.origin[0], above])
+                align = "center"
             texts.append(text_of(act, self._now))
-            anchors.append(self.page(anchor))
+            anchors.append(anchor)
             aligns.append(align)
             colors.append(color_of(act))
+        surroundings = layout.surroundings
+        if surroundings is not None and not layout.is_bare:
+            edge = ground_edge(layout, self._factor)
+            end = edge[0] + [8.0, -0.5 * GROUND]
+            align = "left"
+            if layout.angle:
+                end = edge[-1] - [10.0, 0.5 * GROUND]
+                align = "center"
+            texts.append(surroundings.ground)
+            anchors.append(self.page(end))
+            aligns.append(align)
+            colors.append(GROUND_COLOR)
         if self._description.tilt is not None:
             x = 0.5 * self._description.length * layout.scale[0] + 30.0
             texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")

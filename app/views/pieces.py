@@ -104,7 +104,6 @@ class PiecesView(ExtraView):
         self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         self._scales: dict[str, float] = {}
         self._scene = ""
-        self._frame: Frame | None = None
         self._tapped: int | None = None
         self._placed: _Placed | None = None
         self._last: tuple[Pieces, Frame, Selection] | None = None

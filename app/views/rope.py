@@ -116,6 +116,7 @@ class AxialForces(ExtraView):
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
         self._lines = [self.add(wire, width=2) for wire in WIRES]
+        self.add_flag()
         self.legend(*WIRES, stuck="all stick", exact="closed form")
         hover(plot, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
@@ -137,6 +138,7 @@ class AxialForces(ExtraView):
         self.draw("stuck", x[: len(stuck)], stuck[:, column])
         self._color(names)
         self.draw_each(WIRES, x, axial["force"][:, :, column], names)
+        self.show_flag(frame)
 
     def _color(self, names: list[str]) -> None:
         """Set colours and widths of the curves of wires."""

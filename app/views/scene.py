@@ -11,14 +11,15 @@ from bokeh.models import LinearColorMapper
 from bokeh.palettes import Cividis256, RdBu11
 from bokeh.plotting import figure
 
-from app.frame import LINEAR, LOCAL, Frame, Selection
+from app.frame import LINEAR, LOCAL, Frame, Run, Selection
 from app.units import number, unit_for
-from app.views.acts import Arrows
+from app.views.acts import Arrows, Rest
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, KEYS, LATIN, UNSEEN
+from app.views.colors import BODY, EDGE, GHOST, GROUND, KEYS, LATIN, UNSEEN
 from app.views.layout import Layout, layout_of
 from app.views.picture import Picture
 from app.views.view import View, bare, color_bar
+from solver.settings.scene import Settings
 
 WIDTH = 950.0
 HEIGHT = 190.0
@@ -56,10 +57,11 @@ class Scene(View):
         self._figure = plot
         self._draw(plot)
         self._peaks: dict[str, float] = {}
+        self._dragged: dict[str, tuple[Arrows, Settings]] = {}
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
-        self._held: tuple[Arrows, Picture] | None = None
+        self._held: tuple[Arrows | Rest, Picture] | None = None
         plot.on_event(PanStart, self._hold)
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
@@ -70,6 +72,9 @@ class Scene(View):
 
     def _draw(self, plot: figure) -> None:
         """Add all layers from the bottom to the top, and the legend."""
+        look = {"fill_alpha": 0.22, "hatch_alpha": 0.5, "hatch_scale": 8.0}
+        colors = {"fill_color": GROUND, "hatch_color": GROUND, "line_color": GROUND}
+        self.add("ground", "Patches", "xs ys", hatch_pattern=".", **look, **colors)
         self.add("image", "Patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
         self.add(
             "bodies",
@@ -124,8 +129,20 @@ class Scene(View):
         shown = frame
         if selection.stage == LOCAL:
             shown = self.state.before_linear(frame)
-        picture = Picture(shown, column, layout, self._factor, self._peaks)
+        selected = selection.interface_of(run)
+        picture = Picture(
+            shown,
+            column,
+            layout,
+            self._factor,
+            self._peaks,
+            selected,
+            self._rests(run),
+        )
         self.picture = picture
+        for arrows in picture.arrows:
+            if arrows.setting and len(arrows.handles):
+                self._dragged[arrows.setting] = arrows, run.settings
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
         # In the place of the ghost a structure that collapses shows its mechanism.
@@ -137,10 +154,19 @@ class Scene(View):
         self.fill("ghost", **past)
         self._show_keys(frame, layout, selection.stage)
 
+    def lay_out(self, width: float, height: float) -> None:
+        """Lay the picture out for a size of the figure, px."""
+        self._size = {"inner_width": width, "inner_height": height}
+
     def _layout_of(self, frame: Frame) -> Layout:
         type_size = float(self.words.removesuffix("px"))
         width, height = self._size.values()
-        return layout_of(frame.run.geometry, self.is_bare, type_size, width, height)
+        surroundings = None
+        if self.state.trade_case is not None:
+            surroundings = self.state.trade_case.surroundings
+        return layout_of(
+            frame.run.geometry, self.is_bare, type_size, width, height, surroundings
+        )
 
     def _scale(self, frame: Frame, layout: Layout) -> None:
         """Choose the magnification and the scale of arrows for a frame that is new."""
@@ -150,11 +176,22 @@ class Scene(View):
         if shown is None or shown.run.settings.scene != frame.run.settings.scene:
             self._factor = None
             self._peaks = {}
+            self._dragged = {}
         # Along the time of a frame the scale stays, so that motions can be compared.
         if self._factor is None or shown is not frame:
             largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
             self._factor = layout.fitting(largest, self._factor)
             self._scale_arrows(frame)
+
+    def _rests(self, run: Run) -> list[Rest]:
+        """Handles of the loads that were drawn, and are zero in a run."""
+        settings = run.settings
+        places = settings.behind().values()
+        rests = []
+        for name, (arrows, drawn) in self._dragged.items():
+            if name in places and getattr(settings, name) == 0.0:
+                rests.append(arrows.rest(float(getattr(drawn, name))))
+        return rests
 
     def _show_keys(self, frame: Frame, layout: Layout, stage: str) -> None:
         """Show the keys of the status, with the magnification and the stage."""
@@ -167,7 +204,7 @@ class Scene(View):
         if not self.state.running and not frame.is_answer:
             note += f"; {STAGES[stage]}"
         self.show("note", note)
-        if layout.key_rows:
+        if layout.key_rows and not layout.angle:
             self._keys.update(orientation="horizontal", nrows=layout.key_rows)
         else:
             self._keys.update(orientation="vertical", nrows="auto")

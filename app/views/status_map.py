@@ -41,6 +41,7 @@ class StatusMap(View):
         self.add("ghost", "Segment", "x0 y0 x1 y1", color=GHOST, width=1.5)
         self.add("now", "HSpan", "y", color=ERROR, line_width=2)
         self.add("position", "VSpan", "x", color=ERROR, alpha=0.7, line_width=1)
+        self.add_flag()
         self.legend(*KEYS, "ghost", front="closed form")
         hover(plot, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         plot.on_event(Tap, self._select)
@@ -53,6 +54,7 @@ class StatusMap(View):
         if fields is None:
             return
         interface = run.interfaces[name]
+        self.x.rename(run.x_title(name), "m")
         self.x.hold((run.number, name), interface.positions)
         self.y.hold((run.number, name), run.instants)
         self._show_image(run, interface, fields)
@@ -73,6 +75,7 @@ class StatusMap(View):
         x0, x1 = self.x(lines[::2])
         y0, y1 = self.y(lines[1::2])
         self.fill("ghost", self.ghost_name, x0=x0, y0=y0, x1=x1, y1=y1)
+        self.show_flag(frame)
 
     def _show_image(
         self, run: Run, interface: FrictionInterface, fields: InterfaceFields

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import zip_longest
@@ -35,7 +36,7 @@ from numpy.typing import ArrayLike
 from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
-from app.views.colors import CUT
+from app.views.colors import CUT, FLAG
 from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
@@ -161,6 +162,11 @@ class View:
                 model.js_on_change(names[0], keep)
 
     @property
+    def type_size(self) -> float:
+        """Type size of the figure, px."""
+        return float(self._type.removesuffix("px"))
+
+    @property
     def words(self) -> str:
         """Type size of words at arrows, as CSS has it."""
         return WORDS if self._type == TEXT else self._type
@@ -177,6 +183,53 @@ class View:
     def ghost_name(self) -> str:
         """Name of the run that is drawn beside the present one."""
         return "last run" if self.state.pinned is None else "pinned run"
+
+    def add_flag(self) -> None:
+        """Add the mark of the known number of a case; `show_flag` puts it there."""
+        self.add("level", "HSpan", "y", color=FLAG, line_dash="dashed", line_width=1.5)
+        look = {"marker": "inverted_triangle", "size": 12, "color": FLAG}
+        self.add("flag", "Scatter", "x y", **look)
+        self.add(
+            "flag text",
+            "Text",
+            "x y text text_align text_baseline y_offset",
+            text_color=FLAG,
+            text_font_style="bold",
+            text_font=value("Roboto, sans-serif"),
+            text_font_size=self.words,
+        )
+
+    def show_flag(self, frame: Frame) -> None:
+        """Mark the known number of the case if it stands in this plot."""
+        case = self.state.trade_case
+        flag = None
+        if case is not None and case.knows(frame.run.settings):
+            flag = case.flag
+        points = np.zeros((2, 0))
+        levels = np.zeros(0)
+        texts = []
+        if flag is not None and flag.plot == self.name:
+            texts = [flag.text]
+            points = np.array([[float(self.x(flag.x))], [float(self.y(flag.y))]])
+            if math.isnan(flag.x):
+                # Any x: a line, whose name stands at its left end.
+                levels = points[1]
+                points[0] = self._figure.x_range.reset_start
+        x, y = points
+        self.fill("level", y=levels)
+        self.fill("flag", x=x[: len(x) - len(levels)], y=y[: len(y) - len(levels)])
+        # The text stands where the plot has room.
+        is_right = x > _within(self._figure.x_range, 0.5)
+        is_above = y > _within(self._figure.y_range, 0.8)
+        self.fill(
+            "flag text",
+            x=x,
+            y=y,
+            text=texts,
+            text_align=np.where(is_right, "right", "left").tolist(),
+            text_baseline=np.where(is_above, "top", "bottom").tolist(),
+            y_offset=np.where(is_above, 9.0, -9.0),
+        )
 
     def begin(
         self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any
@@ -358,6 +411,11 @@ class ExtraView(View):
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError
+
+
+def _within(axis: Range1d, share: float) -> float:
+    """Value at a share of the length of an axis."""
+    return float((1.0 - share) * axis.reset_start + share * axis.reset_end)
 
 
 def bare(

@@ -58,10 +58,10 @@ class Zigzag(ExtraView):
             ("slip", "m"), ("friction force", "N/m"), y_range=self.beside.y_range
         )
         plot.xaxis.ticker.desired_num_ticks = TICKS
-        self.add("dead", "HStrip", "y0 y1", fill_color=STICK, alpha=0.3, line_alpha=0)
+        self.add("dead", "HStrip", "y0 y1", fill_color=STICK, alpha=0.15, line_alpha=0)
         self.add("bounds", "HSpan", "y", color=REFERENCE, line_width=1)
-        self.add("graph", color=STAGES[LOCAL], width=5, alpha=0.3)
-        self.add("line", color=STAGES[LINEAR], width=5, alpha=0.25)
+        self.add("graph", color=STAGES[LOCAL], width=5, alpha=0.45)
+        self.add("line", color=STAGES[LINEAR], width=5, alpha=0.4)
         ways = {"along": "solid", "mixed": "dashed"}
         for name, dash in ways.items():
             self.add(
@@ -80,7 +80,7 @@ class Zigzag(ExtraView):
         self.add("newest", "Scatter", "x y line_color", **RING)
         self.add("star", "Scatter", marker="star", size=18, color=EXACT)
         self.mark({"law": STAGES[LOCAL], "balance": STAGES[LINEAR]})
-        self.legend(law="on law", balance="in balance", star="solution")
+        self.legend("law", "balance", star="solution")
         tips = {"iteration": "@iteration", "slip": "@x{0.00}", "force": "@y{0.00}"}
         hover(plot, points, tips)
         self._grid = GridBox(

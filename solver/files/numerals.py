@@ -116,3 +116,21 @@ def number(cell: str, decimal: str) -> float:
     # Exponents of Fortran
     plain = re.sub("[dq]", "e", plain)
     return float(re.sub(r"(?<=[\d.])([+-]\d{3})$", r"e\1", plain))
+
+
+def leading_number(text: str) -> tuple[float, str]:
+    """Number at the start of a typed text, and what stands behind it; NaN without one.
+
+    A lone sign before three digits is a decimal one, as in `1.234` and `1,234`.
+    """
+    plain = text.strip()
+    # The longest start that is a number: a blank may part thousands, or the unit.
+    for end in range(len(plain), 0, -1):
+        start = plain[:end].rstrip()
+        signs = decimal_signs(start)
+        if signs:
+            decimal = signs
+            if len(signs) > 1:
+                decimal = "," if "," in start else "."
+            return number(start, decimal), plain[end:].strip()
+    return math.nan, plain

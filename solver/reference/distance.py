@@ -182,7 +182,7 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
     kind = kind.ravel()
     at_rest = ~np.logical_or.accumulate(holds.any(axis=0))
     # Mostly the contacts that hold in all patterns but none hold the bodies already.
-    acts = patterns.any(axis=0)
+    acts = np.asarray(patterns.any(axis=0))
     always = patterns[:, acts].all(axis=1)
     if np.linalg.matrix_rank(moved[always]) == moved.shape[1]:
         return np.asarray(acts[kind] | at_rest)

@@ -44,7 +44,7 @@ MOST = 20_000
 EDGE = 1e-6
 """Share of the body's length by which rounding may put a point beyond its end."""
 CAN = "CSV whose head names x, t, and friction force or displacement"
-PER = {"rod": "N/m", "wires": "N/m", "plane": "Pa"}
+PER = {"rod": "N/m", "wires": "N/m", "helices": "N/m", "plane": "Pa"}
 """Unit of friction by the kind of a scene."""
 
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import re
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any, TypeVar
 
 from solver.files.saved import (
     check_controls,
@@ -15,10 +19,46 @@ from solver.files.saved import (
     require,
     scene_settings,
 )
-from solver.settings.definitions import SettingError
+from solver.settings.definitions import SettingError, about
 from solver.settings.scene import Icon, Settings
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
+
+ANSWERS_STAY = "Decomposition", "Method", "Stop"
+"""Groups of settings on which the known value does not depend."""
+PLACES = "below", "around"
+ORIENTATIONS = "level", "upright"
+Part = TypeVar("Part")
+
+
+@dataclass(frozen=True)
+class Flag:
+    """Mark of the known value on a plot, by the name of its tab.
+
+    It is at `x` and `y` on the axes of the plot, SI, or at any `x` without one.
+    """
+
+    plot: str
+    y: float
+    text: str
+    x: float = math.nan
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Ground in which bodies are drawn, below or around them, and their orientation.
+
+    Upright ones have their left end on top.
+    """
+
+    ground: str
+    place: str = "below"
+    orientation: str = "level"
+
+    @property
+    def is_upright(self) -> bool:
+        """Check whether the bodies stand upright."""
+        return self.orientation == "upright"
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +80,38 @@ class Case:
     controls: tuple[str, ...]
     picture: Icon
     views: tuple[str, ...] = ()
+    sentence: str = ""
+    instant: float = 1.0
+    flag: Flag | None = None
+    surroundings: Surroundings | None = None
+
+    def knows(self, settings: Settings) -> bool:
+        """Check whether settings differ from the case's only in mesh and method."""
+        definitions = settings.definitions()
+        # They change what is found, and not what is known.
+        mesh = {*settings.MESH, "instants"}
+        return all(
+            name in mesh or about(definitions[name]).group in ANSWERS_STAY
+            for name in settings.changed(self.settings)
+        )
+
+    def sentence_on(self, sentence: str) -> str:
+        """The sentence of the case on a run, by the scene's sentence on the run.
+
+        It ends with what the scene says of the run and not of the case.
+        """
+        if not self.sentence:
+            return sentence
+        known = clauses_in(self.settings.sentence())
+        new = [each for each in clauses_in(sentence)[1:] if each not in known]
+        if not new:
+            return self.sentence
+        return f"{self.sentence} Now: {', '.join(new)}."
+
+
+def clauses_in(sentence: str) -> list[str]:
+    """Clauses of a sentence of a scene."""
+    return re.split(r"[;,] (?:and )?", sentence.rstrip("."))
 
 
 def case_from_file(path: Path) -> Case:
@@ -60,7 +132,8 @@ def case_from_file(path: Path) -> Case:
         with placed("case"):
             # A case without a picture of its own has that of its scene.
             entries = {"picture": settings.icon._asdict(), **entries}
-            fields = fields_in(Case, entries, quantity=str, picture=dict)
+            tables = dict.fromkeys(("picture", "flag", "surroundings"), dict)
+            fields = fields_in(Case, entries, quantity=str, **tables)
             tolerance = fields["tolerance"]
             is_share = 0.0 < tolerance < 1.0
             can = "a share above 0 and below 1"
@@ -68,9 +141,33 @@ def case_from_file(path: Path) -> Case:
             require(is_share, "tolerance", tolerance, can, remedy)
             check_controls(fields["controls"], settings)
             check_keys(fields["picture"], dict.fromkeys(Icon._fields, str))
+            instant = fields.get("instant", 1.0)
+            is_share = 0.0 <= instant <= 1.0
+            remedy = "give it as a share of the interval"
+            require(is_share, "instant", instant, "0 to 1", remedy)
+            for name, kind_of_part in (("flag", Flag), ("surroundings", Surroundings)):
+                if name in fields:
+                    fields[name] = _part(kind_of_part, fields[name], name)
             fields["quantity"] = reading(fields["quantity"])
             fields["picture"] = Icon(**fields["picture"])
         return Case(name=path.stem, settings=settings, **fields)
+
+
+def _part(kind: type[Part], values: dict[str, Any], name: str) -> Part:
+    """A part of a case from its table; refuse unknown places and orientations."""
+    with placed(name):
+        part = kind(**fields_in(kind, values))
+        for key, allowed in (("place", PLACES), ("orientation", ORIENTATIONS)):
+            value = getattr(part, key, allowed[0])
+            listed = ", ".join(allowed)
+            require(value in allowed, key, value, listed, "choose one of these")
+    return part
+
+
+@cache
+def cases_by_name() -> dict[str, Case]:
+    """Cases of the folder `cases` by name, in their order."""
+    return {case.name: case for case in all_cases()}
 
 
 def all_cases() -> list[Case]:

@@ -34,6 +34,7 @@ LOOKED_AT: dict[str, Any] = {
     "tab": "What if",
     "question": "friction=0.2:0.4:3 peak=600:900:2 dissipation",
     "instant": 0.25,
+    "interface": "contact 2-3",
     "iteration": 12,
     "pace": "5 a second",
     "plots": ["Convergence", "Singular values"],

@@ -7,16 +7,28 @@ from itertools import chain
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import panel as pn
 import pytest
 
-from app.frame import Frame
-from app.lessons.catalogue import CASES, LESSONS, PENDING, readings_of, settings_of
+from app.frame import Frame, Selection
+from app.lessons.catalogue import (
+    CASES,
+    KINDS,
+    LESSONS,
+    PENDING,
+    readings_of,
+    settings_of,
+)
 from app.lessons.guide import Guide
+from app.link import query_of, read
 from app.live import Card
-from app.messages import Needs
+from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
+from app.views.scene import Scene
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
 from solver.study.quantities.finished import finished_run
@@ -111,3 +123,90 @@ def test_a_plot_that_only_the_next_run_has_comes_to_the_front() -> None:
     card.fit()
     assert card.seen is not None
     assert card.seen.name == "Energy a cycle"
+
+
+def sampled(case: Case) -> Frame:
+    """An early iterate of a case."""
+    start = Start(1, settings_of(case), 0.0)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    runner.advance()
+    return runner.frame(Needs(extras=frozenset({"axial force", "cycles"})))
+
+
+@pytest.mark.parametrize("name", ["pile", "lap-joint", "pull-out", "fault"])
+def test_the_known_number_is_a_flag_on_its_plot_until_the_case_is_changed(
+    name: str,
+) -> None:
+    case = CASES[name]
+    frame = sampled(case)
+    state = PageState(frame.run.settings, frame=frame, case=name)
+    assert case.flag is not None
+    view = KINDS[case.flag.plot](state)
+    _ = view.figure
+    selection = Selection(case.instant)
+    view.update(frame, selection, None)
+    flag = view.sources["flag text"].data
+    assert flag["text"] == [case.flag.text]
+    assert view.y.si(flag["y"][0]) == pytest.approx(case.flag.y, rel=1e-5)
+    changed = frame.run.settings.replace(friction=0.01)
+    run = replace(frame.run, settings=changed)
+    view.update(replace(frame, run=run), selection, None)
+    assert flag != view.sources["flag text"].data
+    assert not view.sources["flag text"].data["text"]
+
+
+@each
+def test_a_case_opens_at_the_instant_of_its_number(case: Case) -> None:
+    state = PageState(default_settings("bar"))
+    panel_of(state).open("case", case.name)
+    assert state.selection.phase == case.instant
+    shown, _ = read(f"?case={case.name}")
+    assert shown["instant"] == case.instant
+    assert query_of(shown) == f"?case={case.name}"
+    assert case.flag is None or case.flag.plot in KINDS
+
+
+def test_a_pile_stands_upright_in_its_soil_and_its_force_is_dragged_there() -> None:
+    case = CASES["pile"]
+    frame = sampled(case)
+    settings = frame.run.settings
+    state = PageState(settings, frame=frame, case="pile")
+    view = Scene(state)
+    _ = view.figure
+    view.figure.trigger("inner_width", 950.0, 260.0)
+    view.figure.trigger("inner_height", 190.0, 420.0)
+    view.update(frame, Selection(1.0), None)
+    picture = view.picture
+    assert picture is not None
+    x, y = picture.page(picture.nodes).T
+    assert np.ptp(y) > 3.0 * np.ptp(x)
+    # Positions along the bar grow downwards.
+    assert y[frame.run.geometry.nodes[:, 0].argmax()] == pytest.approx(y.min())
+    words = view.sources["words"].data
+    assert "soil" in words["text"]
+    for data in (view.sources["ground"].data, view.sources["strokes"].data):
+        across = np.concatenate([np.ravel(line) for line in data["xs"]])
+        assert np.nanmin(across) > 0.0
+        assert np.nanmax(across) < 260.0
+    arrows = next(each for each in picture.draggable if each.setting == "pressure")
+    start = picture.page(arrows.handle)
+    half = picture.page(0.5 * (arrows.base[0] + arrows.handles[0]))
+    view._hold(SimpleNamespace(x=start[0], y=start[1]))
+    view._drag(SimpleNamespace(x=half[0], y=half[1]))
+    assert state.settings.pressure == pytest.approx(0.5 * settings.pressure, rel=1e-2)
+
+
+@each
+def test_the_sentence_of_a_case_is_its_own_and_says_what_is_changed(case: Case) -> None:
+    own = case.settings.sentence()
+    assert case.sentence_on(own) == case.sentence
+    assert "table" not in case.sentence
+
+
+def test_a_changed_case_says_what_it_has_now() -> None:
+    case = CASES["rail"]
+    changed = case.settings.replace(temperature_load="triangle")
+    assert "table" not in case.sentence_on(changed.sentence())
+    held = case.settings.replace(left_end="held")
+    sentence = case.sentence_on(held.sentence())
+    assert sentence.endswith("Now: free at its right end and held at its left end.")

@@ -317,10 +317,36 @@ def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> No
     assert state.settings.values() == default_settings("bar").values()
 
 
+def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:
+    state = of_scene("bar")
+    opener = TableOpener(state, "Open", ".toml,.csv", 280)
+
+    def open_file(name: str, text: str) -> str:
+        opener.file.filename = name
+        opener.file.value = text.encode()
+        return str(opener.message.object)
+
+    said = open_file("bad.csv", "time,force\n0,0\n1,much\n")
+    assert said.startswith("bad.csv was refused. ")
+    assert "much" in said
+    # The button does not say what became of the file.
+    assert opener.file.uploaded_label == "Open"
+    assert "bad.csv" not in open_file("load.csv", "time,force\n0,0\n1,800\n")
+    assert state.refusal == ""
+    assert opener.columns_button.visible
+    state.choose_scene("block")
+    assert opener.message.object == ""
+    assert not opener.columns_button.visible
+
+
 def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
     assert typed("2 d", Unit("s"), "s") == 172800.0
     assert typed("2 min", Unit("h", 3600.0), "s") == 120.0
     assert typed("3 N/mm2", Unit("kPa", 1e3), "Pa") == 3e6
+    newton = Unit("N")
+    assert typed("2 lbf", newton, "N") == 2 * 4.4482216152605
+    assert typed("1 200", newton, "N") == 1200.0
+    assert typed("1\u202f200,5 kN", newton, "N") == 1200500.0
 
 
 def test_a_number_in_another_unit_is_refused() -> None:

@@ -16,8 +16,11 @@ from app.browser import Display
 from app.frame import Frame
 from app.messages import Earlier, Needs, NewFrame, Ready, Show, Start, Step
 from app.state import History, PageState, default_settings
+from app.status import status_line
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
+from app.worker.sampling import Sampler
+from solver.scenes import discretise
 from solver.settings.scene import Settings
 
 
@@ -231,3 +234,31 @@ def test_a_run_is_compared_with_others_of_its_scene_alone(answer: Frame) -> None
     state.pin()
     assert show(default_settings("rope")) is None
     assert show(bar).run.settings.friction == 0.2
+
+
+def test_a_run_is_compared_with_none_of_another_structure(answer: Frame) -> None:
+    state = PageState(answer.run.settings)
+
+    def show(settings: Settings, *, stays: bool = False) -> Frame | None:
+        state.adopt(settings)
+        if state.frame is not None:
+            assert state.is_stale
+            assert "solving" in status_line(state)
+        sampler = Sampler(discretise(settings), settings, state.number)
+        state.take(NewFrame(replace(answer, run=sampler.run)))
+        assert not state.is_stale
+        return state.ghost
+
+    bar = answer.run.settings
+    assert show(bar) is None
+    assert show(bar.replace(peak=0.0)) is not None
+    assert show(bar) is not None
+    assert show(bar.replace(length=2.0)) is None
+    assert show(bar.replace(length=2.0, left_end="spring")) is None
+    assert show(bar.replace(length=2.0, left_end="spring", young=1e11)) is not None
+
+
+def test_what_is_dragged_does_not_fade(answer: Frame) -> None:
+    state = PageState(answer.run.settings, frame=answer)
+    state.drag("peak", 500.0)
+    assert not state.is_stale

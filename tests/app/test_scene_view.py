@@ -13,9 +13,12 @@ from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.status import status_line
 from app.views.catalogue import CARDS
+from app.views.colors import HALO
+from app.views.contact_force import ContactForce
 from app.views.picture import bands
 from app.views.rope import WireSection
 from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
+from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, paths_of
 from app.views.view import TEXT
 from app.worker.references import ReferenceCache
@@ -304,3 +307,86 @@ def test_a_wall_that_collapses_says_its_limit_and_shows_by_which_mechanism() -> 
     assert float(np.abs(frame.run.mechanism).max()) > 0.0
     assert len(shown(frame, 1.0).sources["ghost"].data["x"]) > 10
     assert not len(shown(frame, 0.1).sources["ghost"].data["x"])
+
+
+def test_the_selected_contact_has_a_halo_and_its_name_in_the_titles_of_its_plots() -> (
+    None
+):
+    frame = frame_of(small("layers"))
+    state = PageState(frame.run.settings, frame=frame)
+    views = [Scene(state), ContactForce(state), StatusMap(state)]
+    shown_at = []
+    for _ in range(2):
+        state.turn(1)
+        for view in views:
+            _ = view.figure
+            view.update(frame, state.selection, None)
+        strokes = views[0].sources["strokes"].data
+        halo = strokes["line_color"].index(HALO)
+        shown_at.append(float(np.mean(strokes["ys"][halo])))
+        for view in views[1:]:
+            title = view.figure.title.text
+            assert title.startswith(f"{state.selection.interface}: x, ")
+    assert state.selection.interface == "contact 3-4"
+    assert abs(shown_at[1] - shown_at[0]) > 10.0
+    state.turn(1)
+    assert state.selection.interface == "contact 1-2"
+
+
+def test_a_single_contact_needs_neither_halo_nor_name() -> None:
+    frame = frame_of(small("incline"))
+    strokes = shown(frame).sources["strokes"].data
+    halo = strokes["line_color"].index(HALO)
+    assert not len(strokes["xs"][halo])
+    assert frame.run.x_title("support") == "x"
+
+
+def test_a_force_that_is_dragged_to_zero_keeps_its_handle() -> None:
+    settings = small("bar")
+    state = PageState(settings)
+    view = Scene(state)
+    _ = view.figure
+    view.update(frame_of(settings), Selection(0.25), None)
+    assert view.picture is not None
+    (arrows,) = (each for each in view.picture.draggable if each.setting == "peak")
+    full = view.picture.page(arrows.handle)
+    base = view.picture.page(arrows.base[0])
+    drag(view, full, base + np.array([2.0, 0.0]))
+    assert state.settings.peak == 0.0
+    view.update(frame_of(state.settings), Selection(0.25), None)
+    (rest,) = (each for each in view.picture.draggable if each.setting == "peak")
+    at_rest = view.picture.page(rest.handle)
+    assert np.hypot(*(at_rest - base)) < 20.0
+    drag(view, at_rest, at_rest + full - base)
+    assert state.settings.peak == pytest.approx(settings.peak, rel=1e-2)
+
+
+def drag(view: Scene, start: np.ndarray, end: np.ndarray) -> None:
+    view._hold(SimpleNamespace(x=start[0], y=start[1]))
+    view._let_go(SimpleNamespace(x=end[0], y=end[1]))
+
+
+@pytest.mark.parametrize("width", [WIDTH, 374.0], ids=["wide", "narrow"])
+def test_words_lie_beside_the_bodies(frame: Frame, width: float) -> None:
+    view = shown(frame)
+    view.figure.trigger("inner_width", WIDTH, width)
+    for phase in PHASES:
+        view.update(frame, Selection(phase), None)
+        picture = view.picture
+        assert picture is not None
+        words = view.sources["words"].data
+        corners = picture.page(picture.nodes[frame.run.geometry.quads])
+        low = corners.min(axis=1)
+        high = corners.max(axis=1)
+        for x, y, text, align in zip(
+            words["x"], words["y"], words["text"], words["text_align"], strict=True
+        ):
+            length = 6.0 * len(text)
+            left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
+            covers = (
+                (low[:, 0] < left + length)
+                & (high[:, 0] > left)
+                & (low[:, 1] < y + 4.0)
+                & (high[:, 1] > y - 4.0)
+            )
+            assert not covers.any(), (phase, text)

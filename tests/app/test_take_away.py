@@ -14,9 +14,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from app.files.export import history_table, offers, offline_page, plot_table, program
+from app.files.export import (
+    contact_table,
+    history_table,
+    offers,
+    offline_page,
+    plot_table,
+    program,
+)
+from app.files.tables import table_of
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
@@ -27,7 +36,7 @@ from app.views.timeline import Timeline
 from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
-from solver.files.saved import dump, settings_from_toml
+from solver.study.comparison import FRICTION, results_in
 
 KINDS = tuple(chain.from_iterable(CARDS))
 NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
@@ -63,9 +72,8 @@ def page(scene: str) -> tuple[PageState, list[View]]:
 
 
 def rows_of(table: str) -> list[dict[str, str]]:
-    """Rows of a table behind its comments."""
-    lines = [line for line in table.splitlines() if not line.startswith("#")]
-    return list(csv.DictReader(io.StringIO("\n".join(lines))))
+    """Rows of a table below one line of heads."""
+    return list(csv.DictReader(io.StringIO(table)))
 
 
 def test_the_program_gives_the_records_of_the_run_again(
@@ -86,31 +94,48 @@ def test_the_program_gives_the_records_of_the_run_again(
         assert float(error) == pytest.approx(record.error_force, abs=1e-15)
 
 
-def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
+def test_tables_hold_what_is_drawn() -> None:
     _, frame = ended("bar")
     view = next(view for view in page("bar")[1] if isinstance(view, ContactForce))
-    table = plot_table(view, frame)
+    table = plot_table(view)
     drawn = {float(row["latin"]) for row in rows_of(table) if row["latin"]}
     assert drawn >= {float(value) for value in view.sources["friction"].data["latin"]}
-    head = "\n".join(line[2:] for line in table.splitlines() if line.startswith("# "))
-    saved = settings_from_toml(head[head.index("scene = ") :])
-    assert dump(saved) == dump(frame.run.settings)
+    assert {"x, m", "force, kN/m"} <= rows_of(table)[0].keys()
     iterations = rows_of(history_table(frame))
     assert len(iterations) == len(frame.history["indicator"])
     assert np.float32(iterations[-1]["indicator"]) == frame.history["indicator"][-1]
 
 
 @pytest.mark.parametrize("scene", SMALL)
+def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
+    _, frame = ended(scene)
+    text = contact_table(frame, Selection())
+    name = Selection().interface_of(frame.run)
+    friction = frame.contact[name].friction
+    results = results_in(table_of(text.encode(), "contact.csv"), frame.run.settings)
+    assert results.quantity == FRICTION
+    np.testing.assert_array_equal(results.values.astype("f4"), friction.ravel())
+    times = results.times.reshape(friction.shape)[0]
+    np.testing.assert_array_equal(times.astype("f4"), frame.run.instants)
+    read = pd.read_csv(io.StringIO(text))
+    assert list(read.columns[:2]) == ["x, m", "t, s"]
+    assert not read.isna().any(axis=None)
+    sticks = read["status"].to_numpy() == "stick"
+    np.testing.assert_array_equal(sticks, frame.contact[name].status.ravel() == 0)
+
+
+@pytest.mark.parametrize("scene", SMALL)
 def test_every_plot_of_every_kind_of_scene_is_a_table(scene: str) -> None:
     for view in page(scene)[1]:
-        assert rows_of(plot_table(view, ended(scene)[1])), view.name
+        assert rows_of(plot_table(view)), view.name
 
 
 def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
-    _, frame = ended("bar")
     # As many plots as a page has in sight.
-    views = page("bar")[1][:6]
-    text = offline_page(frame, views, Selection(), None)
+    state, views = page("bar")
+    views = views[:6]
+    before = [view.figure.height for view in views]
+    text = offline_page(state, views)
     assert "<script src" not in text
     assert "<link" not in text
     match = re.search(
@@ -118,11 +143,22 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     )
     assert match is not None
     kept = json.dumps(json.loads(match[1]))
-    assert kept.count('"svg"') >= len(views)
-    captions = set(re.findall(r" At ([\d.]+) s of 1 s\.", kept))
-    assert captions == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
+    instants = set(re.findall(r"At ([\d.]+) s of 1 s\.", kept))
+    assert instants == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
+    for view in views[2:]:
+        assert f"<figcaption>{view.name}</figcaption>" in text
     # The page's own figures are as they were.
-    assert {view.figure.output_backend for view in views} == {"canvas"}
+    assert [view.figure.height for view in views] == before
+
+
+def test_the_offline_page_tells_status_and_all_settings_as_the_page_does() -> None:
+    state, views = page("bar")
+    text = offline_page(state, views[:2])
+    assert "certified" in text
+    for name in state.settings.definitions():
+        assert (f"<code>{name}</code>" in text) == state.settings.applies(name), name
+    row = "<td>Peak load</td><td>900 N</td><td><code>peak</code></td>"
+    assert row in text
 
 
 def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
@@ -134,6 +170,8 @@ def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
         "slipfront-bar.py",
         "slipfront-bar-all-iterations.csv",
     } <= {*names}
-    assert sum(name.endswith(".csv") for name in names) == 1 + len(views)
+    assert sum(name.endswith(".csv") for name in names) == 2 + sum(
+        not isinstance(view, Scene) for view in views
+    )
     for offer in offered[1:4]:
         assert offer.callback().getvalue()

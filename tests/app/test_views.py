@@ -314,16 +314,42 @@ def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
     assert len(view.sources["indicator"].data["x"]) == len(last.history["iteration"])
 
 
-def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:
+@pytest.mark.parametrize(("value", "ends"), [(2e-9, (1e-9, 10.0)), (1e5, (1e-3, 10.0))])
+def test_an_indicator_widens_the_axis_of_errors_downwards_alone(
+    value: float, ends: tuple[float, float]
+) -> None:
     last = frames_of("bar")[1]
-    history = {
-        **last.history,
-        "indicator": np.full_like(last.history["indicator"], 1e-9),
-    }
+    small_values = np.full_like(last.history["indicator"], value)
+    history = {**last.history, "indicator": small_values}
     view = view_of(Convergence, replace(last, history=history))
-    assert (view.figure.y_range.start, view.figure.y_range.end) == pytest.approx(
-        (1e-4, 10.0)
-    )
+    shown_ends = view.figure.y_range.start, view.figure.y_range.end
+    assert shown_ends == pytest.approx(ends)
+    errors = view.sources["error_force"].data["y"]
+    assert ends[0] < errors[-1] < ends[1]
+
+
+def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None:
+    answer = frames_of("bar")[2]
+    view = view_of(Convergence, answer)
+    names = view.sources["names"].data
+    assert {"goal 1 %", "force", "displ.", "exact"} <= set(names["text"])
+    assert list(view.sources["goal"].data["y"]) == [answer.run.settings.accuracy]
+    axis = view.figure.y_range
+    heights = np.sort(np.log10(names["y"])) / np.log10(axis.end / axis.start)
+    assert np.diff(heights).min() > 0.05
+    assert all(axis.start < y < axis.end for y in names["y"])
+    assert max(names["x"]) < 0.9 * view.figure.x_range.end
+
+
+def test_a_tap_on_the_errors_goes_back_to_that_iteration() -> None:
+    first, last, answer = frames_of("bar")
+    view = view_of(Convergence, answer)
+    state = view.state
+    for frame in (first, last, answer):
+        state.history.add(frame)
+    view._go_back(type("Tap", (), {"x": last.iteration + 0.3}))
+    assert state.frame is last
+    assert state.iteration == last.iteration
 
 
 def test_singular_values_wait_for_the_worker_to_send_them() -> None:

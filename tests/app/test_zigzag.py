@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -169,3 +170,20 @@ def test_after_the_local_stage_the_way_ends_on_the_law() -> None:
     assert counts[LINEAR] == counts[LOCAL] + 1
     view.update(frame, Selection(stage=LOCAL), None)
     assert len(view.sources["linear field"].data["x"]) == 0
+
+
+def test_both_figures_have_one_scale_of_forces_and_a_tap_on_the_field_selects() -> None:
+    frame = run_of("bar", 6, elements=50).frame(Needs(frozenset({"zigzag"})))
+    state = PageState(frame.run.settings)
+    view = Zigzag(state)
+    plots = [child for child, *_ in view.layout.children]
+    assert plots == [view.figure, view.beside]
+    assert plots[0].y_range is plots[1].y_range
+    view.magnify("20px")
+    assert {plot.xaxis.axis_label_text_font_size for plot in plots} == {"20px"}
+    view.update(frame, Selection(), None)
+    # The circle on the field marks the place and the force of the newest stage.
+    marked = view.sources["marked"].data
+    assert marked["y"] == pytest.approx(view.sources["newest"].data["y"], rel=1e-4)
+    view._select(SimpleNamespace(x=0.3))
+    assert state.selection.position == pytest.approx(0.3)

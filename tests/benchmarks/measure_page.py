@@ -53,7 +53,7 @@ def measure(address: str) -> None:
             seconds, received = opening(context, address)
             print(f"opens in {seconds:.2f} s, {received / 1e6:.2f} MB")
         page = context.new_page()
-        for scene in ("bar", "block", "layers", "rope"):
+        for scene in ("bar", "block", "layers", "rope", "strand", "wall"):
             page.goto(f"{address}?scene={scene}&{ANSWER}")
             page.wait_for_function(PAINTED, arg=0, timeout=60_000)
             page.wait_for_timeout(2000.0)

@@ -82,7 +82,6 @@ PARTS = {
     "keys.html": {"curves": [{"label": MARKUP, "dash": MARKUP, "color": MARKUP}]},
     "charts.html": {"heading": MARKUP, "keys": "", "panels": []},
     "experiments/reports.html": {"title": MARKUP, "page": MARKUP},
-    "files/settings.html": {"settings": MARKUP},
 }
 """The same of the page's templates that are filled with words."""
 
@@ -148,7 +147,9 @@ def test_every_report_has_its_values_here() -> None:
 
 @given(st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r")))
 def test_a_text_is_read_as_it_was_filled_in(text: str) -> None:
-    reader = Reader(app.widgets.html("files/settings.html", settings=f"|{text}|"))
+    reader = Reader(
+        app.widgets.html("figures.html", figures={"": f"|{text}|"}, hints={})
+    )
     assert "".join(reader.texts).split("|", 1)[1].rsplit("|", 1)[0] == text
 
 

@@ -6,9 +6,11 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import combinations
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 from browser import ROOT, Chrome, Server
@@ -42,19 +44,50 @@ def upload(page: Page, path: Path, text: str) -> None:
     chooser.value.set_files(path)
 
 
+FRAMES = """() => Bokeh.documents[0].roots().filter((root) => root.inner_height)
+  .map((root) => root.inner_height / root.outer_height)"""
+"""Heights of the frames of all figures over those of the figures."""
+
+
 def opens_alone(browser: Browser, path: Path) -> None:
-    """Check that a page is drawn from a file without a network."""
-    context = browser.new_context(offline=True)
+    """Check that a page is drawn from a file without a network, each plot in full."""
+    context = browser.new_context(offline=True, viewport={"width": 1280, "height": 720})
     complaints = list[str]()
     page = context.new_page()
     page.on("request", lambda request: complaints.append(request.url))
     page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda said: complaints.append(f"{said.type}: {said.text}"))
     page.goto(path.as_uri())
-    expect(page.locator(".bk-Figure").first).to_be_visible()
+    plots = page.locator(".scene .bk-Figure, figure .bk-Figure")
+    expect(plots.nth(2)).to_be_visible()
+    page.wait_for_function(f"Math.min(...({FRAMES})()) > 0.5")
+    for plot in plots.all():
+        box = plot.bounding_box()
+        assert box
+        assert box["width"] >= 300.0
+        assert box["height"] >= 200.0
+    parts = page.locator(".bk-Figure, .bk-Slider, .status, figcaption, table, h1, h2")
+    lie_apart([part.bounding_box() for part in parts.all()])
+    expect(page.locator("table")).to_contain_text("Friction coefficient")
+    expect(page.locator(".status")).to_contain_text("certified")
     context.close()
-    assert [
-        c for c in complaints if not c.startswith(("file:", "data:", "blob:"))
-    ] == []
+    known = ("file:", "data:", "blob:", "log: ", "info: ")
+    assert [text for text in complaints if not text.startswith(known)] == []
+
+
+def lie_apart(boxes: Sequence[Any]) -> None:
+    """Check that no two of some boxes lie over each other."""
+    for one, other in combinations(boxes, 2):
+        # Positions are in fractions of a pixel.
+        is_beside = (
+            one["x"] + one["width"] < other["x"] + 1.0
+            or other["x"] + other["width"] < one["x"] + 1.0
+        )
+        is_below = (
+            one["y"] + one["height"] < other["y"] + 1.0
+            or other["y"] + other["height"] < one["y"] + 1.0
+        )
+        assert is_beside or is_below, (one, other)
 
 
 def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_program_and_page(

@@ -36,6 +36,12 @@ WHOLE = """() => {
   })
 }"""
 """Whether the time line has the whole interval."""
+PIECES = """() => {
+  const models = Bokeh.documents.flatMap((document) => [...document.all_models])
+  const arrows = models.find((model) => model.name == "macro above")
+  return arrows?.data_source.get_array("x").length > 2
+}"""
+"""Whether the pieces of the structure have forces."""
 
 
 def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_once(
@@ -99,7 +105,7 @@ def has_plots_beside(page: Page) -> bool:
 def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
     visit: Visit,
 ) -> None:
-    page = visit("?pace=fastest")
+    page = visit("?pace=fastest&plots=Pieces")
     told = [""]
     sentence = page.locator(".sentence div").first
     for scene in CATALOGUE:
@@ -110,6 +116,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
         wait_for(lambda scene=scene: has_plots_beside(page) == (scene in HIGH))
         assert min(heights_of_plots(page)) >= 200.0
         page.wait_for_function(WHOLE)
+        page.wait_for_function(PIECES)
     assert len(set(told)) == 1 + len(CATALOGUE)
 
 
