@@ -7,7 +7,7 @@ from __future__ import annotations
 import re
 
 from axe_playwright_python.sync_playwright import Axe
-from pages import ANSWER, Visit, button, close_dialog, figure, is_solved, status
+from pages import ANSWER, Visit, button, close_dialog, field, figure, is_solved, status
 from playwright.sync_api import Page, expect
 
 WIDTH = 390
@@ -81,7 +81,12 @@ def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
     assert box is not None
     assert box["width"] > 0.85 * WIDTH
     assert box["y"] + box["height"] < HEIGHT
-    # Nothing lies over it.
+    # Nothing lies over it, neither when the controls are opened.
+    figure(page, 0).click(trial=True)
+    button(page, "Open drawer").click()
+    load = field(page, "Peak load")
+    # At its foot a number is not its slider.
+    load.click(position={"x": 4, "y": 21}, trial=True)
     figure(page, 0).click(trial=True)
 
 
@@ -106,5 +111,6 @@ def test_keys_open_dialogs_and_the_view_for_a_projector(visit: Visit) -> None:
     expect(page).to_have_url(re.compile("view=present"))
     # 2.6 % of the height, whatever the theme sets.
     page.wait_for_function(f"({SIZE})() == '19px'")
-    page.keyboard.press("p")
+    button(page, "Back to the page").click()
+    expect(page.get_by_role("banner")).to_be_visible()
     expect(page.locator(".bk-Figure")).to_have_count(count)
