@@ -37,6 +37,9 @@ WHOLE = """() => {
 }"""
 """Whether the time line has the whole interval."""
 
+MEANING = "(term) => getComputedStyle(term, '::after').content"
+MET = "localStorage.getItem('slipfront')"
+
 
 def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_once(
     visit: Visit,
@@ -48,6 +51,10 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     wait_for(lambda: iteration(page) > first)
     is_solved(page)
     expect(status(page)).to_contain_text(re.compile(r"search: \d+ iterations"))
+    term = page.locator("abbr", has_text="certified")
+    term.focus()
+    assert "balance" in term.evaluate(MEANING)
+    assert page.evaluate(MET) is None
 
     last = iteration(page)
     scrub = slider(page, "Iterations back")
@@ -79,6 +86,7 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     is_solved(page)
     expect(status(page)).to_contain_text("search:")
     expect(page).to_have_url(re.compile("peak="))
+    assert page.evaluate(MET) == "met"
 
 
 def has_plots_beside(page: Page) -> bool:
