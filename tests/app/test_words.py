@@ -20,7 +20,7 @@ def test_a_term_of_the_status_has_its_meaning_at_hand(term: str) -> None:
     assert MEANINGS[term] in written.unescape()
 
 
-@pytest.mark.parametrize("kind", chain.from_iterable(CARDS))
+@pytest.mark.parametrize("kind", list(chain.from_iterable(CARDS)))
 def test_every_plot_says_what_it_shows(kind: type[View]) -> None:
     assert kind.name in MEANINGS
 
@@ -28,7 +28,7 @@ def test_every_plot_says_what_it_shows(kind: type[View]) -> None:
 def test_a_word_is_explained_once() -> None:
     _, _, said = GLOSSARY.partition("#### Words")
     rows = [words.split(", ") for words, _ in ROW.findall(said)]
-    words = list(chain.from_iterable(rows))
+    words = [word for word in chain.from_iterable(rows) if word != ":---"]
     assert sorted(set(words)) == sorted(words)
 
 

@@ -43,6 +43,9 @@ PIECES = """() => {
 }"""
 """Whether the pieces of the structure have forces."""
 
+MEANING = "(term) => getComputedStyle(term, '::after').content"
+MET = "localStorage.getItem('slipfront')"
+
 
 def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_once(
     visit: Visit,
@@ -54,6 +57,10 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     wait_for(lambda: iteration(page) > first)
     is_solved(page)
     expect(status(page)).to_contain_text(re.compile(r"search: \d+ iterations"))
+    term = page.locator("abbr", has_text="certified")
+    term.focus()
+    assert "balance" in term.evaluate(MEANING)
+    assert page.evaluate(MET) is None
 
     last = iteration(page)
     scrub = slider(page, f"Answer after {last} iterations")
@@ -88,6 +95,7 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     is_solved(page)
     expect(status(page)).to_contain_text("search:")
     expect(page).to_have_url(re.compile("peak="))
+    assert page.evaluate(MET) == "met"
 
 
 def heights_of_plots(page: Page) -> list[float]:
