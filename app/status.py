@@ -45,7 +45,6 @@ TERMS = (
     "incremental solver",
 )
 """Words of the glossary in the status and its details."""
-"""Largest share of a loop's force times displacement up to which energy is rounding."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
-import panel_material_ui as pmui
 import pytest
 
 from app import transport
@@ -95,9 +94,7 @@ def test_the_range_of_iterations_moves_seldom_in_a_run_and_is_exact_at_its_end(
 ) -> None:
     page = Watched(monkeypatch)
     end = page.state.frame
-    slider = next(
-        each for each in page.transport.view if isinstance(each, pmui.IntSlider)
-    )
+    slider = page.transport.scrub
     starts = []
     for number, status in (
         (100, None),
