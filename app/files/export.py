@@ -25,7 +25,7 @@ from app.frame import OPEN, Frame, Run, Selection
 from app.state import PageState
 from app.status import figures_line, status_line
 from app.units import unit_for, unit_of
-from app.views.layout import is_high
+from app.views.layout import shape_of
 from app.views.scene import Scene
 from app.views.view import View
 from app.widgets import TEMPLATES, download
@@ -227,7 +227,7 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             plot.height = LOW
         if isinstance(view, Scene):
             # Nobody tells the size of the figure there: the picture is scaled as one.
-            width, height = SIZES[view.is_bare, is_high(run.geometry)]
+            width, height = SIZES[view.is_bare, shape_of(run.geometry) == "high"]
             view.lay_out(width, height)
             plot.update(sizing_mode="scale_width", aspect_ratio=width / height)
             plot.min_width = int(0.6 * width)
