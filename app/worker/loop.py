@@ -88,7 +88,7 @@ class WorkerLoop:
             if earlier is not None:
                 self._send(messages.Earlier(earlier))
         if runner.rest(self._is_ready) == 0.0:
-            runner.advance()
+            runner.advance(self._is_ready)
             if runner.answer is not None:
                 self._last = runner.answer
         if self._is_ready and runner.is_presentable:

@@ -163,23 +163,28 @@ class Runner:
         """Time until the next piece of work, s; None: before an order there is none."""
         if self.iterate is None or self.hurries:
             return 0.0
-        # The reference of a run that follows a slider waits until its picture is seen:
-        # the slider may have moved on by then.
-        is_to_be_seen = self.is_dragged and (self.has_news or not is_seen)
-        if not self._is_compared and not is_to_be_seen:
+        if self._is_to_compare(is_seen):
             return 0.0
         if self.status is not None:
             return None
         return self.pacing.rest()
 
-    def advance(self) -> None:
+    def advance(self, is_seen: bool = True) -> None:
         """Do one piece of work: an iteration, or after the first one the reference."""
         if self._before is not None:
             self._start_near(self._before)
-        elif self.iterate is not None and not self._is_compared and not self.hurries:
+        elif self._is_to_compare(is_seen):
             self._compare()
         else:
             self._iterate()
+
+    def _is_to_compare(self, is_seen: bool) -> bool:
+        """Check whether the reference is due, once the last picture is seen or not."""
+        if self.iterate is None or self._is_compared or self.hurries:
+            return False
+        # That of a run that follows a slider waits until its picture is seen: the
+        # slider may have moved on by then.
+        return not self.is_dragged or (is_seen and not self.has_news)
 
     def frame(self, needs: Needs) -> Frame:
         """Frame of the newest iterate."""

@@ -210,7 +210,7 @@ def test_a_run_that_follows_a_slider_is_compared_once_its_picture_is_seen(
     start = Start(0, answer.run.settings, math.inf, is_dragged=True)
     runner = Runner(start, ReferenceCache(), lambda: False)
     while runner.rest(is_seen=False) is not None:
-        runner.advance()
+        runner.advance(is_seen=False)
     assert not runner.frame(Needs()).run.is_compared
     assert runner.rest(is_seen=False) is None
     while runner.rest() is not None:
