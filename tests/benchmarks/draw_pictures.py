@@ -22,8 +22,6 @@ from pages import holds, status
 
 LARGEST = 200_000
 """Largest size of a picture, bytes."""
-REST = 1000.0
-"""Milliseconds in which transitions of widgets end."""
 
 
 class Picture(NamedTuple):
@@ -33,18 +31,13 @@ class Picture(NamedTuple):
     query: str
     width: int = 1280
     height: int = 900
-    iteration: int = 0
-    """Iteration at which the run waits; 0 for the end of the run."""
+    seconds: float = 1.0
+    """Time from the end of the run, or of an open question's first picture."""
 
 
 PICTURES = (
     Picture("page.png", "?scene=bar"),
-    Picture(
-        "method.png",
-        "?scene=bar&iteration=3&plots=Pieces,Zigzag",
-        height=720,
-        iteration=3,
-    ),
+    Picture("method.png", "?lesson=what-the-solver-does", height=720, seconds=4.0),
     Picture("block.png", "?scene=block"),
 )
 
@@ -54,11 +47,10 @@ def draw(chrome: Chrome, address: str, picture: Picture) -> None:
     page = chrome.new_page(picture.width, picture.height)
     page.goto(address + picture.query)
     holds(page, "model('pulse')?.painted > 0")
-    wanted = "certified"
-    if picture.iteration:
-        wanted = f"iteration {picture.iteration}"
-    status(page).filter(has_text=wanted).wait_for()
-    page.wait_for_timeout(REST)
+    # While a question is open there is no status that would give its answer away.
+    if "lesson=" not in picture.query:
+        status(page).filter(has_text="certified").wait_for()
+    page.wait_for_timeout(1e3 * picture.seconds)
     file = ROOT / "static" / picture.file
     page.screenshot(path=file)
     size = file.stat().st_size
