@@ -36,11 +36,11 @@ class FrictionInterface:
     """Positions of its points along the bodies, shape (n_points,), m."""
     cuts: Floats
     """Positions at which substructures meet, shape (n_cuts,), m."""
-    bound: Floats | None
-    """Friction bound mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1)
+    strength: Floats | None
+    """Friction strength mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1)
     where it does not change; None where it depends on the pressure."""
     coefficient: Floats | None
-    """Coefficient of friction, shape (n_points, 1), where the bound depends on the
+    """Coefficient of friction, shape (n_points, 1), where the strength depends on the
     pressure."""
     is_spring: bool = False
     """Whether it is a spring that pulls at a point, and no surface on which bodies

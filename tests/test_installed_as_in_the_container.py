@@ -39,7 +39,7 @@ rods = Rods(
     stiffness=1e6,
     elements=20,
     substructures=2,
-    bound=np.full(21, 1500.0),
+    strength=np.full(21, 1500.0),
     left=End(displacement=0.0 * t),
     right=End(force=900.0 * t),
     instants=t,

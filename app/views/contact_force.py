@@ -43,7 +43,7 @@ class ContactForce(View):
     needs = frozenset({"beside"})
 
     def make(self) -> None:
-        """Draw curves of LATIN, the reference, the bound and other results."""
+        """Draw curves of LATIN, the reference, the strength and other results."""
         plot = self.begin(("x", "m"), ("force", "N/m"))
         # From the bottom to the top: LATIN's curves lie on all others.
         self.add("cuts", "VSpan", "x", color=CUT, alpha=0.4, line_width=1)
@@ -93,7 +93,7 @@ class ContactForce(View):
         exact = _closed_forms(run, has_pressure=fields.pressure is not None)
         self._scale(frame, name, fields, [curve.up for curve in exact])
         self._show_forces(interface, fields, run.reference.get(name), column)
-        self._show_bound(interface, fields, column)
+        self._show_strength(interface, fields, column)
         self.fill("cuts", x=self.x(interface.cuts))
         selected = []
         if selection.position is not None:
@@ -131,17 +131,17 @@ class ContactForce(View):
         self.draw("reference", *_curves(positions, reference, column))
         self.show("error", reference is not None)
 
-    def _show_bound(
+    def _show_strength(
         self, interface: FrictionInterface, fields: InterfaceFields, column: int
     ) -> None:
-        """Show the bound of friction in both directions, given or µ times pressure."""
-        bound = interface.bound
-        if bound is None:
-            bound = interface.coefficient * np.maximum(fields.pressure, 0.0)
-        # A bound that does not change has a single column.
-        bound = bound[:, min(column, bound.shape[1] - 1)]
+        """Show the friction strength in both directions, given or µ times pressure."""
+        strength = interface.strength
+        if strength is None:
+            strength = interface.coefficient * np.maximum(fields.pressure, 0.0)
+        # A strength that does not change has a single column.
+        strength = strength[:, min(column, strength.shape[1] - 1)]
         positions = interface.positions
-        self.draw("bound", *joined([(positions, bound), (positions, -bound)]))
+        self.draw("bound", *joined([(positions, strength), (positions, -strength)]))
 
     def _show_ghost(self, ghost: Frame | None, selection: Selection) -> None:
         if ghost is None:
@@ -160,14 +160,14 @@ class ContactForce(View):
         """Set the limits: all that is known, and iterates up to a multiple of it."""
         run = frame.run
         key = (*frame.stage[:2], name)
-        bound = run.interfaces[name].bound
+        strength = run.interfaces[name].strength
         known = run.reference.get(name)
-        bounds = []
-        if bound is not None:
-            bounds = [bound, -bound]
+        strengths = []
+        if strength is not None:
+            strengths = [strength, -strength]
         elif known is None:
             known = fields
-        low, high = extent([*_given(known), *exact, *bounds])
+        low, high = extent([*_given(known), *exact, *strengths])
         # An iterate may be far off: it must not press all others flat.
         largest = FARTHEST * max(abs(low), abs(high))
         iterate = np.clip(extent(_given(fields)), -largest, largest)

@@ -210,7 +210,7 @@ class Scene(View):
     def _show_keys(self, frame: Frame, layout: Layout, stage: str) -> None:
         """Show the keys of the status, with the magnification and the stage."""
         run = frame.run
-        can_open = any(each.bound is None for each in run.interfaces.values())
+        can_open = any(each.strength is None for each in run.interfaces.values())
         self.show("open", can_open)
         note = f"displacement × {number(self._factor)}"
         if run.geometry.description.height is None:

@@ -178,11 +178,11 @@ class Sampler:
         found = {}
         for law, numbers, _, _ in contacts.stacks:
             is_cut = np.bincount(law.points) > 1
-            bound = coefficient = None
+            strength = coefficient = None
             if law.opens:
                 coefficient = law.mean_by_point(law.tangential.friction)[:, None]
             else:
-                bound = self._bound_of(law)
+                strength = self._strength_of(law)
             for number, (points, _) in zip(numbers, law.ranges, strict=True):
                 name = contacts.names[number]
                 positions = law.positions[points]
@@ -190,19 +190,19 @@ class Sampler:
                 found[name] = FrictionInterface(
                     positions=floats(positions[rows]),
                     cuts=floats(positions[is_cut[points]]),
-                    bound=_shown(bound, points, rows),
+                    strength=_shown(strength, points, rows),
                     coefficient=_shown(coefficient, points, rows),
                     is_spring=law.is_spring,
                 )
         return {name: found[name] for name in contacts.names}
 
-    def _bound_of(self, law: Contact) -> Array:
-        """Friction bound at the points of a law, N/m or Pa.
+    def _strength_of(self, law: Contact) -> Array:
+        """Friction strength at the points of a law, N/m or Pa.
 
         Shape (n_points, n_shown), or (n_points, 1) where it does not change.
         """
         highest = law.by_point(law.tangential.highest)
-        # A bound that does not change has a single column.
+        # A strength that does not change has a single column.
         if highest.shape[1] > 1:
             highest = highest[:, self.columns]
         force = highest * self.problem.scales.force

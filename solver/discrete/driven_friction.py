@@ -103,11 +103,11 @@ class DrivenFriction:
         compliance = along.compliance[:, None]
         bound = along.without_slip(pressing, opening)
         slack = compliance * np.broadcast_to(bound, self.jump.shape)
-        if along.strength is None:
+        if along.slip_factor is None:
             n_points, n_instants = self.jump.shape
             slider = Play(n_points, n_instants, self.start)(self.jump, slack)
         else:
-            slider = follow(self.jump, slack, along.strength)
+            slider = follow(self.jump, slack, along.slip_factor)
         return np.asarray((slider - self.jump) / compliance)
 
 

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Indices
 from solver.discrete.contacts import Contacts
-from solver.laws import Contact, Interface, Strength
+from solver.laws import Contact, Interface, SlipFactor
 from solver.laws.interface import Glued, IncrementalForm
 from solver.laws.play import PLAIN
 
@@ -69,10 +69,10 @@ def reason_against_reference(
                 "degrees of freedom, gap or friction: give each a point of its "
                 f"own, or {_BY_ESTIMATE}."
             )
-    if len(_strengths(contacts)) > 1:
+    if len(_slip_factors(contacts)) > 1:
         return (
             "Slip changes friction otherwise on one interface than on another: "
-            f"give all of them the same strength, or {_BY_ESTIMATE}."
+            f"give all of them the same slip factor, or {_BY_ESTIMATE}."
         )
     return ""
 
@@ -111,7 +111,7 @@ def _has_points(law: Contact, dofs: Indices) -> bool:
     return all(np.array_equal(field, field[same]) for field in fields)
 
 
-def _strengths(contacts: Contacts) -> set[Strength]:
+def _slip_factors(contacts: Contacts) -> set[SlipFactor]:
     """Slip-dependent factors of all interfaces on which there is any friction."""
     laws = [law.tangential for law in contacts.laws.values()]
-    return {law.strength or PLAIN for law in laws if law.rubs}
+    return {law.slip_factor or PLAIN for law in laws if law.rubs}

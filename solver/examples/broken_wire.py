@@ -5,7 +5,7 @@ import numpy as np
 from solver import End, Rods, discretise, solve
 
 TENSION = 600.0
-BOUND = 1500.0
+STRENGTH = 1500.0
 STIFFNESS = 659_400.0
 ELEMENTS = 60
 """Of every wire, N; friction at an interface, N/m; E S of a wire, N."""
@@ -16,7 +16,7 @@ strand = Rods(
     stiffness=STIFFNESS,
     elements=ELEMENTS,
     substructures=6,
-    bound=np.full(ELEMENTS + 1, BOUND),
+    strength=np.full(ELEMENTS + 1, STRENGTH),
     wires=3,
     broken=(2, ELEMENTS // 2),
     left=End(displacement=0.0 * times),
@@ -32,7 +32,7 @@ displacement = solution.iterate.displacement[ELEMENTS + 1 : 2 * ELEMENTS + 3, -1
 left = displacement[: ELEMENTS // 2 + 1]
 force = STIFFNESS * np.diff(left) * ELEMENTS
 middle = (np.arange(ELEMENTS // 2) + 0.5) / ELEMENTS
-exact = np.minimum(TENSION, 2.0 * BOUND * (0.5 - middle))
+exact = np.minimum(TENSION, 2.0 * STRENGTH * (0.5 - middle))
 
 print("status:", solution.status.ending)
 print("force beside the break, N:", force[-1])

@@ -7,7 +7,7 @@ from solver.latin import PGD, Anderson, Auto, Paper, StatusStep, Stop
 
 PEAK = 900.0
 STIFFNESS = 1e6
-BOUND = 1500.0
+STRENGTH = 1500.0
 """Largest load, N; E S, N; friction, N/m."""
 
 times = np.linspace(0.0, 1.0, 41)
@@ -16,7 +16,7 @@ bar = Rods(
     stiffness=STIFFNESS,
     elements=100,
     substructures=10,
-    bound=np.full(101, BOUND),
+    strength=np.full(101, STRENGTH),
     left=End(displacement=0.0 * times),
     right=End(force=PEAK * times),
     instants=times,
@@ -31,7 +31,7 @@ METHODS = {
     "on modes": Latin(Auto(), PGD(modes=20), acceleration=None, finish=None, stop=stop),
     "status step": Latin(Auto(), finish=StatusStep(), stop=stop),
 }
-exact = PEAK**2 / (2.0 * STIFFNESS * BOUND)
+exact = PEAK**2 / (2.0 * STIFFNESS * STRENGTH)
 for name, method in METHODS.items():
     solution = solve(problem, method)
     iterate = solution.iterate

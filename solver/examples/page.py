@@ -10,11 +10,11 @@ from solver.latin import Iterate, Paper
 
 PEAK = 900.0
 STIFFNESS = 1e6
-BOUND = 1500.0
+STRENGTH = 1500.0
 """Largest load, N; E S, N; friction, N/m."""
 TIMES = np.linspace(0.0, 1.0, 41)
 FORCE = PEAK * TIMES
-EXACT = 1e3 * FORCE**2 / (2.0 * STIFFNESS * BOUND)
+EXACT = 1e3 * FORCE**2 / (2.0 * STIFFNESS * STRENGTH)
 """Displacement of the end over time, mm."""
 
 BAR = Rods(
@@ -22,7 +22,7 @@ BAR = Rods(
     stiffness=STIFFNESS,
     elements=50,
     substructures=10,
-    bound=np.full(51, BOUND),
+    strength=np.full(51, STRENGTH),
     left=End(displacement=0.0 * TIMES),
     right=End(force=FORCE),
     instants=TIMES,

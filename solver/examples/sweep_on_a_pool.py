@@ -22,8 +22,8 @@ def main() -> None:
             energies.append(row.values[0])
             print(f"peak {peaks[-1]:g} N: {row.ending}, {energies[-1]:.5g} J")
 
-    bound = settings.friction * settings.pressure
-    exact = max(peaks) ** 3 / (6.0 * settings.young * settings.section * bound)
+    strength = settings.friction * settings.pressure
+    exact = max(peaks) ** 3 / (6.0 * settings.young * settings.section * strength)
     power, _ = np.polyfit(np.log(peaks), np.log(energies), 1)
     print("power:", power)
     print("largest over closed form:", max(energies) / exact)

@@ -45,7 +45,7 @@ bar = Rods(
     stiffness=STIFFNESS,
     elements=20,
     substructures=4,
-    bound=np.zeros(21),
+    strength=np.zeros(21),
     left=End(displacement=0.0 * times),
     right=End(force=np.full(41, FORCE)),
     instants=times,

@@ -4,7 +4,7 @@ from solver.laws.contact import OPEN, Contact
 from solver.laws.friction import Friction, FrictionLaw
 from solver.laws.interface import Component, Interface
 from solver.laws.linear import Dirichlet, Neumann, Perfect
-from solver.laws.play import Strength
+from solver.laws.play import SlipFactor
 from solver.laws.stiffness import BodyStiffness, RodStiffness
 from solver.laws.unilateral import Unilateral
 
@@ -20,6 +20,6 @@ __all__ = [
     "Neumann",
     "Perfect",
     "RodStiffness",
-    "Strength",
+    "SlipFactor",
     "Unilateral",
 ]

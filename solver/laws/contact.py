@@ -32,7 +32,7 @@ from solver.laws.interface import (
     squared,
 )
 from solver.laws.pairs import Pairs
-from solver.laws.play import Strength
+from solver.laws.play import SlipFactor
 from solver.laws.stiffness import BodyStiffness, RodStiffness
 from solver.laws.unilateral import ContactRule, Unilateral
 from solver.refusal import RefusedError, Words
@@ -161,9 +161,9 @@ class Contact(Pairs):
         friction = self.tangential
         # Exact types: an instance of a subclass may follow another law.
         is_friction = type(friction) is Friction
-        is_strength = type(friction.strength) in (Strength, NoneType)
+        is_slip_factor = type(friction.slip_factor) in (SlipFactor, NoneType)
         is_normal = type(self.normal) in (Unilateral, NoneType)
-        if is_friction and is_strength and is_normal:
+        if is_friction and is_slip_factor and is_normal:
             return IncrementalForm(contact=self)
         return None
 
@@ -211,7 +211,7 @@ class Contact(Pairs):
         friction = self.tangential
         normal = self.normal
         return (
-            friction.strength,
+            friction.slip_factor,
             self.is_on_support,
             self.opens,
             friction.cap is not None,

@@ -24,7 +24,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.checks import NON_NEGATIVE, Number, Numbers, Part, check
 from solver.laws.interface import Component
-from solver.laws.play import Strength
+from solver.laws.play import SlipFactor
 from solver.refusal import RefusedError
 
 OPENED = 1e-9
@@ -48,7 +48,7 @@ class FrictionLaw:
         Friction force per area without pressure, N/m or Pa.
     cap
         Largest friction force per area, before slip; N/m or Pa.
-    strength
+    slip_factor
         Factor on the bound over accumulated slip; None where slip does not change it.
 
     Raises
@@ -61,7 +61,7 @@ class FrictionLaw:
     normal_stiffness: float = np.inf
     cohesion: float = 0.0
     cap: float = np.inf
-    strength: Strength | None = None
+    slip_factor: SlipFactor | None = None
 
     def __post_init__(self) -> None:
         above = Number(0.0, above=True, endless=True)
@@ -71,7 +71,7 @@ class FrictionLaw:
             normal_stiffness=above,
             cohesion=NON_NEGATIVE,
             cap=above,
-            strength=Part(Strength),
+            slip_factor=Part(SlipFactor),
         )
 
     def at(
@@ -106,11 +106,11 @@ class FrictionLaw:
             # A known bound is cut once and for all; only a pressing force needs the cap
             # later.
             bound = np.minimum(bound, cap[:, None])
-        strength = self.strength
-        if strength is not None:
+        slip_factor = self.slip_factor
+        if slip_factor is not None:
             # Fields of a run are scaled, so the table is, too.
-            slips = tuple(slip / length for slip in strength.slips)
-            strength = Strength(slips, strength.factors)
+            slips = tuple(slip / length for slip in slip_factor.slips)
+            slip_factor = SlipFactor(slips, slip_factor.factors)
         if friction is None:
             friction = np.zeros(len(weights))
             cap = None
@@ -120,20 +120,20 @@ class FrictionLaw:
             friction=friction,
             cap=cap,
             compliance=compliance_of(self.stiffness, weights, scales),
-            strength=strength,
+            slip_factor=slip_factor,
         )
 
     def of_one_side(self) -> FrictionLaw:
         """Law over the displacement of a body on its image, which moves the other way.
 
         The body moves by half of the slip, so that over its own displacement the spring
-        is twice as stiff, and the strength changes after half the slip.
+        is twice as stiff, and the factor changes after half the slip.
         """
-        strength = self.strength
-        if strength is not None:
-            slips = tuple(0.5 * slip for slip in strength.slips)
-            strength = Strength(slips, strength.factors)
-        return replace(self, stiffness=2.0 * self.stiffness, strength=strength)
+        slip_factor = self.slip_factor
+        if slip_factor is not None:
+            slips = tuple(0.5 * slip for slip in slip_factor.slips)
+            slip_factor = SlipFactor(slips, slip_factor.factors)
+        return replace(self, stiffness=2.0 * self.stiffness, slip_factor=slip_factor)
 
     def without_slip(self, rubbed: Array, size: float = 1.0) -> Array:
         """Largest friction force before slip, of the shape of `rubbed`, mu N.
@@ -145,9 +145,9 @@ class FrictionLaw:
     @property
     def strongest(self) -> float:
         """Largest factor on the bound at any slip."""
-        if self.strength is None:
+        if self.slip_factor is None:
             return 1.0
-        return max(self.strength.factors)
+        return max(self.slip_factor.factors)
 
 
 def compliance_of(
@@ -182,7 +182,7 @@ class Friction:
         Largest friction force before slip, (n_pairs,), scaled; None if there is none.
     compliance
         1 / k_t of each pair, (n_pairs,), scaled; None if there is none.
-    strength
+    slip_factor
         Factor over accumulated slip, scaled; None where slip does not change the bound.
     start
         Position of every slider before the first instant, (n_pairs,), scaled; None is
@@ -194,7 +194,7 @@ class Friction:
     friction: Array
     cap: Array | None = None
     compliance: Array | None = None
-    strength: Strength | None = None
+    slip_factor: SlipFactor | None = None
     start: Array | None = None
 
     def __post_init__(self) -> None:
@@ -206,7 +206,7 @@ class Friction:
             friction=Numbers(((size,),), low=0.0),
             cap=Numbers(((size,),), low=0.0),
             compliance=positive,
-            strength=Part(Strength),
+            slip_factor=Part(SlipFactor),
             start=Numbers(((size,),)),
         )
 
@@ -235,9 +235,9 @@ class Friction:
             If the law remembers more than these positions.
         """
         # Accumulated slip, and bonds that broke, are not told by the sliders.
-        if self.strength is not None or (self.bound.any() and self.friction.any()):
+        if self.slip_factor is not None or (self.bound.any() and self.friction.any()):
             kind = "general"
-            if self.strength is not None:
+            if self.slip_factor is not None:
                 kind = "slip-dependent"
             raise RefusedError(
                 "friction_law",
@@ -270,30 +270,32 @@ class Friction:
     ) -> Array:
         """Largest friction force after increments of slip, (n_pairs, n_instants)."""
         bound = np.broadcast_to(self.without_slip(pressing, opening), slip.shape)
-        if self.strength is None:
+        if self.slip_factor is None:
             return bound
-        return np.asarray(bound * self.strength(np.cumsum(np.abs(slip), axis=1)))
+        return np.asarray(bound * self.slip_factor(np.cumsum(np.abs(slip), axis=1)))
 
     @property
     def highest(self) -> Array:
         """Largest known part of the bound at any slip, of the shape of the bound."""
-        if self.strength is None:
+        if self.slip_factor is None:
             return self.bound
-        return self.bound * max(self.strength.factors)
+        return self.bound * max(self.slip_factor.factors)
 
     @property
     def steepest_fall(self) -> Array:
         """Largest fall of a known bound per slip, shape (n_pairs,), scaled."""
-        if self.strength is None:
+        if self.slip_factor is None:
             fall = 0.0
         else:
-            fall = -float(self.strength.slopes.min())
+            fall = -float(self.slip_factor.slopes.min())
         return np.asarray(self.bound.max(axis=1) * fall)
 
     @property
     def softens(self) -> bool:
         """Check whether the bound falls with slip anywhere."""
-        return self.strength is not None and bool(self.strength.slopes.min() < 0.0)
+        return self.slip_factor is not None and bool(
+            self.slip_factor.slopes.min() < 0.0
+        )
 
     def during(self, instants: slice) -> Friction:
         """The law restricted to a range of instants."""

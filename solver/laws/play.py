@@ -94,7 +94,7 @@ class Play:
 
 
 @dataclass(frozen=True)
-class Strength:
+class SlipFactor:
     """Factor on the friction bound over accumulated slip, linear between points.
 
     Attributes
@@ -123,14 +123,14 @@ class Strength:
         begins_at_one = is_table and slips[0] == 0.0 and factors[0] == 1.0
         if not begins_at_one or not np.all(np.diff(slips) > 0):
             raise RefusedError(
-                "strength",
+                "SlipFactor",
                 list(zip(self.slips, self.factors, strict=False)),
                 "points (slip, factor), the first (0, 1), with slips that grow",
                 "divide all factors by the first, and begin at slip 0",
             )
         if np.any(factors < 0.0):
             raise RefusedError(
-                "strength", factors.min(), "factors from 0 on", "raise it"
+                "SlipFactor.factors", factors.min(), "factors from 0 on", "raise it"
             )
 
     def __call__(self, slip: Array) -> Array:
@@ -171,17 +171,17 @@ class Strength:
         return lowest
 
 
-PLAIN = Strength((0.0, 1.0), (1.0, 1.0))
+PLAIN = SlipFactor((0.0, 1.0), (1.0, 1.0))
 """Factor of friction that slip does not change."""
 
 
-def follow(target: Array, slack: Array, strength: Strength) -> Array:
+def follow(target: Array, slack: Array, slip_factor: SlipFactor) -> Array:
     """Positions of sliders whose slack changes with the slip that they accumulate.
 
     `target` are the positions without friction, (n_points, n_instants), m or scaled;
     `slack` is the distance at which each starts to slip before it has slipped, of the
-    same shape or (n_points, 1); `strength` is a factor on the slack. Positions have the
-    shape and unit of the target.
+    same shape or (n_points, 1); `slip_factor` is a factor on the slack. Positions have
+    the shape and unit of the target.
     """
     positions = np.empty_like(target)
     position = np.zeros(len(target))
@@ -190,14 +190,16 @@ def follow(target: Array, slack: Array, strength: Strength) -> Array:
     # Accumulated slip depends on all instants before, so no scan composes them.
     for after, wanted, limit in zip(positions.T, target.T, slacks, strict=True):
         distance = wanted - position
-        slip = _slip(np.abs(distance), limit, slipped, strength)
+        slip = _slip(np.abs(distance), limit, slipped, slip_factor)
         position = position + np.sign(distance) * slip
         slipped = slipped + slip
         after[:] = position
     return positions
 
 
-def _slip(distance: Array, slack: Array, slipped: Array, strength: Strength) -> Array:
+def _slip(
+    distance: Array, slack: Array, slipped: Array, slip_factor: SlipFactor
+) -> Array:
     """Smallest slip a >= 0 with a + slack g(slipped + a) = distance, shape (n,) all.
 
     The left side is linear in a between the points of g. Where it falls with a, as
@@ -205,12 +207,12 @@ def _slip(distance: Array, slack: Array, slipped: Array, strength: Strength) -> 
     within its slack, the point sticks.
     """
     slip = np.zeros_like(distance)
-    missing = distance - slack * strength(slipped)
+    missing = distance - slack * slip_factor(slipped)
     # Points whose slip is not found yet, segment after segment of g.
     left = missing > 0.0
-    for end in strength.slips[1:]:
+    for end in slip_factor.slips[1:]:
         ahead = np.maximum(end - slipped, slip)
-        after = distance - ahead - slack * strength(slipped + ahead)
+        after = distance - ahead - slack * slip_factor(slipped + ahead)
         ends = left & (after <= 0.0)
         zeros = np.zeros_like(after)
         share = np.divide(missing, missing - after, out=zeros, where=ends)
@@ -220,4 +222,4 @@ def _slip(distance: Array, slack: Array, slipped: Array, strength: Strength) -> 
         slip = np.where(ends, within, np.where(left, ahead, slip))
         left &= ~ends
         missing = after
-    return np.where(left, distance - slack * strength.factors[-1], slip)
+    return np.where(left, distance - slack * slip_factor.factors[-1], slip)

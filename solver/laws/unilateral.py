@@ -95,9 +95,9 @@ class ContactRule:
             pressing, opening = self._press(incoming, displacement)
         jump = self._springs.jump(incoming)
         slack = self._slack(pressing, opening)
-        strength = self._along.strength
-        if strength:
-            slider = follow(jump, slack, strength)
+        slip_factor = self._along.slip_factor
+        if slip_factor:
+            slider = follow(jump, slack, slip_factor)
         else:
             slider = self._play(jump, slack)
         if self._share is None:

@@ -2,8 +2,8 @@
 
 A slip front is no sum of a few products, but a fixed function of one product: as in the
 Front Transport Reduction of P. Krah and others (J. Sci. Comput. 96, 28, 2023). The
-function here is the clip of the local stage; its stops are the bound, and the friction
-that the last reversal of the load left behind (MATHEMATICS.md, 16).
+function here is the clip of the local stage; its stops are the strength, and the
+friction that the last reversal of the load left behind (MATHEMATICS.md, 16).
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from solver.arrays import Array, Indices
 from solver.reduction.svd import decompose
 
 FADED = 1e-9
-"""Smallest share of its largest value that the bound counts with where the load is
-divided by it: an instant without any bound has no weight."""
+"""Smallest share of its largest value that the strength counts with where the load is
+divided by it: an instant without any strength has no weight."""
 BELOW = -2.0
 """Offset of a line that lies below all shares: the point keeps the friction it has."""
 REFITS = 6
@@ -34,12 +34,12 @@ of all points."""
 
 @dataclass(frozen=True, eq=False)
 class Clips:
-    """A friction field, and clips with memory fitted to it and to its bound.
+    """A friction field, and clips with memory fitted to it and to its strength.
 
     Attributes
     ----------
-    given, field, bound
-        The field, its clips, and its bound, shape (n_points, n_instants), N/m.
+    given, field, strength
+        The field, its clips, and its strength, shape (n_points, n_instants), N/m.
     branches
         Number of branches of the load, in each of which it goes one way.
     space_weights, time_weights
@@ -49,7 +49,7 @@ class Clips:
 
     given: Array
     field: Array
-    bound: Array
+    strength: Array
     branches: int
     space_weights: Array
     time_weights: Array
@@ -72,20 +72,24 @@ class Clips:
 
 
 def clips_of(
-    field: Array, bound: Array, load: Array, space_weights: Array, time_weights: Array
+    field: Array,
+    strength: Array,
+    load: Array,
+    space_weights: Array,
+    time_weights: Array,
 ) -> Clips:
     """Clips with memory fitted to a friction field.
 
-    The branches are those of the load over the size of the bound; the lines are fitted
-    to the entries that are not clipped, point by point. Clips are exact for a rod whose
-    friction bound stays the same, and which this load alone drives.
+    The branches are those of the load over the size of the strength; the lines are
+    fitted to the entries that are not clipped, point by point. Clips are exact for a
+    rod whose friction strength stays the same, and which this load alone drives.
 
     Parameters
     ----------
     field
         Friction, which starts from zero before the first instant, shape (n_points,
         n_instants), N/m.
-    bound
+    strength
         Largest friction, shape (n_points,), (n_points, 1) or that of the field, N/m.
     load
         The load, shape (n_instants,), in any unit.
@@ -93,9 +97,10 @@ def clips_of(
         Lengths of the points and weights of the instants, shapes (n_points,) and
         (n_instants,).
     """
-    bound = np.broadcast_to(bound.reshape(len(field), -1), field.shape)
-    # Friction over a bound that changes with time is a clip of the load over its size.
-    share = _size_of(bound)
+    strength = np.broadcast_to(strength.reshape(len(field), -1), field.shape)
+    # Friction over a strength that changes with time is a clip of the load over its
+    # size.
+    share = _size_of(strength)
     driving = np.asarray(load / share)
     weights = time_weights * share**2
     fitted = np.empty(field.shape)
@@ -105,16 +110,18 @@ def clips_of(
     branches = list(monotone(driving))
     for branch in branches:
         path = np.append(before, driving[branch])
-        clip = _branch(field[:, branch], held, bound[:, branch], path, weights[branch])
+        clip = _branch(
+            field[:, branch], held, strength[:, branch], path, weights[branch]
+        )
         fitted[:, branch] = clip
         held = clip[:, -1:]
         before = path[-1]
-    return Clips(field, fitted, bound, len(branches), space_weights, time_weights)
+    return Clips(field, fitted, strength, len(branches), space_weights, time_weights)
 
 
-def _size_of(bound: Array) -> Array:
-    """Share of its largest value that a bound has at each instant, (n_instants,)."""
-    size = bound.max(axis=0)
+def _size_of(strength: Array) -> Array:
+    """Share of its largest value that a strength has at each instant, (n_instants,)."""
+    size = strength.max(axis=0)
     largest = float(size.max(initial=0.0)) or 1.0
     return np.asarray(np.maximum(size / largest, FADED))
 
@@ -133,17 +140,17 @@ def monotone(load: Array) -> Iterator[slice]:
 
 
 def _branch(
-    field: Array, held: Array, bound: Array, load: Array, weights: Array
+    field: Array, held: Array, strength: Array, load: Array, weights: Array
 ) -> Array:
     """Clip fitted to a field in one branch, shape (n_points, n_instants), N/m.
 
     Every point is seen in the direction in which its friction goes, so that its line
-    rises. Where the bound falls below the friction that was held, it cuts that.
+    rises. Where the strength falls below the friction that was held, it cuts that.
 
     Parameters
     ----------
-    field, bound
-        Friction and its bound, shape (n_points, n_instants), N/m.
+    field, strength
+        Friction and its strength, shape (n_points, n_instants), N/m.
     held
         Friction before the branch, shape (n_points, 1), N/m.
     load
@@ -154,16 +161,16 @@ def _branch(
     # Friction that falls is fitted upside down, so that one form serves both.
     falls = (field - held) @ weights < 0.0
     sign = np.where(falls, -1.0, 1.0)[:, None]
-    limit = np.where(bound > 0.0, bound, np.inf)
+    limit = np.where(strength > 0.0, strength, np.inf)
     if load[-1] >= load[0]:
         path = load
     else:
         path = -load
     low = np.clip(sign * held / limit, -1.0, 1.0)
     slope, offset = _ramps(sign * field / limit, low, path, weights)
-    line = (slope[:, None] * path[1:] + offset[:, None]) * bound
-    stops = np.clip(sign * held, -bound, bound)
-    return sign * np.minimum(bound, np.maximum(stops, line))
+    line = (slope[:, None] * path[1:] + offset[:, None]) * strength
+    stops = np.clip(sign * held, -strength, strength)
+    return sign * np.minimum(strength, np.maximum(stops, line))
 
 
 def _ramps(
@@ -171,7 +178,8 @@ def _ramps(
 ) -> tuple[Array, Array]:
     """Slope and offset of a line for every point in one branch, (n_points,) each.
 
-    A point's share of its bound is min(1, max(low, a g + b)), with a load g that rises.
+    A point's share of its strength is min(1, max(low, a g + b)), with a load g that
+    rises.
 
     The nearest is taken of lines through entries, as steep as the point is before the
     entry or after it. With the lines through the entry farthest from both stops, and
@@ -183,7 +191,7 @@ def _ramps(
     Parameters
     ----------
     shares
-        Friction over its bound, shape (n_points, n_instants), from -1 to 1.
+        Friction over its strength, shape (n_points, n_instants), from -1 to 1.
     low
         Lower stop of every point, same shape.
     loads

@@ -19,7 +19,7 @@ from solver.reduction.clips import Clips
 from solver.reduction.svd import Decomposition
 
 SAME_SHAPE = 1e-9
-"""Share of the largest bound by which one that changes in size alone may differ from
+"""Share of the largest strength by which one that changes in size alone may differ from
 that."""
 
 
@@ -44,27 +44,29 @@ def of_products(product: Decomposition) -> Sizes:
 def of_clips(clips: Clips) -> Sizes:
     """Sizes with clips with memory, and singular vectors of the rest.
 
-    Clips take two vectors and an instant for each branch, the load, and the bound.
+    Clips take two vectors and an instant for each branch, the load, and the strength.
     """
     points, instants = clips.given.shape
     alone = (
-        clips.branches * (2 * points + 1) + instants + _numbers_of_bound(clips.bound)
+        clips.branches * (2 * points + 1)
+        + instants
+        + _numbers_of_strength(clips.strength)
     )
     numbers = alone + (points + instants) * np.arange(len(clips.errors))
     return Sizes(numbers, clips.errors)
 
 
-def _numbers_of_bound(bound: Array) -> int:
-    """Numbers of a bound, (n_points, n_instants): fewer if its size alone changes."""
-    sizes = bound.max(axis=0)
-    largest = float(bound.max(initial=0.0))
-    shape = bound[:, [int(sizes.argmax())]] / (largest or 1.0)
-    if np.abs(bound - shape * sizes).max() > SAME_SHAPE * largest:
-        return int(bound.size)
-    # A bound that changes in size alone is one product.
+def _numbers_of_strength(strength: Array) -> int:
+    """Numbers of a strength, (n_points, n_instants): fewer if only its size changes."""
+    sizes = strength.max(axis=0)
+    largest = float(strength.max(initial=0.0))
+    shape = strength[:, [int(sizes.argmax())]] / (largest or 1.0)
+    if np.abs(strength - shape * sizes).max() > SAME_SHAPE * largest:
+        return int(strength.size)
+    # A strength that changes in size alone is one product.
     if np.ptp(sizes):
-        return len(bound) + int(bound.shape[1])
-    return len(bound)
+        return len(strength) + int(strength.shape[1])
+    return len(strength)
 
 
 def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Sizes:

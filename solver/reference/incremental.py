@@ -180,14 +180,14 @@ class IncrementalRod:
         softened on the way: then no other minimum slips there alone. All arrays have
         the shape (n_dofs,).
         """
-        strength = self._rules.strength
+        slip_factor = self._rules.slip_factor
         dofs = self._dofs
         end = accumulated_slip
         for _ in range(TRIALS):
-            # The bound is linear in the slip on a segment of the strength: its slope
+            # The bound is linear in the slip on a segment of the slip_factor: its slope
             # goes into the stiffness, and the rest is a constant bound.
-            slope = first * self._on_dofs(strength.slope(end[dofs])) * self._movable
-            before = first * self._on_dofs(strength(end[dofs]))
+            slope = first * self._on_dofs(slip_factor.slope(end[dofs])) * self._movable
+            before = first * self._on_dofs(slip_factor(end[dofs]))
             bound = (before - slope * (end - accumulated_slip)) * self._movable
             stiffness = self._stiffness.stiffened(slope)
             search = Search(stiffness, bound, self._movable)
@@ -199,8 +199,8 @@ class IncrementalRod:
                 self._systems += search.solutions
             reached = accumulated_slip + np.abs(minimum.increment)
             # The trial was right if the slip ends on the segment that was assumed.
-            assumed = strength.segment(end[dofs])
-            if np.array_equal(assumed, strength.segment(reached[dofs])):
+            assumed = slip_factor.segment(end[dofs])
+            if np.array_equal(assumed, slip_factor.segment(reached[dofs])):
                 slips = self._movable * (minimum.increment != 0.0)
                 if np.any(bound[slips > 0.0] < 0.0):
                     return None
@@ -229,7 +229,7 @@ class IncrementalRod:
             Accumulated slip at both ends of the instant, scaled.
         """
         dofs = self._dofs
-        growth = self._rules.strength.lowest_slope(begin[dofs], reached[dofs])
+        growth = self._rules.slip_factor.lowest_slope(begin[dofs], reached[dofs])
         softening = first * self._on_dofs(growth) * self._movable
         # Factoring fails where the structure is not stable.
         try:

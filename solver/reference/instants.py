@@ -313,7 +313,7 @@ class Instants:
             falls = np.abs(at.slip)
             # The last resort: friction as after any slip.
             if is_last:
-                falls = np.full_like(falls, self._rules.strength.slips[-1])
+                falls = np.full_like(falls, self._rules.slip_factor.slips[-1])
             slid = self._slid(at, (begin, end), (fallen, falls), known)
             if slid is None:
                 return None

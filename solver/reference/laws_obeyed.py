@@ -210,9 +210,9 @@ class _InterfaceFields:
             bound += friction * np.maximum(self.pressing, 0.0)
             if along.cap is not None:
                 bound = np.minimum(bound, law.by_point(along.cap)[:, None])
-        if along.strength is not None:
+        if along.slip_factor is not None:
             accumulated = np.cumsum(np.abs(slip), axis=1)
-            bound *= along.strength(accumulated)
+            bound *= along.slip_factor(accumulated)
         return np.asarray(bound)
 
 

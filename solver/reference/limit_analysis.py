@@ -80,7 +80,7 @@ class _Program:
         self._balance = sparse.csc_array((jumps(problem) @ motions).T)
         self._rubs: Indices = np.flatnonzero(~rules.normal)
         # Slip may harden: what friction can ever carry is a bound whatever has slipped.
-        self._strongest = max(rules.strength.factors)
+        self._strongest = max(rules.slip_factor.factors)
         self._limits = self._friction_limits()
         caps = rules.cap[self._rubs][self._capped]
         self._caps = np.tile(self._strongest * caps, 2) / unit

@@ -113,20 +113,20 @@ class Newton:
 
     def _factor(self, slip: Array) -> Array:
         """Factor on the friction bound at slips >= 0 of the instant, both (n,)."""
-        strength = self._rules.strength
+        slip_factor = self._rules.slip_factor
         if self._fallen is None:
-            return strength(self.accumulated_slip + slip)
+            return slip_factor(self.accumulated_slip + slip)
         # The fall is that up to the given slip, the rise that up to the slip itself.
         fallen = self.accumulated_slip + self._fallen
         return (
-            strength(fallen)
-            - strength.rise(fallen)
-            + strength.rise(self.accumulated_slip + slip)
+            slip_factor(fallen)
+            - slip_factor.rise(fallen)
+            + slip_factor.rise(self.accumulated_slip + slip)
         )
 
     def _slope(self, slip: Array) -> Array:
         """Growth of the factor per further slip at slips >= 0, both (n,)."""
-        slope = self._rules.strength.slope(self.accumulated_slip + slip)
+        slope = self._rules.slip_factor.slope(self.accumulated_slip + slip)
         if self._fallen is None:
             return slope
         return np.maximum(slope, 0.0)
@@ -251,7 +251,7 @@ class Newton:
             if rules.is_nonlinear:
                 slip = _slip_of_states(states, slip)
                 tangent, is_capped = self._linearised(system, slip, force, sides)
-                segments = rules.strength.segment(self.accumulated_slip + slip)
+                segments = rules.slip_factor.segment(self.accumulated_slip + slip)
                 piece += segments.tobytes() + is_capped.tobytes()
             # On one piece of the laws a linear problem comes to rest in one step, and a
             # nonlinear one may take several.
@@ -377,7 +377,7 @@ class Newton:
         rules = self._rules
         begin = np.abs(at.slip)
         end = np.abs(reached.slip)
-        slope = rules.strength.lowest_slope(
+        slope = rules.slip_factor.lowest_slope(
             self.accumulated_slip + np.minimum(begin, end),
             self.accumulated_slip + np.maximum(begin, end),
         )

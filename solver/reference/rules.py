@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from solver.arrays import Array, Flags, Indices, in_rows
 from solver.discrete.problem import Problem
-from solver.laws import OPEN, Contact, Strength
+from solver.laws import OPEN, Contact, SlipFactor
 from solver.laws.friction import is_intact
 from solver.laws.play import PLAIN
 from solver.reference.assembly import NoReferenceError
@@ -65,7 +65,7 @@ class Rules:
         Displacement in series with the jump, per force, shape (n,), scaled; 0 where
         there is none. The other rules then hold for the sum of the jump and of this
         displacement.
-    strength
+    slip_factor
         Factor on all bounds over accumulated slip, scaled.
     """
 
@@ -76,7 +76,7 @@ class Rules:
     bound: Array
     cap: Array
     compliance: Array
-    strength: Strength = PLAIN
+    slip_factor: SlipFactor = PLAIN
 
     @property
     def is_frictionless(self) -> Flags:
@@ -112,12 +112,12 @@ class Rules:
     @cached_property
     def changes_with_slip(self) -> bool:
         """Friction changes with slip somewhere."""
-        return set(self.strength.factors) != {1.0}
+        return set(self.slip_factor.factors) != {1.0}
 
     @cached_property
     def softens(self) -> bool:
         """Friction falls with slip somewhere."""
-        return bool(self.strength.slopes.min() < 0.0)
+        return bool(self.slip_factor.slopes.min() < 0.0)
 
     @cached_property
     def is_nonlinear(self) -> bool:
@@ -168,7 +168,7 @@ class Rules:
             bound[self.bonds] *= is_intact(opening[under], force[under])
         bound = self.before_slip(bound, force)
         if self.changes_with_slip:
-            return bound * self.strength(np.cumsum(np.abs(slip), axis=1))
+            return bound * self.slip_factor(np.cumsum(np.abs(slip), axis=1))
         return bound
 
 
@@ -180,7 +180,7 @@ def rules_of(problem: Problem) -> Rules:
     NoReferenceError
         If slip changes friction otherwise on one interface than on another.
     """
-    strengths = set[Strength]()
+    slip_factors = set[SlipFactor]()
     parts = list[Rules]()
     places = list[Indices]()
     for law, _, _, forces in problem.rubbing.stacks:
@@ -188,15 +188,15 @@ def rules_of(problem: Problem) -> Rules:
         places += forces
         if not parts[-1].is_frictionless.all():
             # Without friction it does not matter how slip would change it.
-            strengths.add(law.tangential.strength or PLAIN)
-    if len(strengths) > 1:
+            slip_factors.add(law.tangential.slip_factor or PLAIN)
+    if len(slip_factors) > 1:
         raise NoReferenceError(problem.no_reference)
     order = np.argsort(np.concatenate(places))
     stacked = {}
     for name in OF_JUMPS:
         rows = in_rows([getattr(part, name) for part in parts])
         stacked[name] = rows[order]
-    return Rules(**stacked, strength=next(iter(strengths), PLAIN))
+    return Rules(**stacked, slip_factor=next(iter(slip_factors), PLAIN))
 
 
 def _components(law: Contact, places: Indices) -> list[Rules]:

@@ -130,7 +130,7 @@ def fingerprint(problem: Problem) -> bytes:
         force,
         *problem.prescribed,
         *of_jumps,
-        [rules.strength.slips, rules.strength.factors],
+        [rules.slip_factor.slips, rules.slip_factor.factors],
         *entries,
         *positions,
         [] if problem.rest is None else problem.rest,

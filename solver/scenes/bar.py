@@ -331,7 +331,7 @@ class BarSettings(Settings):
             stiffness=self.young * self.section * mean,
             elements=self.elements,
             substructures=self.substructures,
-            bound=shared.bound(self, factors),
+            strength=shared.strength(self, factors),
             left=_end_of(self, "left"),
             right=_end_of(self, "right"),
             instants=self.times(),
@@ -367,11 +367,11 @@ class BarSettings(Settings):
     def sentence(self) -> str:
         """Describe the bar in a sentence."""
         rods = self.structure()
-        bound = self.law.without_slip(rods.bound)
+        strength = self.law.without_slip(rods.strength)
         table = "smooth"
-        if bound.all():
+        if strength.all():
             table = "rough"
-        elif bound.any():
+        elif strength.any():
             table = "partly rough"
         body = "An elastic bar"
         if shared.is_steel(self.young):
@@ -403,9 +403,9 @@ class BarSettings(Settings):
         if {self.left_end, self.right_end} & set(HOLDING):
             return
         rods = self.structure()
-        bound = self.law.without_slip(rods.bounds) * self.law.strongest
+        strength = self.law.without_slip(rods.strengths) * self.law.strongest
         shares = tributary(self.elements) * (self.length / self.elements)
-        largest = np.broadcast_to(shares @ bound, (self.n_instants,))
+        largest = np.broadcast_to(shares @ strength, (self.n_instants,))
         forces = [end.force for end in rods.ends.values() if end.force is not None]
         if rods.body_force is not None:
             forces.append(self.length * rods.body_force)

@@ -13,7 +13,7 @@ from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
-from solver.laws import FrictionLaw, Strength
+from solver.laws import FrictionLaw, SlipFactor
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.elastic_bodies import (
     HalfPlane,
@@ -43,9 +43,11 @@ STEADY = 0.01
 
 def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
     """Friction along the bar, and the loop of its end."""
-    # Under a known pressure, friction by pressure and cohesion are one known bound.
+    # Under a known pressure, friction by pressure and cohesion are one known strength.
     law = replace(bar.friction_law, cohesion=0.0, cap=np.inf)
-    bar = replace(bar, bound=bar.friction_law.without_slip(bar.bound), friction_law=law)
+    bar = replace(
+        bar, strength=bar.friction_law.without_slip(bar.strength), friction_law=law
+    )
     closed = closed_form(bar)
     if closed is not None:
         friction = problem.friction
@@ -53,33 +55,37 @@ def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
         yield ExactCurve("friction", bar.nodes, density)
         yield ExactCurve("loop", closed.end_displacement, bar.load)
     elif _is_even(bar) and law == FrictionLaw(stiffness=law.stiffness):
-        given = bar.length, bar.stiffness, float(bar.bound[0]), law.stiffness
+        given = bar.length, bar.stiffness, float(bar.strength[0]), law.stiffness
         grown = masing(bar.load, lambda force: pulled_compliant_bar(force, *given)[0])
         yield ExactCurve("loop", grown, bar.load)
-    elif _is_even(bar) and law.strength and law == FrictionLaw(strength=law.strength):
-        yield from _grown(bar, law.strength)
+    elif (
+        _is_even(bar)
+        and law.slip_factor
+        and law == FrictionLaw(slip_factor=law.slip_factor)
+    ):
+        yield from _grown(bar, law.slip_factor)
 
 
-def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
+def _grown(bar: Rods, slip_factor: SlipFactor) -> Iterator[ExactCurve]:
     """Loop under a growing load while friction still changes at every slipping point.
 
     Where friction softens, the load must stay below the largest one that the bar bears.
     """
-    (_, slip_length, *_) = strength.slips
-    (_, ratio, *_) = strength.factors
-    bound = float(bar.bound[0])
+    (_, slip_length, *_) = slip_factor.slips
+    (_, ratio, *_) = slip_factor.factors
+    strength = float(bar.strength[0])
     slope = abs(ratio - 1.0) / slip_length
     if not slope or np.any(np.diff(bar.load, prepend=0.0) < 0.0):
         return
-    gamma = np.sqrt(bound * slope / bar.stiffness)
-    share = float(bar.load[-1]) * gamma / bound
+    gamma = np.sqrt(strength * slope / bar.stiffness)
+    share = float(bar.load[-1]) * gamma / strength
     if ratio > 1.0:
         zone = np.arcsinh(share)
     else:
         zone = np.arcsin(min(share, 1.0))
     if (share >= 1.0 and ratio < 1.0) or zone > gamma * bar.length:
         return
-    given = bar.stiffness, bound, ratio, slip_length
+    given = bar.stiffness, strength, ratio, slip_length
     end = np.array([pulled_changing_bar(force, *given) for force in bar.load.tolist()])
     if end[-1] <= slip_length:
         yield ExactCurve("loop", end, bar.load)
@@ -87,7 +93,9 @@ def _grown(bar: Rods, strength: Strength) -> Iterator[ExactCurve]:
 
 def _is_even(bar: Rods) -> bool:
     """Return whether the bar is uniform, and only a force at its end moves it."""
-    is_uniform = bar.section is None and bar.bound.ndim == 1 and not np.ptp(bar.bound)
+    is_uniform = (
+        bar.section is None and bar.strength.ndim == 1 and not np.ptp(bar.strength)
+    )
     return bar.is_only_pulled and is_uniform
 
 
@@ -223,7 +231,7 @@ def _elastic_stiffness(
 ) -> float | None:
     """Bending stiffness of layers apart or of one beam, N/m; None of others."""
     law = body.friction_law
-    is_plain = law == replace(FrictionLaw(), strength=law.strength)
+    is_plain = law == replace(FrictionLaw(), slip_factor=law.slip_factor)
     is_graduated = bool(np.any(body.relative_lengths < 1.0))
     if is_plain and not np.any(body.friction):
         beams: float | None = 1.0 * len(body.relative_lengths)

@@ -83,7 +83,7 @@ class Fault:
     Attributes
     ----------
     body
-        The quarter; the bound of its support is already reduced by the fluid.
+        The quarter; the strength of its support is already reduced by the fluid.
     stress
         Shear stress far away, Pa, for drawing.
     fluid

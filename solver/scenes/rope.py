@@ -257,9 +257,9 @@ class RopeSettings(Settings):
         section = self.section
         tension = self.path("tension_load")
         factors = shared.factors_of(self)
-        bounds = section.friction_bounds(tension, self.friction, factors)
+        strengths = section.friction_strengths(tension, self.friction, factors)
         if self.tension_load == "steady":
-            bounds = bounds[:, 0]
+            strengths = strengths[:, 0]
         curvature = self._curvature_at_nodes()
         for layer, layer_data in enumerate(section.layers):
             count = 1
@@ -273,7 +273,7 @@ class RopeSettings(Settings):
                     radius=section.radii[layer],
                     start=2.0 * np.pi * number / layer_data.wires,
                     length=self._length_of(layer),
-                    bound=bounds[layer],
+                    strength=strengths[layer],
                     curvature=curvature,
                     tension=section.wire_tension(layer, tension),
                     stands_for=layer_data.wires // count,

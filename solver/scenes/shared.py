@@ -212,7 +212,7 @@ def pressure(which: str, slider: float) -> tuple[param.Number[float], CurveParam
     )
 
 
-def bound(settings: Any, factors: Array) -> Array:
+def strength(settings: Any, factors: Array) -> Array:
     """Largest friction mu p of rods at nodes per length, N/m, from factors, (n_nodes,).
 
     Shape (n_nodes,), or (n_nodes, n_instants) where the pressure changes.

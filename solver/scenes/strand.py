@@ -148,7 +148,7 @@ class StrandSettings(Settings):
             stiffness=stiffness,
             elements=self.elements,
             substructures=self.substructures,
-            bound=shared.bound(self, np.ones(self.elements + 1)),
+            strength=shared.strength(self, np.ones(self.elements + 1)),
             left=End(displacement=np.zeros_like(load)),
             right=right,
             instants=self.times(),
@@ -196,11 +196,11 @@ class StrandSettings(Settings):
         factors = shared.factors_of(self)
         beside = factors[max(self.broken - 2, 0) : self.broken].tolist()
         pressed = self.friction * self.path("pressure_load")
-        bound = np.sum(
+        strength = np.sum(
             [self.law.without_slip(factor * pressed) for factor in beside], axis=0
         )
         # Friction alone holds the wire beyond its break.
-        friction = share * self.length * bound * self.law.strongest
+        friction = share * self.length * strength * self.law.strongest
         worst = int(np.argmax(tension - friction))
         largest = float(tension[worst])
         capacity = float(friction[worst])

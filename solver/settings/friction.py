@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.laws import FrictionLaw, Strength
+from solver.laws import FrictionLaw, SlipFactor
 from solver.refusal import plain
 from solver.settings.definitions import ANY, CONTACT, Rows, TablePreset, about
 from solver.settings.method import MethodSettings
@@ -129,18 +129,18 @@ class FrictionSettings(MethodSettings):
         if self.friction_law == "compliant":
             return FrictionLaw(stiffness=self.contact_stiffness * self.contact_unit)
         is_given = self.is_general and self.strength != "constant"
-        strength = None
+        slip_factor = None
         # A strength that stays 1 is no strength: then no slip is accumulated.
         if self.is_linear_in_slip or is_given:
             slips, factors = zip(*self.strength_points(), strict=True)
-            strength = Strength(slips, factors)
+            slip_factor = SlipFactor(slips, factors)
         if not self.is_general:
-            return FrictionLaw(strength=strength)
+            return FrictionLaw(slip_factor=slip_factor)
         return FrictionLaw(
             stiffness=self.tangential_stiffness or np.inf,
             cohesion=self.cohesion,
             cap=self.friction_cap or np.inf,
-            strength=strength,
+            slip_factor=slip_factor,
         )
 
     def strength_points(self) -> Rows:

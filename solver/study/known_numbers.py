@@ -330,8 +330,10 @@ def moved_end(answer: Answer) -> Iterator[Number]:
     rods = answer.settings.structure()
     assert isinstance(rods, Rods)
     assert rods.right.displacement is not None
-    bound = float(rods.bound.max())
-    known = np.sqrt(2.0 * rods.stiffness * bound * float(rods.right.displacement[-1]))
+    strength = float(rods.strength.max())
+    known = np.sqrt(
+        2.0 * rods.stiffness * strength * float(rods.right.displacement[-1])
+    )
     found = rods.end_force(answer.problem, "right").of(answer.fields)
     yield "force at the moved end", "N", float(known), float(found[-1])
 

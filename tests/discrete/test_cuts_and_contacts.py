@@ -25,7 +25,7 @@ from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.rods import End, Rods
-from solver.laws import OPEN, Component, Contact, Strength, Unilateral
+from solver.laws import OPEN, Component, Contact, SlipFactor, Unilateral
 from solver.laws.play import play
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.incremental import reference_of
@@ -49,7 +49,7 @@ def rods(substructures: int, **changes: Any) -> Rods:
         "stiffness": 3e4,
         "elements": 12,
         "substructures": substructures,
-        "bound": random.uniform(10.0, 20.0, 13),
+        "strength": random.uniform(10.0, 20.0, 13),
         "left": End(displacement=1e-4 * INSTANTS, spring=5e4),
         "right": End(force=1e3 * np.sin(6.0 * INSTANTS)),
         "instants": INSTANTS,
@@ -98,7 +98,9 @@ def test_cut_or_not_rods_have_one_stiffness_and_load(kind: str, cuts: int) -> No
 
 def test_stiffness_of_a_rod_is_that_of_springs_in_series() -> None:
     """Pulled at an end whose other is held: the sum of compliances, in m/N."""
-    of = rods(4, left=End(displacement=0.0 * INSTANTS), bound=np.zeros(13), strain=None)
+    of = rods(
+        4, left=End(displacement=0.0 * INSTANTS), strength=np.zeros(13), strain=None
+    )
     problem = discretise(replace(of, body_force=None))
     assert of.section is not None
     compliance = float(np.sum(2.0 / 12.0 / (3e4 * of.section)))
@@ -112,7 +114,7 @@ def test_a_rod_that_is_heated_is_longer_by_its_strain_and_pulls_where_it_is_held
 ):
     strain = np.tile(1e-3 * INSTANTS, (12, 1))
     held = End(displacement=0.0 * INSTANTS)
-    plain = {"bound": np.zeros(13), "body_force": None, "strain": strain}
+    plain = {"strength": np.zeros(13), "body_force": None, "strain": strain}
     free = discretise(rods(3, left=held, right=End(), **plain))
     ends = reference_of(free).displacement[-1]
     assert ends == pytest.approx(2.0 * 1e-3 * INSTANTS, rel=1e-10)
@@ -120,8 +122,8 @@ def test_a_rod_that_is_heated_is_longer_by_its_strain_and_pulls_where_it_is_held
 
 def test_a_support_that_settles_moves_no_rod_that_does_not_rub() -> None:
     settlement = 1e-4 * np.random.default_rng(2).normal(size=(13, 5))
-    still = discretise(rods(3, bound=np.zeros(13)))
-    moved = discretise(rods(3, bound=np.zeros(13), settlement=settlement))
+    still = discretise(rods(3, strength=np.zeros(13)))
+    moved = discretise(rods(3, strength=np.zeros(13), settlement=settlement))
     assert np.abs(reference_of(moved).displacement).max() > 0.0
     assert moved.absolute(reference_of(moved).displacement) == pytest.approx(
         reference_of(still).displacement, abs=1e-14
@@ -479,11 +481,11 @@ def test_driven_points_on_springs_lag_like_play_and_on_stiff_ones_not() -> None:
 
 
 def test_friction_of_driven_points_changes_with_the_slip_that_has_gone_by() -> None:
-    strength = Strength((0.0, 5.0, 10.0), (1.0, 0.5, 0.8))
-    found, values = driven(strength=strength)
+    slip_factor = SlipFactor((0.0, 5.0, 10.0), (1.0, 0.5, 0.8))
+    found, values = driven(slip_factor=slip_factor)
     still = np.zeros((3, 30))
     slip = np.diff(values, axis=1, prepend=0.0)
-    wanted = np.array([[0.2], [0.5]]) * strength(np.cumsum(np.abs(slip), axis=1))
+    wanted = np.array([[0.2], [0.5]]) * slip_factor(np.cumsum(np.abs(slip), axis=1))
     assert np.abs(found.force(still, still))[slip != 0.0] == pytest.approx(
         wanted[slip != 0.0]
     )

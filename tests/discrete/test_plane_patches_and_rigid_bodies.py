@@ -282,7 +282,7 @@ def test_both_sides_that_hold_a_body_up_keep_it_from_turning():
 
 STILL = Given(True, np.zeros(17))
 FREE = Given(False, np.zeros(17))
-KNOWN = Support(np.zeros(7), 0.3, bound=np.full((7, 17), 1e5))
+KNOWN = Support(np.zeros(7), 0.3, strength=np.full((7, 17), 1e5))
 LOOSE = {
     "a hinge": (1, None, {"top": Side(STILL, FREE), "left": Side(FREE, STILL)}),
     "two bodies on a hinge": (

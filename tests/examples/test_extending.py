@@ -62,8 +62,8 @@ def test_a_scene_is_solved_as_its_closed_form_has_it() -> None:
     settings = kind.checked({"elements": 100, "substructures": 5, "load": "ramp"})
     run = solve(discretise(settings), method_of(settings))
     assert run.is_certified
-    bound = settings.friction * settings.pressure
-    exact = settings.peak**2 / (2.0 * settings.young * settings.section * bound)
+    strength = settings.friction * settings.pressure
+    exact = settings.peak**2 / (2.0 * settings.young * settings.section * strength)
     assert run.iterate.displacement[-1, -1] == pytest.approx(exact, rel=1e-6)
     assert kind.checked(kind.SMALL).elements == 20
     assert "pulled" in settings.sentence()
@@ -76,12 +76,12 @@ def test_a_quantity_is_a_function_of_a_run() -> None:
     found = known["friction_power"]
     settings = CATALOGUE["bar"].checked({"load": "ramp", "elements": 100})
     run = finished_run(settings)
-    bound: Any = settings.values()["friction"] * settings.values()["pressure"]
+    strength: Any = settings.values()["friction"] * settings.values()["pressure"]
     values = settings.values()
     stiffness = values["young"] * values["section"]
     # The energy F^3 / (6 E S q) grows as time to the third power, F = peak t.
     steps = run.problem.instants[-2:]
-    energy = (values["peak"] * steps) ** 3 / (6.0 * stiffness * bound)
+    energy = (values["peak"] * steps) ** 3 / (6.0 * stiffness * strength)
     expected = np.diff(energy) / np.diff(steps)
     assert found(run) == pytest.approx(float(expected[0]), rel=0.02)
     assert (found.name, found.unit) == ("friction_power", "W")

@@ -34,8 +34,8 @@ def equilibria(problem, instant, before, accumulated_slip):
     """All increments of an instant, shape (n_equilibria, n_dofs), scaled.
 
     A point sticks, or slips either way and comes to rest between two points of the
-    strength: for each choice of all points the problem is linear, and its solution
-    shows whether the choice was right. All choices are solved side by side.
+    factor over slip: for each choice of all points the problem is linear, and its
+    solution shows whether the choice was right. All choices are solved side by side.
     """
     tried = _Instant(problem, instant, before, accumulated_slip)
     direction, piece = tried.choices()
@@ -50,7 +50,7 @@ class _Instant:
     """Linear problems of one instant, one for each choice of statuses.
 
     A choice has a direction for each point that rubs, -1, 0 (it sticks) or 1, and the
-    piece of the strength on which its slip ends; shape (n_choices, n_rubbing) each.
+    piece of the factor on which its slip ends; shape (n_choices, n_rubbing) each.
     """
 
     def __init__(self, problem, instant, before, accumulated_slip):
@@ -62,7 +62,7 @@ class _Instant:
         free = np.setdiff1d(dofs, fixed)
         self._fixed = fixed
         self._given = prescribed[:, instant] - before[fixed]
-        self._strength = rules.strength
+        self._slip_factor = rules.slip_factor
         self._stiffness = assembled_stiffness(problem).toarray()
         self._force = external_force(problem)[:, instant] - self._stiffness @ before
         self._rubbing = free[bound[free] > 0.0]
@@ -72,16 +72,16 @@ class _Instant:
 
     def choices(self):
         """All choices: directions and pieces."""
-        pieces = range(len(self._strength.slips))
+        pieces = range(len(self._slip_factor.slips))
         each = [(0, 0), *product((-1, 1), pieces)]
         choices = np.array(list(product(each, repeat=len(self._rubbing))))
         return choices[..., 0], choices[..., 1]
 
     def increments(self, direction, piece):
         """Solution of each choice, (n_regular, n_dofs), and which choices have one."""
-        starts = np.array(self._strength.slips)[piece]
-        factors = np.array(self._strength.factors)[piece]
-        slopes = self._strength.slopes[piece]
+        starts = np.array(self._slip_factor.slips)[piece]
+        factors = np.array(self._slip_factor.factors)[piece]
+        slopes = self._slip_factor.slopes[piece]
         # The bound at the end of a slip is linear in it: what is left without slip, and
         # the slope.
         left = self._bound * (factors + slopes * (self._slipped - starts))
@@ -108,13 +108,13 @@ class _Instant:
 
     def obeys(self, moved, direction, piece):
         """Check which solutions, (n, n_dofs), are what was chosen, (n,)."""
-        strength = self._strength
+        slip_factor = self._slip_factor
         pulled = np.abs(self._force - moved @ self._stiffness)[:, self._rubbing]
         slip = direction * moved[:, self._rubbing]
         rests = self._slipped + slip
-        starts = np.array(strength.slips)[piece]
-        ends = np.append(strength.slips[1:], np.inf)[piece]
-        bound = self._bound * strength(self._slipped)
+        starts = np.array(slip_factor.slips)[piece]
+        ends = np.append(slip_factor.slips[1:], np.inf)[piece]
+        bound = self._bound * slip_factor(self._slipped)
         sticks = pulled <= bound + self._slack
         slips = (slip > 0.0) & (starts <= rests) & (rests <= ends)
         return np.where(direction == 0, sticks, slips).all(axis=1)

@@ -28,7 +28,7 @@ from solver.laws import (
     Interface,
     Neumann,
     Perfect,
-    Strength,
+    SlipFactor,
 )
 from solver.laws.interface import IncrementalForm, Rule
 from solver.laws.unilateral import ContactRule
@@ -93,14 +93,14 @@ class DampedLoad(Neumann):
         return viscous(self.rows, np.full(len(self.rows), self.damping), self.values, k)
 
 
-def bar(bound: float | Array = 300.0, force: Array = PULL) -> Problem:
+def bar(strength: float | Array = 300.0, force: Array = PULL) -> Problem:
     return discrete.discretise(
         Rods(
             length=1.0,
             stiffness=1e6,
             elements=8,
             substructures=2,
-            bound=np.full(9, bound),
+            strength=np.full(9, strength),
             left=End(displacement=0.0 * T),
             right=End(force=force),
             instants=T,
@@ -260,7 +260,7 @@ def test_a_contact_with_a_local_stage_of_its_own_is_solved_as_that() -> None:
     solution = solve(as_contact(HalfContact), EXACT)
     assert is_honest(solution)
     assert solution.status.ending is Ending.CONVERGED
-    expected = reference_of(bar(bound=150.0)).displacement
+    expected = reference_of(bar(strength=150.0)).displacement
     shown = solution.iterate.displacement
     assert shown == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
 
@@ -315,11 +315,11 @@ def own_friction() -> Problem:
     return with_law(of, "friction", replace(of.friction, tangential=half))
 
 
-def two_strengths() -> Problem:
+def two_slip_factors() -> Problem:
     of = CATALOGUE["strand"].checked({"elements": 8, "instants": 5, "wires": 3})
     made = discretise(of)
     name, law = next(iter(made.rubbing.items()))
-    along = replace(law.tangential, strength=Strength((0.0, 1.0), (1.0, 0.5)))
+    along = replace(law.tangential, slip_factor=SlipFactor((0.0, 1.0), (1.0, 0.5)))
     return with_law(made, name, replace(law, tangential=along))
 
 
@@ -371,7 +371,7 @@ UNREAD: dict[str, tuple[Callable[[], Problem], str]] = {
     "a load with a damper": (lambda: damped(DampedLoad), "DampedLoad"),
     "a contact with a local stage": (lambda: as_contact(HalfContact), "HalfContact"),
     "a friction of its own": (own_friction, 'Contact of the interface "friction"'),
-    "two strengths": (two_strengths, "strength"),
+    "two slip factors": (two_slip_factors, "slip factor"),
     "glue between two numbers": (glued_apart, "glued"),
     "pairs that differ": (uneven_pairs, 'interface "support"'),
     "no contact": (without_contact, "contact"),
@@ -472,7 +472,7 @@ def test_a_cap_on_friction_of_known_bound_is_kept_by_both() -> None:
     law = of.friction
     cap = 0.5 * law.tangential.bound[:, 0]
     capped = replace(law, tangential=replace(law.tangential, cap=cap))
-    expected = reference_of(bar(bound=150.0)).displacement
+    expected = reference_of(bar(strength=150.0)).displacement
     of = with_law(of, "friction", capped)
     size = 1e-6 * np.abs(expected).max()
     assert reference_of(of).displacement == pytest.approx(expected, abs=size)

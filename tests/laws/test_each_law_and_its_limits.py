@@ -21,7 +21,7 @@ from solver.laws import (
     Neumann,
     Perfect,
     RodStiffness,
-    Strength,
+    SlipFactor,
     Unilateral,
 )
 from solver.laws.friction import compliance_of, is_intact
@@ -145,14 +145,14 @@ def test_macro_forces_of_a_load_are_its_resultants_and_those_of_a_cut_cancel() -
 
 # Friction and contact
 
-FALLING = Strength((0.0, 0.5, 2.0), (1.0, 0.6, 0.4))
-RISING = Strength((0.0, 1.0, 5.0), (1.0, 1.2, 1.5))
+FALLING = SlipFactor((0.0, 0.5, 2.0), (1.0, 0.6, 0.4))
+RISING = SlipFactor((0.0, 1.0, 5.0), (1.0, 1.2, 1.5))
 ALONG = {
     "plain": {},
     "spring": {"compliance": np.full(PAIRS, 0.7)},
     "cap": {"cap": np.linspace(0.05, 0.3, PAIRS)},
-    "falling": {"strength": FALLING},
-    "rising, spring": {"strength": RISING, "compliance": np.full(PAIRS, 0.2)},
+    "falling": {"slip_factor": FALLING},
+    "rising, spring": {"slip_factor": RISING, "compliance": np.full(PAIRS, 0.2)},
     "cap, spring": {"cap": np.full(PAIRS, 0.1), "compliance": np.full(PAIRS, 2.0)},
     "start": {"start": np.linspace(-1.0, 1.0, PAIRS)},
 }
@@ -279,7 +279,7 @@ def test_a_law_begun_where_the_first_half_ended_goes_on_like_the_whole() -> None
     assert rest == pytest.approx(whole[:, 9:], abs=1e-14)
     assert begun.is_moved
     with pytest.raises(RefusedError):
-        contact_of(13, opens=True, two=True, strength=FALLING)[1].with_start(
+        contact_of(13, opens=True, two=True, slip_factor=FALLING)[1].with_start(
             np.zeros(PAIRS)
         )
 
@@ -314,8 +314,8 @@ def test_a_bond_that_opens_once_has_friction_of_pressure_alone_from_then_on() ->
     [
         FrictionLaw(),
         FrictionLaw(stiffness=3.0),
-        FrictionLaw(strength=FALLING),
-        FrictionLaw(stiffness=2.0, cohesion=0.1, cap=0.3, strength=RISING),
+        FrictionLaw(slip_factor=FALLING),
+        FrictionLaw(stiffness=2.0, cohesion=0.1, cap=0.3, slip_factor=RISING),
     ],
 )
 def test_a_body_on_its_image_rubs_as_one_of_two_that_move_the_opposite_way(
@@ -345,7 +345,7 @@ def test_a_body_on_its_image_rubs_as_one_of_two_that_move_the_opposite_way(
 
 
 def test_friction_of_a_law_has_no_units_but_those_of_its_scales() -> None:
-    law = FrictionLaw(stiffness=2e9, cohesion=3e3, cap=4e3, strength=FALLING)
+    law = FrictionLaw(stiffness=2e9, cohesion=3e3, cap=4e3, slip_factor=FALLING)
     weights = np.array([0.1, 0.2, 0.3, 0.4])
     length = 1e-3
     force = 1e2
@@ -530,10 +530,10 @@ def test_friction_of_a_kind_is_a_value_that_begins_as_it_was_made() -> None:
     assert along.during(slice(1, 2)) is along
     changing = replace(along, bound=np.array([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]))
     assert np.array_equal(changing.during(slice(1, 3)).bound, changing.bound[:, 1:])
-    falls = replace(changing, strength=FALLING)
+    falls = replace(changing, slip_factor=FALLING)
     assert falls.softens
     assert not changing.softens
     assert falls.steepest_fall == pytest.approx([0.3 * 0.8, 0.6 * 0.8])
-    assert replace(changing, strength=RISING).highest == pytest.approx(
+    assert replace(changing, slip_factor=RISING).highest == pytest.approx(
         1.5 * changing.bound
     )

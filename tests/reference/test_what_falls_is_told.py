@@ -36,7 +36,7 @@ def stacked() -> Settings:
     return CATALOGUE["wall"].checked(STACKED)
 
 
-def pulled_rod(bound: float) -> Problem:
+def pulled_rod(strength: float) -> Problem:
     times = np.linspace(0.0, 1.0, 5)
     rods = Rods(
         length=1.0,
@@ -45,7 +45,7 @@ def pulled_rod(bound: float) -> Problem:
         substructures=1,
         instants=times,
         duration=1.0,
-        bound=np.full(7, bound),
+        strength=np.full(7, strength),
         left=End(force=0.0 * times),
         right=End(force=900.0 * times),
     )

@@ -32,7 +32,7 @@ def test_rows_of_a_named_construction_are_that_construction(preset: str) -> None
             getattr(named.section, name), rel=1e-9
         )
     bounds = [
-        [float(wire.bound) for wire in s.structure().wires] for s in (named, rows)
+        [float(wire.strength) for wire in s.structure().wires] for s in (named, rows)
     ]
     assert bounds[1] == pytest.approx(bounds[0], rel=1e-9)
 

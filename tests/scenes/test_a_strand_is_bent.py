@@ -174,8 +174,10 @@ def test_what_is_no_strand_is_refused() -> None:
     short = replace(scene.wires[0], curvature=scene.wires[0].curvature[1:])
     with pytest.raises(RefusedError, match=r"curvature = of shape .* shape \[25, 31\]"):
         discrete.discretise(replace(scene, wires=[scene.wires[0], short]))
-    with pytest.raises(RefusedError, match="bound = -1"):
-        discrete.discretise(replace(scene, wires=[replace(scene.wires[0], bound=-1.0)]))
+    with pytest.raises(RefusedError, match="strength = -1"):
+        discrete.discretise(
+            replace(scene, wires=[replace(scene.wires[0], strength=-1.0)])
+        )
 
 
 def taken(name: str, run: FinishedRun) -> float:
@@ -245,11 +247,11 @@ def test_energy_stiffness_and_slip_are_those_of_the_closed_form() -> None:
     # a metre.
     work = taken("wire_work", run)
     slip = taken("wire_slip", run)
-    assert work == pytest.approx(2.0 * exact.layers[0].bound * slip, rel=1e-6)
+    assert work == pytest.approx(2.0 * exact.layers[0].strength * slip, rel=1e-6)
 
 
 WIRE = WireLayer(6, diameter=3e-3, young=2e11, lay=np.radians(12.0))
-BENT = BentWire(WIRE, radius=4e-3, bound=3000.0)
+BENT = BentWire(WIRE, radius=4e-3, strength=3000.0)
 
 
 def test_it_comes_nearer_with_order_two() -> None:

@@ -15,7 +15,7 @@ from solver.scenes import CATALOGUE
 
 LENGTH = 1.0
 AXIAL = 210e9 * 3.14e-6
-BOUND = 0.3 * 5000.0
+STRENGTH = 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}
 
 
@@ -26,7 +26,7 @@ def run(scene="bar", **values):
 def pulled(force, stiffness):
     """End displacement of a clamped bar under a monotone pull, and its slip zone."""
     density = stiffness * AXIAL / LENGTH**2
-    return pulled_compliant_bar(force, LENGTH, AXIAL, BOUND, density)
+    return pulled_compliant_bar(force, LENGTH, AXIAL, STRENGTH, density)
 
 
 @pytest.mark.parametrize("stiffness", [3.0, 1e3])

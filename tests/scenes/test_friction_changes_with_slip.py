@@ -15,7 +15,7 @@ from solver import Stack, discrete
 from solver.discrete import Given, Side, Support
 from solver.discrete.rods.rods import End, Rods
 from solver.latin import Ending, Latin, solve
-from solver.laws import Contact, FrictionLaw, Strength
+from solver.laws import Contact, FrictionLaw, SlipFactor
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
@@ -26,7 +26,7 @@ MOST = 1500.0
 CHANGING = {"friction_law": "slip-dependent"}
 
 
-def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
+def pulled_bar(law, force, elements, *, displaced=False, strength=MOST):
     """A clamped bar of 1 m whose end is pulled, or displaced by force L / ES."""
     force = np.asarray(force, dtype=float)
     return discrete.discretise(
@@ -35,7 +35,7 @@ def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
             stiffness=STIFFNESS,
             elements=elements,
             substructures=1,
-            bound=np.full(elements + 1, bound),
+            strength=np.full(elements + 1, strength),
             left=End(displacement=np.zeros(len(force))),
             right=End(displacement=force / STIFFNESS) if displaced else End(force),
             instants=np.linspace(0.0, 1.0, len(force)),
@@ -46,7 +46,7 @@ def pulled_bar(law, force, elements, *, displaced=False, bound=MOST):
 
 
 def changing(ratio, slip_length):
-    return FrictionLaw(strength=Strength((0.0, slip_length), (1.0, ratio)))
+    return FrictionLaw(slip_factor=SlipFactor((0.0, slip_length), (1.0, ratio)))
 
 
 def gamma(ratio, slip_length):
@@ -55,9 +55,9 @@ def gamma(ratio, slip_length):
 
 STRENGTHS = [
     None,
-    Strength((0.0, 1e-3), (1.0, 5.0)),
-    Strength((0.0, 0.3), (1.0, 0.0)),
-    Strength((0.0, 0.1, 0.4, 3.0), (1.0, 1.6, 0.4, 0.7)),
+    SlipFactor((0.0, 1e-3), (1.0, 5.0)),
+    SlipFactor((0.0, 0.3), (1.0, 0.0)),
+    SlipFactor((0.0, 0.1, 0.4, 3.0), (1.0, 1.6, 0.4, 0.7)),
 ]
 
 
@@ -74,11 +74,11 @@ STRENGTHS = [
     st.sampled_from([0.0, 0.4, 10.0]),
 )
 def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
-    seed, opens, two, compliance, strength, cohesion, cap, gap, mu
+    seed, opens, two, compliance, slip_factor, cohesion, cap, gap, mu
 ):
     """Signorini's law across, and Coulomb's along with what may be added to it."""
     random, plain, common = rubbing_points(seed, opens=opens, two=two)
-    along = replace(plain, strength=strength, bound=plain.bound + cohesion)
+    along = replace(plain, slip_factor=slip_factor, bound=plain.bound + cohesion)
     if opens:
         common["normal"] = replace(common["normal"], gap=gap * random.normal(size=4))
         along = replace(along, friction=np.full(4, mu))
@@ -100,8 +100,8 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
         assert np.all(np.minimum(opening, pressing) <= 1e-11)
         bound = bound * ~np.logical_or.accumulate(opening > 1e-8, axis=1)
         bound = np.minimum(bound + mu * pressing, np.inf if cap is None else cap)
-    if strength is not None:
-        bound = bound * strength(np.cumsum(np.abs(slip), axis=1))
+    if slip_factor is not None:
+        bound = bound * slip_factor(np.cumsum(np.abs(slip), axis=1))
     assert np.all(np.abs(friction) <= bound + 1e-9)
     slips = np.abs(slip) > 1e-8
     np.testing.assert_allclose(
@@ -360,7 +360,7 @@ def pressed_block(law, *, lifted=False):
     )
 
 
-TABLE = Strength((0.0, 5e-6, 2e-5), (1.0, 1.4, 0.5))
+TABLE = SlipFactor((0.0, 5e-6, 2e-5), (1.0, 1.4, 0.5))
 
 
 @pytest.mark.parametrize("lifted", [False, True])
@@ -370,7 +370,7 @@ TABLE = Strength((0.0, 5e-6, 2e-5), (1.0, 1.4, 0.5))
         (FrictionLaw(), 12.6e6, 12.6e6),
         (FrictionLaw(cohesion=2e6), 14.6e6, 12.6e6),
         (FrictionLaw(cohesion=2e6, stiffness=1e13), 14.6e6, 12.6e6),
-        (FrictionLaw(cohesion=1e6, stiffness=1e13, strength=TABLE), 6.8e6, 6.3e6),
+        (FrictionLaw(cohesion=1e6, stiffness=1e13, slip_factor=TABLE), 6.8e6, 6.3e6),
     ],
 )
 def test_a_block_that_slips_carries_cohesion_and_friction_until_it_is_lifted(

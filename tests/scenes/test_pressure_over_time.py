@@ -42,7 +42,7 @@ def solved(scene: Rods) -> ClosedForm:
 
 def test_a_bar_slips_on_as_its_bolt_loosens_while_the_load_stands_still():
     scene = rod(load="hold", peak=500.0, pressure_load="loosening", instants=81)
-    bound = scene.bounds[0]
+    bound = scene.strengths[0]
     held = scene.instants >= 0.25
     assert np.all(scene.load[held] == 500.0)
     end = solved(scene).end_displacement
@@ -90,7 +90,7 @@ def test_shaken_once_is_shaken_for_good():
 def test_whatever_load_and_pressure_do_the_closed_form_is_the_references(load, factors):
     scene = rod(elements=80, instants=9)
     pressure = np.array([1.0, *factors])
-    scene = pulled(scene, [0.0, *load], bound=np.outer(scene.bound, pressure))
+    scene = pulled(scene, [0.0, *load], strength=np.outer(scene.strength, pressure))
     found = reference_of(discretise(scene))
     exact = closed_form(scene)
     assert found.converged.all()
@@ -125,8 +125,8 @@ def test_foolish_pressures_are_refused_in_words():
     with pytest.raises(RefusedError, match="pressures of at least 0"):
         BarSettings.checked({"pressure_load": [[0.0, 5000.0], [1.0, -1.0]]})
     for bound in (np.ones((101, 51)), np.ones(50), np.full(51, -1.0)):
-        with pytest.raises(RefusedError, match=r"Rods\.bound"):
-            replace(rod(), bound=bound)
+        with pytest.raises(RefusedError, match=r"Rods\.strength"):
+            replace(rod(), strength=bound)
     with pytest.raises(RefusedError, match="all that friction can hold"):
         CATALOGUE["strand"].checked(
             {"load": "hold", "peak": 600.0, "pressure_load": "loosening"}

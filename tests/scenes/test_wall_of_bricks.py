@@ -16,7 +16,7 @@ from solver.discrete.plane.sides import Given, Side, Support
 from solver.discrete.plane.stack import Stack
 from solver.latin import Ending, Latin, iterations, solve
 from solver.latin.end.status import collapses
-from solver.laws import OPEN, FrictionLaw, Strength
+from solver.laws import OPEN, FrictionLaw, SlipFactor
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
@@ -199,7 +199,7 @@ def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, l
     ("law", "limit"),
     [
         (FrictionLaw(), 0.3),
-        (FrictionLaw(strength=Strength((0.0, 1e-6), (1.0, 1.5))), 0.45),
+        (FrictionLaw(slip_factor=SlipFactor((0.0, 1e-6), (1.0, 1.5))), 0.45),
         (FrictionLaw(cohesion=1e5), 0.4),
         (FrictionLaw(cap=2e5), 0.2),
     ],

@@ -210,7 +210,7 @@ def test_all_friction_of_the_bar_is_there_whatever_the_mesh(seed):
         )
         problem = discretise(settings)
         (law,) = problem.rubbing.values()
-        total = settings.structure().bound @ law.weights
+        total = settings.structure().strength @ law.weights
         assert total == pytest.approx(whole, rel=1e-4)
 
 

@@ -20,7 +20,7 @@ from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
 from solver.latin import PGD, Anderson, Auto, Checkpoint, FromStatus, Nested, Stop
 from solver.latin.end.status_step import StatusStep
-from solver.laws import Dirichlet, FrictionLaw, Neumann, Strength
+from solver.laws import Dirichlet, FrictionLaw, Neumann, SlipFactor
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 
@@ -44,7 +44,7 @@ ROD = Rods(
     stiffness=1e6,
     elements=6,
     substructures=2,
-    bound=100.0 + NODES,
+    strength=100.0 + NODES,
     left=End(displacement=0.0 * T),
     right=End(force=200.0 * T),
     instants=T,
@@ -100,16 +100,16 @@ RODS: list[Case] = [
     (ROD, {"substructures": 1.5}, "Rods.substructures"),
     (ROD, {"wires": 0}, "Rods.wires"),
     (ROD, {"duration": 0.0}, "Rods.duration"),
-    (ROD, {"bound": spoilt(NODES, nan)}, "Rods.bound"),
-    (ROD, {"bound": spoilt(NODES, inf)}, "Rods.bound"),
-    (ROD, {"bound": -NODES}, "Rods.bound"),
-    (ROD, {"bound": NODES[1:]}, "Rods.bound"),
-    (ROD, {"bound": np.ones((5, 7))}, "Rods.bound"),
-    (ROD, {"bound": 100.0}, "Rods.bound"),
-    (ROD, {"bound": list(NODES)}, "Rods.bound"),
-    (ROD, {"bound": np.array(["100"] * 7)}, "Rods.bound"),
-    (ROD, {"bound": NODES + 0j}, "Rods.bound"),
-    (ROD, {"bound": None}, "Rods.bound"),
+    (ROD, {"strength": spoilt(NODES, nan)}, "Rods.strength"),
+    (ROD, {"strength": spoilt(NODES, inf)}, "Rods.strength"),
+    (ROD, {"strength": -NODES}, "Rods.strength"),
+    (ROD, {"strength": NODES[1:]}, "Rods.strength"),
+    (ROD, {"strength": np.ones((5, 7))}, "Rods.strength"),
+    (ROD, {"strength": 100.0}, "Rods.strength"),
+    (ROD, {"strength": list(NODES)}, "Rods.strength"),
+    (ROD, {"strength": np.array(["100"] * 7)}, "Rods.strength"),
+    (ROD, {"strength": NODES + 0j}, "Rods.strength"),
+    (ROD, {"strength": None}, "Rods.strength"),
     (ROD, {"instants": falling(T)}, "Rods.instants"),
     (ROD, {"instants": spoilt(T, 0.25, 2)}, "Rods.instants"),
     (ROD, {"instants": spoilt(T, nan, 2)}, "Rods.instants"),
@@ -182,7 +182,7 @@ STACKS: list[Case] = [
     (
         BODY,
         {"support": Support(0.0 * NODES, 0.3, np.ones((7, 4)))},
-        "Stack.support.bound",
+        "Stack.support.strength",
     ),
     (BODY, {"sides": None}, "Stack.sides"),
     (BODY, {"sides": {"Top": BODY.sides["top"]}}, "Stack.sides"),
@@ -194,7 +194,7 @@ STACKS: list[Case] = [
     (BODY.support, {"gap": 0.0}, "Support.gap"),
     (BODY.support, {"gap": spoilt(NODES, nan)}, "Support.gap"),
     (BODY.support, {"friction": -NODES}, "Support.friction"),
-    (BODY.support, {"bound": NODES}, "Support.bound"),
+    (BODY.support, {"strength": NODES}, "Support.strength"),
     (BODY.sides["top"].y, {"mean": -1e6}, "Given.mean"),
     (BODY.sides["top"].y, {"slope": "steep"}, "Given.slope"),
     (BODY.sides["top"].y, {"prescribed": "yes"}, "Given.prescribed"),
@@ -212,7 +212,7 @@ ROPES: list[Case] = [
     (ROPE, {"section": None}, "Rope.section"),
     (ROPE, {"wires": [replace(WIRE, tension=np.ones(4))]}, "Rope.wires[0].tension"),
     (WIRE, {"radius": nan}, "RopeWire.radius"),
-    (WIRE, {"bound": -1.0}, "RopeWire.bound"),
+    (WIRE, {"strength": -1.0}, "RopeWire.strength"),
     (WIRE, {"curvature": np.ones(5)}, "RopeWire.curvature"),
     (WIRE, {"layer_data": None}, "RopeWire.layer_data"),
     (
@@ -246,8 +246,8 @@ METHODS: list[Case] = [
     (Nested(list), {"coarser": [PROBLEM]}, "Nested.coarser"),
     (StatusStep(), {"at_once": None}, "StatusStep.at_once"),
     (FrictionLaw(), {"cohesion": nan}, "FrictionLaw.cohesion"),
-    (FrictionLaw(), {"strength": [(0.0, 1.0)]}, "FrictionLaw.strength"),
-    (Strength((0.0, 1.0), (1.0, 0.5)), {"factors": (1.0, nan)}, "strength"),
+    (FrictionLaw(), {"slip_factor": [(0.0, 1.0)]}, "FrictionLaw.slip_factor"),
+    (SlipFactor((0.0, 1.0), (1.0, 0.5)), {"factors": (1.0, nan)}, "SlipFactor"),
 ]
 PROBLEMS: list[Case] = [
     (PROBLEM, {"substructures": ()}, "Problem.substructures"),
@@ -387,7 +387,7 @@ def accepted() -> list[Callable[[], object]]:
     """Values that look odd and are none."""
     return [
         lambda: replace(ROD, length=np.float32(1.0), elements=np.int64(6)),
-        lambda: replace(ROD, bound=np.arange(7)),
+        lambda: replace(ROD, strength=np.arange(7)),
         lambda: replace(ROD, left=End(displacement=0.0 * T, spring=inf)),
         lambda: replace(ROD, instants=T - 1.0),
         lambda: replace(BODY, substructures=[2, 1], poisson=-0.2),
@@ -408,10 +408,10 @@ def test_what_is_allowed_is_not_refused(make: Callable[[], object]) -> None:
 
 def test_a_message_says_which_entry_is_wrong_and_what_to_do() -> None:
     with pytest.raises(RefusedError) as refused:
-        replace(ROD, bound=spoilt(np.ones((7, 5)), nan, (3, 2)))
+        replace(ROD, strength=spoilt(np.ones((7, 5)), nan, (3, 2)))
     assert str(refused.value) == (
-        "Rods.bound = NaN is refused; allowed: an array of numbers from 0, shape [7] "
-        "or [7, 5]; entry [3, 2] is no finite number, replace it"
+        "Rods.strength = NaN is refused; allowed: an array of numbers from 0, shape "
+        "[7] or [7, 5]; entry [3, 2] is no finite number, replace it"
     )
     with pytest.raises(RefusedError) as refused:
         replace(ROD, instants=spoilt(T, 0.1, 2))

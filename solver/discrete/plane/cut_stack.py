@@ -365,9 +365,11 @@ class CutStack:
         return rows, columns, basis[rows, columns]
 
     def _is_known(self, joint: Joint) -> bool:
-        """Check whether a joint is with a support of known bound."""
+        """Check whether a joint is with a support of known strength."""
         support = self.stack.support
-        return joint.below is None and support is not None and support.bound is not None
+        return (
+            joint.below is None and support is not None and support.strength is not None
+        )
 
     def _pairs_of(self, joint: Joint) -> tuple[Indices, Array]:
         """Nodes of a joint on the grid, and their scaled lengths, (n_pairs,) both."""
@@ -410,8 +412,8 @@ class CutStack:
     def _traces(self) -> Iterator[dict[Hashable, _Trace]]:
         """Traces of every substructure, by joint or by the span of an outer side.
 
-        A joint has both components, or with a support of known bound the one along it;
-        an outer side those that are prescribed; the foot under a spring ("spring")
+        A joint has both components, or with a support of known strength the one along
+        it; an outer side those that are prescribed; the foot under a spring ("spring")
         both.
         """
         of_joints = self._traces_of_joints()

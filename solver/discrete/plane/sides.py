@@ -67,30 +67,33 @@ class Support:
     gap, friction
         Opening at the nodes of the lowest side, m, shape (nodes along,), and
         coefficient mu there, or one for all nodes.
-    bound
+    strength
         Largest friction force per area where it is known, shape (nodes along,
         n_instants), Pa; the support then presses as much as that takes, and adds no
         pressure of its own. None where the contact force decides, and contact may open.
     is_image
         Whether below lies the image of the stack, turned by half a turn, which moves
         along as much the other way: slip is between both, twice the displacement of the
-        stack, and the friction law is one of this slip. The bound has to be known.
+        stack, and the friction law is one of this slip. The strength has to be known.
     """
 
     gap: Array
     friction: float | Array
-    bound: Array | None = None
+    strength: Array | None = None
     is_image: bool = False
 
     def __post_init__(self) -> None:
         along = Numbers(((None,),))
         friction = Either(NON_NEGATIVE, Numbers(along.shapes, low=0.0))
         check(
-            self, gap=along, friction=friction, bound=Numbers(((None, None),), low=0.0)
+            self,
+            gap=along,
+            friction=friction,
+            strength=Numbers(((None, None),), low=0.0),
         )
-        if self.is_image and self.bound is None:
+        if self.is_image and self.strength is None:
             raise RefusedError(
-                "Support.bound",
+                "Support.strength",
                 None,
                 "the largest friction force of an image",
                 "give it, as slip changes nothing across a plane of symmetry",

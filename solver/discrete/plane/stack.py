@@ -210,9 +210,9 @@ class Stack:
         friction = Either(NON_NEGATIVE, along)
         check_value("Stack.support.gap", support.gap, along)
         check_value("Stack.support.friction", support.friction, friction)
-        if support.bound is not None:
-            bound = Numbers(((nodes, instants),), low=0.0)
-            check_value("Stack.support.bound", support.bound, bound)
+        if support.strength is not None:
+            strength = Numbers(((nodes, instants),), low=0.0)
+            check_value("Stack.support.strength", support.strength, strength)
 
     @cached_property
     def rectangles(self) -> Sequence[Brick]:

@@ -273,7 +273,7 @@ def _positions(stack: Stack, pairs: _Pairs) -> Array:
 
 
 def _components(cut: CutStack, pairs: _Pairs) -> tuple[Component, Component | None]:
-    """Tangential and normal component of contacts; no normal one at a known bound."""
+    """Tangential and normal component of contacts; no normal one at known strength."""
     rows = _rows_of(cut, pairs.joints)
     has_normal = rows[0].shape[1] > 1
     if not has_normal:
@@ -308,8 +308,8 @@ def _friction(
         support = stack.support
     if support is not None and support.is_image:
         law = law.of_one_side()
-    if support is not None and support.bound is not None:
-        scaled = support.bound[pairs.nodes] / (stack.young * stack.length)
+    if support is not None and support.strength is not None:
+        scaled = support.strength[pairs.nodes] / (stack.young * stack.length)
         known = scaled * pairs.areas[:, None]
         return law.at(component, pairs.areas, scales, known=known)
     mu = _coefficients(stack, support, pairs)

@@ -386,8 +386,8 @@ class CutRods:
             component = Component(self._sides[rod, self._rubs])
         nodes = self._nodes[self._rubs]
         weights = rods.length * (self._shares[self._rubs] / rods.elements)
-        # The bound is per length: a pair has that of its tributary length.
-        known = rods.bounds[nodes] * weights[:, None] / units[1]
+        # The strength is per length: a pair has that of its tributary length.
+        known = rods.strengths[nodes] * weights[:, None] / units[1]
         known = known * np.broadcast_to(rods.factors, len(self._names))[rod - 1]
         points = self._points(rod)
         positions = np.zeros(points[-1] + 1)

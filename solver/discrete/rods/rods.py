@@ -110,12 +110,12 @@ class Rods:
         uniform rod that the same force at both ends stretches by as much.
     elements, substructures
         Numbers of equal linear elements of one rod, and of its substructures.
-    bound
-        Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or
+    strength
+        Friction strength mu p at the nodes of an interface, N/m, shape (n_nodes,), or
         where it changes with time (n_nodes, n_instants).
     factors
-        Factors on the bound of each interface between several rods, shape (wires - 1,),
-        or one factor for all.
+        Factors on the strength of each interface between several rods, shape (wires -
+        1,), or one factor for all.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
     wires
@@ -137,14 +137,14 @@ class Rods:
         Stiffness of every element over `stiffness`, shape (n_elements,), where it
         varies; the mean of the inverse is 1.
     pressure
-        Pressure p behind the bound over time, shape (n_instants,), N/m, for drawings,
-        where it is uniform along the rods.
+        Pressure p behind the strength over time, shape (n_instants,), N/m, for
+        drawings, where it is uniform along the rods.
 
     Raises
     ------
     RefusedError
         For a number that is not above zero or not finite, a field of another shape,
-        instants that do not increase, a bound below zero, a settlement under several
+        instants that do not increase, a strength below zero, a settlement under several
         rods, or a break of a single rod.
     """
 
@@ -152,7 +152,7 @@ class Rods:
     stiffness: float
     elements: int
     substructures: int
-    bound: Array
+    strength: Array
     left: End
     right: End
     instants: Array
@@ -198,7 +198,7 @@ class Rods:
         check(
             self,
             substructures=Count(1, self.elements),
-            bound=Numbers(((nodes,), (nodes, instants)), low=0.0),
+            strength=Numbers(((nodes,), (nodes, instants)), low=0.0),
             body_force=Numbers(((instants,), (nodes, instants))),
             strain=Numbers(((self.elements, instants),)),
             settlement=Numbers(((nodes, instants),)),
@@ -223,11 +223,11 @@ class Rods:
         return np.linspace(0.0, self.length, self.elements + 1)
 
     @property
-    def bounds(self) -> Array:
-        """Friction bound, N/m, (n_nodes, n_instants), or (n_nodes, 1) if constant."""
-        if self.bound.ndim == 2:
-            return self.bound
-        return self.bound[:, None]
+    def strengths(self) -> Array:
+        """Friction strength, N/m, (n_nodes, n_instants), or (n_nodes, 1) if steady."""
+        if self.strength.ndim == 2:
+            return self.strength
+        return self.strength[:, None]
 
     @property
     def ends(self) -> dict[EndName, End]:
@@ -378,7 +378,7 @@ class Rods:
         if self.settlement is not None:
             places = on_side("bottom", SHOWN)
             yield Act("bottom x", "s", places, right, self.settlement[shown], "m")
-        highest = self.bounds.max(axis=1)
+        highest = self.strengths.max(axis=1)
         is_rubbing = np.interp(SHOWN, self.nodes / self.length, highest) > 0.0
         if self.pressure is not None and is_rubbing.any():
             places = on_side("top", SHOWN[is_rubbing])
@@ -406,7 +406,7 @@ class Rods:
                 yield Hold("clamp", side, moved=end.displacement)
         if self.wires > 1:
             return
-        rubs = np.flatnonzero(self.bounds.any(axis=1))
+        rubs = np.flatnonzero(self.strengths.any(axis=1))
         # The support is drawn along each stretch that rubs.
         for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
             if len(run) > 1:

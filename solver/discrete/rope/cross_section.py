@@ -217,8 +217,10 @@ class CrossSection:
             below.append(share * passed)
         return np.array(below[::-1]), np.array(above[::-1])
 
-    def friction_bounds(self, tension: Array, friction: float, factors: Array) -> Array:
-        """Friction bounds of the wires of every layer, from below and above, N/m.
+    def friction_strengths(
+        self, tension: Array, friction: float, factors: Array
+    ) -> Array:
+        """Friction strengths of the wires of every layer, from below and above, N/m.
 
         Shape (n_layers, n_instants), per metre of wire, under the tension of the
         strand, (n_instants,), N; `factors` are mu of every layer on what it lies on

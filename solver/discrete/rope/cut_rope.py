@@ -42,7 +42,7 @@ def _rod(rope: Rope, wire: RopeWire) -> Rods:
         stiffness=wire.layer_data.stiffness,
         elements=rope.elements,
         substructures=rope.substructures,
-        bound=np.multiply.outer(np.ones(rope.elements + 1), wire.bound),
+        strength=np.multiply.outer(np.ones(rope.elements + 1), wire.strength),
         left=held,
         right=held,
         instants=rope.instants,

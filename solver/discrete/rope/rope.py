@@ -65,8 +65,8 @@ class RopeWire:
     radius, start, length
         Radius R of the helix of its centre line, m; polar angle theta at its beginning,
         from the outermost fibre, rad; and length of the wire, m.
-    bound
-        Friction bound per length of wire, N/m: a number, or over time, shape
+    strength
+        Friction strength per length of wire, N/m: a number, or over time, shape
         (n_instants,).
     curvature
         Curvature of the strand at the nodes, 1/m, shape (n_nodes, n_instants).
@@ -82,7 +82,7 @@ class RopeWire:
     radius: float
     start: float
     length: float
-    bound: float | Array
+    strength: float | Array
     curvature: Array
     tension: Array
     stands_for: int = 1
@@ -97,7 +97,7 @@ class RopeWire:
             radius=POSITIVE,
             start=ANY_NUMBER,
             length=POSITIVE,
-            bound=Either(NON_NEGATIVE, Numbers(over_time.shapes, low=0.0)),
+            strength=Either(NON_NEGATIVE, Numbers(over_time.shapes, low=0.0)),
             curvature=Numbers(((None, None),)),
             tension=over_time,
             stands_for=COUNT,
@@ -223,12 +223,12 @@ class Rope:
         elements = Count(1, self.elements)
         check(self, substructures=elements, tension=over_time, curvature=over_time)
         along = Numbers(((self.elements + 1, instants),))
-        bound = Either(NON_NEGATIVE, over_time)
+        strength = Either(NON_NEGATIVE, over_time)
         for number, wire in enumerate(self.wires):
             name = f"Rope.wires[{number}]"
             check_value(f"{name}.curvature", wire.curvature, along)
             check_value(f"{name}.tension", wire.tension, over_time)
-            check_value(f"{name}.bound", wire.bound, bound)
+            check_value(f"{name}.strength", wire.strength, strength)
 
     @property
     def elements(self) -> int:

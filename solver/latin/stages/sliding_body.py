@@ -44,7 +44,7 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
     spring = springs[0]
     if law.normal is None or spring is None or not law.is_on_support:
         return None
-    if law.tangential.strength is not None or law.tangential.cap is not None:
+    if law.tangential.slip_factor is not None or law.tangential.cap is not None:
         return None
     motion = _motion_along(problem, law.tangent.above, law.normal.component.above)
     if motion is None:

@@ -24,7 +24,7 @@ from solver.reference.closed_forms.masing import masing
 
 @dataclass(frozen=True)
 class BentWire:
-    """A helical wire whose friction bound is the same along it.
+    """A helical wire whose friction strength is the same along it.
 
     Attributes
     ----------
@@ -32,20 +32,20 @@ class BentWire:
         Layer of the wire.
     radius
         Radius of its helix, m.
-    bound
-        Friction bound mu q per length of wire, N/m, above 0.
+    strength
+        Friction strength mu q per length of wire, N/m, above 0.
     """
 
     wire: WireLayer
     radius: float
-    bound: float
+    strength: float
 
     @property
     def first_slip(self) -> float:
         """Curvature kappa_0 at which the first point slips, 1/m."""
         wire = self.wire
         return float(
-            self.bound
+            self.strength
             / (wire.stiffness * np.cos(wire.lay) ** 2 * abs(np.sin(wire.lay)))
         )
 
@@ -62,7 +62,7 @@ class BentWire:
         The moment, of the same shape.
         """
         wire = self.wire
-        force = self.bound * self.radius / abs(np.sin(wire.lay))
+        force = self.strength * self.radius / abs(np.sin(wire.lay))
         shares = np.vectorize(self._share, otypes=[float])(curvature)
         return np.asarray(self.radius * np.cos(wire.lay) * force * shares)
 
@@ -110,8 +110,9 @@ class BentStrand:
         """A wire of each layer, inside out."""
         section = self.section
         tension = np.array([self.tension])
-        bounds = section.friction_bounds(tension, self.friction, self.factors)[:, 0]
-        wires = zip(section.layers, section.radii, bounds.tolist(), strict=True)
+        strengths = section.friction_strengths(tension, self.friction, self.factors)
+        steady = strengths[:, 0].tolist()
+        wires = zip(section.layers, section.radii, steady, strict=True)
         return tuple(BentWire(*wire) for wire in wires)
 
     def moment(self, curvature: Array) -> Array:

@@ -1,20 +1,20 @@
 """Closed forms of a pulled bar, and of a broken wire (MATHEMATICS.md, 6, 8, 14).
 
-Under Coulomb friction sliding needs the whole bound between a section and the free end,
+Under Coulomb friction sliding needs all strength between a section and the free end,
 R(x) = integral of mu p from x to L. So the normal force N(x, t) follows the load F(t)
-with play R(x), for every bound mu p >= 0 along the bar and every load path from rest,
-full sliding included.
+with play R(x), for every strength mu p >= 0 along the bar and every load path from
+rest, full sliding included.
 
-Where the bound changes with time this holds as long as the friction force stays within
-the bound, to an element's length: a bar that stuck under more than its bound has fallen
-to slips in its middle, which is beyond this closed form.
+Where the strength changes with time this holds as long as the friction force stays
+within it, to an element's length: a bar that stuck under more than its strength has
+fallen to slips in its middle, which is beyond this closed form.
 
 Unbroken, all wires carry the tension T and nothing slips. A break adds a force n to the
 broken wire, -T at its two new ends, which the m neighbours take over in equal shares.
 The slip between them is the displacement of a bar of stiffness ES m / (m + 1), under m
-times the bound, that is clamped far away and pulled at the break. On a rising load the
-broken wire carries min(T, m mu p |x - x_break|): all of T from a distance T / (m mu p)
-on.
+times the strength, that is clamped far away and pulled at the break. On a rising load
+the broken wire carries min(T, m mu p |x - x_break|): all of T from a distance
+T / (m mu p) on.
 """
 
 from __future__ import annotations
@@ -70,17 +70,17 @@ class ClosedForm:
 
 
 def closed_form(scene: Rods) -> ClosedForm | None:
-    """Solution of a bar whose bound mu p is linear between nodes, and between instants.
+    """Solution of a bar whose strength mu p is linear between nodes and instants.
 
     None for a bar that more than a force at its end moves, or of varying section, where
-    friction is not Coulomb's, and where a falling bound makes the bar slip in its
+    friction is not Coulomb's, and where a falling strength makes the bar slip in its
     middle.
     """
     if not scene.is_only_pulled or scene.section is not None:
         return None
     if scene.friction_law != FrictionLaw():
         return None
-    free_end = np.zeros_like(scene.bounds[:1])
+    free_end = np.zeros_like(scene.strengths[:1])
     slack = np.concatenate([_grip_beyond(scene, 0.0), free_end])
     # Tributary lengths end in the middles of elements, so friction is the difference
     # of the normal force between these.
@@ -104,8 +104,8 @@ def _grip_beyond(scene: Rods, share: float | Array) -> Array:
     Of shares of shape (n_shares, 1, 1): (n_shares, ...).
     """
     size = scene.length / scene.elements
-    left = scene.bounds[:-1]
-    right = scene.bounds[1:]
+    left = scene.strengths[:-1]
+    right = scene.strengths[1:]
     whole = 0.5 * size * (left + right)
     beyond = np.cumsum(whole[::-1], axis=0)[::-1] - whole
     rest = 1.0 - share
@@ -139,7 +139,7 @@ def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
 
 
 def pulled_compliant_bar(
-    force: float, length: float, stiffness: float, bound: float, density: float
+    force: float, length: float, stiffness: float, strength: float, density: float
 ) -> tuple[float, float]:
     """End displacement of a bar on a compliant support, and its zone of slip, m.
 
@@ -152,24 +152,25 @@ def pulled_compliant_bar(
     force, length, stiffness
         F, N, grown from zero, at most what a bar that slips almost throughout carries;
         L, m; ES, N.
-    bound, density
+    strength, density
         q = mu p, N/m; tangential stiffness of the support per length, N/m^2.
     """
     beta = np.sqrt(density / stiffness)
 
     def carried(zone: float) -> float:
-        return float(bound * zone + bound / (beta * np.tanh(beta * (length - zone))))
+        on_springs = strength / (beta * np.tanh(beta * (length - zone)))
+        return float(strength * zone + on_springs)
 
     if force <= carried(0.0):
         return float(force * np.tanh(beta * length) / (stiffness * beta)), 0.0
     # A zone as long as the bar would carry an infinite force.
     zone = float(brentq(lambda s: carried(s) - force, 0.0, length * (1.0 - 1e-12)))
-    elongation = (force * zone - 0.5 * bound * zone**2) / stiffness
-    return float(bound / density + elongation), zone
+    elongation = (force * zone - 0.5 * strength * zone**2) / stiffness
+    return float(strength / density + elongation), zone
 
 
 def pulled_changing_bar(
-    force: float, stiffness: float, bound: float, ratio: float, slip_length: float
+    force: float, stiffness: float, strength: float, ratio: float, slip_length: float
 ) -> float:
     """End displacement, m, where friction changes with slip, under a grown force.
 
@@ -181,16 +182,16 @@ def pulled_changing_bar(
     force, stiffness
         F, N: less than what makes all of the bar slip, and than q / gamma where it
         softens; ES, N.
-    bound, ratio, slip_length
-        q before any slip, N/m; the last bound over it, not 1; and the slip from which
-        on it is the last, m: more than what is returned.
+    strength, ratio, slip_length
+        q before any slip, N/m; the last strength over it, not 1; and the slip from
+        which on it is the last, m: more than what is returned.
     """
-    slope = bound * (ratio - 1.0) / slip_length
+    slope = strength * (ratio - 1.0) / slip_length
     gamma = np.sqrt(abs(slope) / stiffness)
-    share = force * gamma / bound
+    share = force * gamma / strength
     if slope > 0.0:
-        return float(bound / slope * (np.sqrt(1.0 + share**2) - 1.0))
-    return float(bound / -slope * (1.0 - np.sqrt(1.0 - share**2)))
+        return float(strength / slope * (np.sqrt(1.0 + share**2) - 1.0))
+    return float(strength / -slope * (1.0 - np.sqrt(1.0 - share**2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,14 +224,14 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
     -------
     The solution. None where no wire is broken; where its neighbours rub on others, too,
     and pass on what they took over; where friction is not Coulomb's, or not the same
-    between all wires; or where the bound changes with time, and the grip is rigid or
+    between all wires; or where the strength changes with time, and the grip is rigid or
     wires slip away from the break.
     """
     if scene.friction_law != FrictionLaw() or np.any(scene.factors != 1.0):
         return None
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None
-    if scene.right.is_prescribed and scene.bound.ndim > 1:
+    if scene.right.is_prescribed and scene.strength.ndim > 1:
         return None
     if scene.right.is_prescribed:
         tension = _tension(scene)
@@ -267,7 +268,7 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
             duration=scene.duration,
             left=End(displacement=np.zeros_like(tension)),
             right=End(force=tension),
-            bound=sides * scene.bound[: elements + 1],
+            strength=sides * scene.strength[: elements + 1],
         )
         bars.append(closed_form(side))
     left, right = bars
@@ -287,7 +288,7 @@ def _tension(scene: Rods) -> Array:
     largest = float(np.abs(tension).max())
     for _ in range(STEPS):
         sides = _sides(scene, tension)
-        assert sides is not None  # the bound stays the same
+        assert sides is not None  # the strength stays the same
         slipped = sum(side.end_displacement for side in sides)
         softer = scene.stiffness / scene.length * slipped / (scene.rubbing_sides + 1)
         change = 0.5 * (scene.load - tension - softer)

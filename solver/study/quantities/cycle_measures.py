@@ -39,7 +39,7 @@ def has_a_limit(settings: Settings) -> bool:
     Contacts in the plane stay closed where surfaces without a gap rub by Coulomb's law.
     """
     law = settings.law
-    if not has_cycles(settings) or law.strength is not None:
+    if not has_cycles(settings) or law.slip_factor is not None:
         return False
     if settings.kind != "plane":
         return True

@@ -18,7 +18,7 @@ from solver.study.quantities.quantity import quantity
 def _rubs_by_mu(settings: Settings) -> bool:
     """Check whether the friction bound is mu N alone, whatever has slipped."""
     law = settings.law
-    return law.cohesion == 0.0 and math.isinf(law.cap) and law.strength is None
+    return law.cohesion == 0.0 and math.isinf(law.cap) and law.slip_factor is None
 
 
 @dataclass(frozen=True, eq=False)
