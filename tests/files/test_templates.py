@@ -76,6 +76,7 @@ PARTS = {
         "rest": MARKUP,
         "details": [MARKUP],
         "said": MARKUP,
+        "is_running": True,
     },
     "figures.html": {"figures": {MARKUP: MARKUP}, "hints": {MARKUP: MARKUP}},
     "classroom.html": {"code": MARKUP, "link": MARKUP, "picture": "", "port": 1},
