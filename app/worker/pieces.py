@@ -327,8 +327,10 @@ class _Joints:
         keys, first, of_members = np.unique(
             keys, axis=0, return_index=True, return_inverse=True
         )
-        blocks = [_without_macro(self._along[group]) for group in groups]
-        within = sparse.block_diag([np.zeros((0, 0)), *blocks], format="coo")
+        blocks = [sparse.coo_array((0, 0))]
+        for group in groups:
+            blocks.append(sparse.coo_array(_without_macro(self._along[group])))
+        within = sparse.block_diag(blocks, format="coo")
         targets = 2 * of_members.ravel() + self._components[members]
         places = targets[within.coords[0]], self._rows[members][within.coords[1]]
         shape = 2 * len(keys), self._n_rows
@@ -403,7 +405,8 @@ class _Apart:
         sizes = [len(outline.corners) for outline in outlines]
         parts = [problem.substructures[number] for number in numbers]
         rows = np.concatenate([part.rows for part in parts])
-        motions = sparse.block_diag([outline.motion for outline in outlines]).tocoo()
+        blocks = [sparse.coo_array(outline.motion) for outline in outlines]
+        motions = sparse.block_diag(blocks, format="coo")
         places = motions.coords[0], rows[motions.coords[1]]
         shape = motions.shape[0], problem.n_rows
         self._motion = sparse.csr_array((motions.data, places), shape=shape)
