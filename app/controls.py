@@ -64,11 +64,14 @@ class SettingControl:
         self._is_updating = False
         self._is_dragged = False
         self._echoes = Echoes()
+        self._positions = Echoes()
         self._dialog: CurveDialog | None = None
         self.slider: pmui.FloatSlider | None = None
         self.field, self.view = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
         self.update()
+        # No browser has shown the position that the slider was made with.
+        self._positions = Echoes()
 
     def update(self) -> None:
         """Show the value of the setting, and whether it applies."""
@@ -191,6 +194,7 @@ class SettingControl:
         position = min(max(self._to_slider(value), slider.start), slider.end)
         if (slider.value, slider.value_throttled) == (position, position):
             return
+        self._positions.give(position, slider.value)
         # The throttled value is set, too: the browser sends it only when it changes.
         with param.edit_constant(slider):
             slider.param.update(value=position, value_throttled=position)
@@ -248,6 +252,10 @@ class SettingControl:
         A key releases at once; a refused value leaves the one before.
         """
         if self._is_updating:
+            return
+        if self._positions.has(events[-1].new):
+            # A position that the page gave comes back, as a text does.
+            self.update()
             return
         value = self._from_slider(events[-1].new)
         self._is_dragged = all(event.name == "value" for event in events)

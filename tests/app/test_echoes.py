@@ -23,6 +23,15 @@ def test_a_value_that_a_field_showed_on_the_way_changes_nothing_later() -> None:
     assert state.settings.values()["peak"] == 1100.0
 
 
+def test_a_position_that_a_slider_showed_on_the_way_changes_nothing_later() -> None:
+    state, control = changed_twice()
+    control.slider.value = 1000.0
+    assert state.settings.values()["peak"] == 1100.0
+    assert control.slider.value == 1100.0
+    control.slider.value = 1300.0
+    assert state.settings.values()["peak"] == 1300.0
+
+
 def test_later_the_same_value_is_typed_by_hand(monkeypatch) -> None:
     monkeypatch.setattr(app.browser, "LASTS", 0.0)
     state, control = changed_twice()
