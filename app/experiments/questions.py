@@ -240,7 +240,7 @@ READY: dict[str, Callable[[Settings], Question | None]] = {
 """Ready questions, by the labels of their buttons."""
 
 
-class Span:
+class SettingRange:
     """Fields for the name of a setting that varies and for its values.
 
     `changed` is called when a person has changed a field.

@@ -16,7 +16,7 @@ from app.experiments.questions import (
     TENTH,
     TEXTS,
     Question,
-    Span,
+    SettingRange,
     quantities,
     question_of,
 )
@@ -69,8 +69,8 @@ class WhatIf:
 
     def _make_fields(self) -> None:
         self.spans = (
-            Span("Vary", self._change, is_optional=False),
-            Span("and", self._change, is_optional=True),
+            SettingRange("Vary", self._change, is_optional=False),
+            SettingRange("and", self._change, is_optional=True),
         )
         self._of = pmui.Select(label="See what happens to", width=386, **FIELD)
         self._at = pmui.TextInput(label="at", width=110, **FIELD)

@@ -218,7 +218,7 @@ def _outlines_of_rods(
     return outlines, positions
 
 
-class _Pairs(NamedTuple):
+class _SidePairs(NamedTuple):
     """Rows that face each other, and the number of their interface, (n_pairs,) each.
 
     The number is `NONE` at cuts, and so is the row below on a support.
@@ -228,7 +228,7 @@ class _Pairs(NamedTuple):
     below: Indices
     numbers: Indices
 
-    def joints(self, owners: Indices) -> tuple[_Pairs, Indices, Indices]:
+    def joints(self, owners: Indices) -> tuple[_SidePairs, Indices, Indices]:
         """Pairs at shown joints; what tells these apart, (n_joints, 3); joint of each.
 
         `owners` are the pieces of all rows, `NONE` where they are not shown, and `NONE`
@@ -237,7 +237,7 @@ class _Pairs(NamedTuple):
         keys = np.stack([self.numbers, owners[self.above], owners[self.below]], axis=1)
         is_shown = (keys[:, 1] != NONE) & ((keys[:, 2] != NONE) | (self.below == NONE))
         keys, of_pairs = np.unique(keys[is_shown], axis=0, return_inverse=True)
-        shown = _Pairs(
+        shown = _SidePairs(
             self.above[is_shown], self.below[is_shown], self.numbers[is_shown]
         )
         return shown, keys, of_pairs.ravel()
@@ -275,7 +275,7 @@ class _Joints:
         self.macro = self._macro()
         self.points, self.sides, self.micro = self._micro(name)
 
-    def _gather(self, pairs: _Pairs, of_pairs: Indices, kept: Indices) -> None:
+    def _gather(self, pairs: _SidePairs, of_pairs: Indices, kept: Indices) -> None:
         """Number the sides of the joints that are kept, and collect their rows.
 
         `of_pairs` are the joints of the pairs, (n_pairs,).
@@ -351,7 +351,7 @@ class _Joints:
         return [group for group in np.split(order, ends) if len(group) > 2]
 
 
-def _pairs_of(problem: Problem) -> _Pairs:
+def _pairs_of(problem: Problem) -> _SidePairs:
     """Rows of both sides of all cuts and interfaces with friction."""
     above = []
     below = []
@@ -367,7 +367,9 @@ def _pairs_of(problem: Problem) -> _Pairs:
             above.append(component.above)
             below.append(support if component.below is None else component.below)
             numbers.append(stacked.numbers[law.interface_of_pairs])
-    return _Pairs(np.concatenate(above), np.concatenate(below), np.concatenate(numbers))
+    return _SidePairs(
+        np.concatenate(above), np.concatenate(below), np.concatenate(numbers)
+    )
 
 
 def _without_macro(along: Array) -> Array:

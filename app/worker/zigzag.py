@@ -69,7 +69,7 @@ class Trail:
 
 
 @dataclass(frozen=True, eq=False)
-class Stages:
+class IterateStages:
     """Jump and force of pairs in both stages, shape (n_pairs, n_instants), scaled.
 
     With two bodies the force of a linear stage is that of both sides, each by its share
@@ -84,7 +84,7 @@ class Stages:
     @classmethod
     def of(
         cls, iterate: Iterate, law: Contact, pairs: Indices, columns: Indices
-    ) -> Stages:
+    ) -> IterateStages:
         """Both stages of an iterate at some pairs and instants."""
         soft = np.zeros(len(pairs))
         jump = dict.fromkeys((LOCAL, LINEAR), 0.0)
@@ -122,7 +122,7 @@ class ContactPoint:
 
         The slip of several pairs is their mean by k, so that the point moves along k.
         """
-        stages = Stages.of(iterate, self.law, self.pairs, columns)
+        stages = IterateStages.of(iterate, self.law, self.pairs, columns)
         slope = float(stages.k.sum())
         points = []
         for stage in (LOCAL, LINEAR):
@@ -232,7 +232,7 @@ def _fields(
     problem: Problem, law: Contact, iterate: Iterate, columns: Indices
 ) -> Floats:
     """Friction of both stages per length or area, (2, n_points, n_instants)."""
-    stages = Stages.of(iterate, law, np.arange(len(law.points)), columns)
+    stages = IterateStages.of(iterate, law, np.arange(len(law.points)), columns)
     unit = problem.scales.force / law.by_point(law.weights)[:, None]
     return floats(
         np.stack([law.by_point(stages.force[each]) * unit for each in (LOCAL, LINEAR)])

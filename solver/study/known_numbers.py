@@ -29,7 +29,7 @@ WORKS = {"m": "J", "1/m": "J/m"}
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class SolvedCase:
     """A problem with its settings, and the fields of a run or of a reference."""
 
     settings: Any
@@ -60,7 +60,7 @@ Number = tuple[str, str, float, float]
 """Quantity, unit, known value, and value of an answer."""
 
 
-def loop(answer: Answer) -> Iterator[Number]:
+def loop(answer: SolvedCase) -> Iterator[Number]:
     """Largest and last value that a loop finds, and its work in a cycle.
 
     The cycle begins at the first largest value of the prescribed quantity.
@@ -103,7 +103,7 @@ def _area(force: Array, over: Array, start: int) -> float:
     return float(abs(np.trapezoid(force[start:], over[start:])))
 
 
-def opening(answer: Answer) -> Iterator[Number]:
+def opening(answer: SolvedCase) -> Iterator[Number]:
     """Opening of the break of a wire."""
     strand = answer.settings.structure()
     assert isinstance(strand, Rods)
@@ -120,14 +120,14 @@ def opening(answer: Answer) -> Iterator[Number]:
     yield "opening of the break", "m", known, found
 
 
-def _half_plane(answer: Answer, total: float) -> HalfPlane:
+def _half_plane(answer: SolvedCase, total: float) -> HalfPlane:
     """Closed form of a cylinder pressed on a half-plane by a total force, N/m."""
     settings = answer.settings
     modulus = settings.young / (1.0 - settings.poisson**2)
     return HalfPlane(total, settings.radius, modulus)
 
 
-def _points(answer: Answer, force: Array) -> tuple[Array, Array]:
+def _points(answer: SolvedCase, force: Array) -> tuple[Array, Array]:
     """Lengths of the points of a support, and their distances from a force's middle.
 
     The force has shape (n_points,), and so have both results, m.
@@ -137,7 +137,7 @@ def _points(answer: Answer, force: Array) -> tuple[Array, Array]:
     return law.by_point(law.weights[:, None])[:, 0], law.positions - middle
 
 
-def pressed_parabola(answer: Answer) -> Iterator[Number]:
+def pressed_parabola(answer: SolvedCase) -> Iterator[Number]:
     """Largest pressure, and half-width by the second moment of the pressure."""
     force = answer.support[0][:, -1]
     lengths, distances = _points(answer, force)
@@ -148,7 +148,7 @@ def pressed_parabola(answer: Answer) -> Iterator[Number]:
     yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
 
 
-def sheared_parabola(answer: Answer) -> Iterator[Number]:
+def sheared_parabola(answer: SolvedCase) -> Iterator[Number]:
     """Stick zone and traction at the first peak of the shear, and energy of a cycle."""
     # A third of the instants leads to the first peak, and a cycle follows.
     first = (answer.settings.instants - 1) // 3
@@ -156,7 +156,7 @@ def sheared_parabola(answer: Answer) -> Iterator[Number]:
     yield _energy_of_shear(answer, first)
 
 
-def _peak_of_shear(answer: Answer, first: int) -> Iterator[Number]:
+def _peak_of_shear(answer: SolvedCase, first: int) -> Iterator[Number]:
     """Half-width of stick, and traction in the middle, at a peak of the shear."""
     pressing, shear = answer.support
     friction = answer.settings.friction
@@ -194,7 +194,7 @@ def _stick_half_width(
     return float(2.0 * np.sqrt(moments / reserve))
 
 
-def _energy_of_shear(answer: Answer, first: int) -> Number:
+def _energy_of_shear(answer: SolvedCase, first: int) -> Number:
     """Energy of a cycle of the shear, after its first peak."""
     pressing, shear = answer.support
     friction = answer.settings.friction
@@ -207,7 +207,7 @@ def _energy_of_shear(answer: Answer, first: int) -> Number:
     return "energy of a cycle", "J/m", known, found
 
 
-def shoe(answer: Answer) -> Iterator[Number]:
+def shoe(answer: SolvedCase) -> Iterator[Number]:
     """Shoe pressed over its gap, then pushed to 0.99 and 1.01 of the friction bound."""
     pressed, held = (force.sum(axis=0) for force in answer.support)
     yield "normal reaction", "N/m", 12e6, pressed[1]
@@ -215,7 +215,7 @@ def shoe(answer: Answer) -> Iterator[Number]:
     yield "displacement at 1.01", "m", 9e-3, -answer.slip[:, 3].mean()
 
 
-def driven_by_fluid(answer: Answer) -> Iterator[Number]:
+def driven_by_fluid(answer: SolvedCase) -> Iterator[Number]:
     """Front of slip that a fluid drives, over the length of its diffusion."""
     settings = answer.settings
     late = slice(settings.instants // 2, None)
@@ -252,7 +252,7 @@ def _front(positions: Array, slip: Array) -> float:
     return float(-level / slope)
 
 
-def growing_strength(answer: Answer) -> Iterator[Number]:
+def growing_strength(answer: SolvedCase) -> Iterator[Number]:
     """Slip under a strength that grows from the middle, where the load exceeds it.
 
     The closed form leaves out that the last node that slips stands for half an element
@@ -271,7 +271,7 @@ def growing_strength(answer: Answer) -> Iterator[Number]:
     yield "slip half-way to the end", "m", exact[middle], slip[middle]
 
 
-def joint(answer: Answer) -> Iterator[Number]:
+def joint(answer: SolvedCase) -> Iterator[Number]:
     """Slip at the well of a fault that gives way like a joint, and its stiffness.
 
     Both bodies are in series with the joint, and their far sides do not move.
@@ -290,14 +290,14 @@ def joint(answer: Answer) -> Iterator[Number]:
     yield "friction per area over slip", "N/m^3", stiffness, found
 
 
-def _forces(answer: Answer) -> tuple[float, float]:
+def _forces(answer: SolvedCase) -> tuple[float, float]:
     """Pressing force on a brick, and weight of a brick, N/m."""
     settings = answer.settings
     weight = settings.unit_weight * settings.length * settings.height
     return settings.pressure * settings.length, weight
 
 
-def pile(answer: Answer) -> Iterator[Number]:
+def pile(answer: SolvedCase) -> Iterator[Number]:
     """Shear force of a pile of bricks, which slides at its top, or tips about its toe.
 
     About the toe the pressing force, and the weight of the bricks, have a lever of half
@@ -314,7 +314,7 @@ def pile(answer: Answer) -> Iterator[Number]:
     yield "shear force", "N/m", min(slides, tips), float(force[-1])
 
 
-def weighed_wall(answer: Answer) -> Iterator[Number]:
+def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
     """Force of a wall on the ground, under its weight and a pressure."""
     pressing, brick = _forces(answer)
     found = 0.0
@@ -325,7 +325,7 @@ def weighed_wall(answer: Answer) -> Iterator[Number]:
     yield "force on the ground", "N/m", 4.0 * (pressing + 4.0 * brick), found
 
 
-def moved_end(answer: Answer) -> Iterator[Number]:
+def moved_end(answer: SolvedCase) -> Iterator[Number]:
     """Force that moves an end of a rod with a free other end: sqrt(2 E S mu p u)."""
     rods = answer.settings.structure()
     assert isinstance(rods, Rods)
@@ -338,7 +338,7 @@ def moved_end(answer: Answer) -> Iterator[Number]:
     yield "force at the moved end", "N", float(known), float(found[-1])
 
 
-def on_slope(answer: Answer) -> Iterator[Number]:
+def on_slope(answer: SolvedCase) -> Iterator[Number]:
     """Part of the weight that presses on a slope where it is steepest.
 
     The pull of a spring along the slope does not change it.
@@ -350,7 +350,7 @@ def on_slope(answer: Answer) -> Iterator[Number]:
     yield "pressing force", "N/m", known, float(answer.support[0][:, steepest].sum())
 
 
-def pushed_block(answer: Answer) -> Iterator[Number]:
+def pushed_block(answer: SolvedCase) -> Iterator[Number]:
     """Forces and moments of the pushed side of a block, and of its support."""
     settings = answer.settings
     problem = answer.problem

@@ -18,7 +18,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.scene import Settings
 from solver.study import known_numbers
-from solver.study.known_numbers import Answer, Number
+from solver.study.known_numbers import Number, SolvedCase
 from solver.study.mesh import size_of
 from solver.study.page import text_of, write_csv, write_page
 from solver.study.quantities.finished import FinishedRun
@@ -83,7 +83,7 @@ class KnownCase:
     source: str
     allowed: float
     settings: Settings
-    numbers: Callable[[Answer], Iterable[Number]]
+    numbers: Callable[[SolvedCase], Iterable[Number]]
     part: str = CLOSED_FORMS
 
     @property
@@ -109,17 +109,17 @@ def rows_of(case: KnownCase) -> Iterator[Row]:
     problem = discretise(settings)
     solution = solve(problem, method_of(settings))
     has_converged = solution.status.ending is Ending.CONVERGED
-    answer = Answer(settings, problem, solution.iterate, solution)
+    answer = SolvedCase(settings, problem, solution.iterate, solution)
     yield from _rows_by("LATIN", case, answer, has_converged)
     if case.part != TRADE:
         reference = reference_of(problem)
         is_found = bool(reference.converged.all())
-        answer = Answer(settings, problem, reference)
+        answer = SolvedCase(settings, problem, reference)
         yield from _rows_by("incremental", case, answer, is_found)
 
 
 def _rows_by(
-    solver: str, case: KnownCase, answer: Answer, has_ended: bool
+    solver: str, case: KnownCase, answer: SolvedCase, has_ended: bool
 ) -> Iterator[Row]:
     """Rows of a case by a solver, which has come to its end or not."""
     for quantity, unit, known, ours in case.numbers(answer):
@@ -149,7 +149,7 @@ def known_case(case: Case) -> KnownCase:
     """Make a case of the proof of a case of the trade."""
     asked = case.quantity
 
-    def numbers(answer: Answer) -> Iterator[Number]:
+    def numbers(answer: SolvedCase) -> Iterator[Number]:
         assert answer.solution is not None
         found = asked(FinishedRun(answer.settings, answer.solution))
         yield asked.title, asked.unit or "-", case.known, found

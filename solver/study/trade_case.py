@@ -32,7 +32,7 @@ Part = TypeVar("Part")
 
 
 @dataclass(frozen=True)
-class Flag:
+class PlotFlag:
     """Mark of the known value on a plot, by the name of its tab.
 
     It is at `x` and `y` on the axes of the plot, SI, or at any `x` without one.
@@ -82,7 +82,7 @@ class Case:
     views: tuple[str, ...] = ()
     sentence: str = ""
     instant: float = 1.0
-    flag: Flag | None = None
+    flag: PlotFlag | None = None
     surroundings: Surroundings | None = None
 
     def knows(self, settings: Settings) -> bool:
@@ -145,7 +145,10 @@ def case_from_file(path: Path) -> Case:
             is_share = 0.0 <= instant <= 1.0
             remedy = "give it as a share of the interval"
             require(is_share, "instant", instant, "0 to 1", remedy)
-            for name, kind_of_part in (("flag", Flag), ("surroundings", Surroundings)):
+            for name, kind_of_part in (
+                ("flag", PlotFlag),
+                ("surroundings", Surroundings),
+            ):
                 if name in fields:
                     fields[name] = _part(kind_of_part, fields[name], name)
             fields["quantity"] = reading(fields["quantity"])

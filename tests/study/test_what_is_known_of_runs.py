@@ -21,7 +21,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.study import proof
-from solver.study.known_numbers import Answer, Number
+from solver.study.known_numbers import Number, SolvedCase
 from solver.study.proof import KnownCase
 
 CASES = proof.cases()
@@ -35,7 +35,7 @@ def read(folder: Path) -> list[dict[str, str]]:
 def wrong(case: KnownCase) -> KnownCase:
     """A case whose known number is one per cent too large."""
 
-    def numbers(answer: Answer) -> Iterator[Number]:
+    def numbers(answer: SolvedCase) -> Iterator[Number]:
         for quantity, unit, exact, found in case.numbers(answer):
             yield quantity, unit, 1.01 * exact, found
 
