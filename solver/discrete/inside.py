@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, read_only
 from solver.discrete.elements import Rectangle, SchurComplement, dofs_of
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
@@ -166,8 +166,8 @@ class Inside:
             bodies[dofs] = part.body
         return bodies
 
-    def rigid_motions(self, fixed: Indices) -> Array | None:
-        """Independent rigid motions of bodies, (n_dofs, n_motions), or None.
+    def rigid_motions(self, fixed: Indices) -> Array:
+        """Independent rigid motions of bodies, (n_dofs, n_motions), if any.
 
         The motions are zero at the degrees of freedom of prescribed displacement,
         `fixed`, (n,).
@@ -185,8 +185,7 @@ class Inside:
             of_body = np.zeros((len(bodies), 3 - hindered))
             of_body[dofs] = modes @ combinations[hindered:].T
             motions.append(of_body)
-        together = np.concatenate(motions, axis=1)
-        return together if together.size else None
+        return read_only(np.concatenate(motions, axis=1))
 
     def hold_still(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]

@@ -10,6 +10,7 @@ time.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -35,6 +36,7 @@ from solver.discrete.inside import Inside
 from solver.discrete.no_reference import Numbering, reason_against_reference
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
+from solver.kept import KEPT, content_of
 from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 from solver.refusal import RefusedError, Words
@@ -159,6 +161,12 @@ class Problem:
                 "one displacement of each",
                 "prescribe it once, or both alike",
             )
+
+    def driven_by(self, drives: tuple[Drive, ...]) -> Problem:
+        """The same problem with drives; what was checked and found stays."""
+        driven = copy(self)
+        object.__setattr__(driven, "drives", drives)
+        return driven
 
     def absolute(self, displacement: Array) -> Array:
         """Absolute displacements: relative ones plus the motion of the support.
@@ -413,9 +421,21 @@ class Problem:
 
         None without such motions, and along rods, where they cost no digits.
         """
-        if self.inside is None:
+        inside = self.inside
+        if inside is None:
             return None
-        return self.inside.rigid_motions(self.prescribed[0])
+        fixed = self.prescribed[0]
+        key = "motions", self.place_of_bodies, content_of(fixed)
+        motions = KEPT.of(key, lambda: inside.rigid_motions(fixed))
+        return motions if motions.size else None
+
+    @cached_property
+    def place_of_bodies(self) -> bytes:
+        """Digest of where the degrees of freedom of each body are; b"" of rods."""
+        inside = self.inside
+        if inside is None:
+            return b""
+        return content_of(inside.positions, inside.components, inside.body_of_dofs)
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:

@@ -1,0 +1,102 @@
+"""Results that are kept between runs: what a slider of load or friction leaves alone.
+
+A run that follows another one often has the same bodies on the same mesh. What depends
+on these alone is found again by its key: by everything that it was made from, so that a
+kept result has the bits of a new one. Kept results are never changed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from threading import Lock
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+LARGEST = 80_000_000
+"""Largest memory of all kept results, B: a wall of 75 bricks takes half of it."""
+
+
+class Weighed(Protocol):
+    """A result with a known size."""
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the result takes, B."""
+
+
+Result = TypeVar("Result", bound=Weighed)
+
+
+class Kept:
+    """Results by key, the last ones that fit into some memory.
+
+    Parameters
+    ----------
+    largest
+        Largest memory of all results together, B; a larger result is not kept.
+    """
+
+    def __init__(self, largest: int) -> None:
+        self._largest = largest
+        self._results: OrderedDict[Hashable, Any] = OrderedDict()
+        self._lock = Lock()
+
+    def of(self, key: Hashable, make: Callable[[], Result]) -> Result:
+        """Result of a key: the one that is kept, or else a new one.
+
+        Parameters
+        ----------
+        key
+            Everything that the result depends on.
+        make
+            Function that makes the result.
+        """
+        with self._lock:
+            if key in self._results:
+                self._results.move_to_end(key)
+                known: Result = self._results[key]
+                return known
+        result = make()
+        if result.nbytes <= self._largest:
+            self._keep(key, result)
+        return result
+
+    def _keep(self, key: Hashable, result: Weighed) -> None:
+        """Keep a result, and drop the oldest ones that no longer fit."""
+        with self._lock:
+            self._results[key] = result
+            while self.nbytes > self._largest:
+                self._results.popitem(last=False)
+
+    def clear(self) -> None:
+        """Drop all results."""
+        with self._lock:
+            self._results.clear()
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of all results, B."""
+        return sum(result.nbytes for result in self._results.values())
+
+
+KEPT = Kept(LARGEST)
+"""The kept results of this process."""
+
+
+def content_of(*fields: NDArray[Any] | sparse.csr_array) -> bytes:
+    """Digest of arrays, dense or sparse, of any shape: equal for equal bits."""
+    digest = hashlib.blake2b(digest_size=16)
+    for field in fields:
+        digest.update(f"{field.shape} {field.dtype}".encode())
+        if isinstance(field, np.ndarray):
+            digest.update(np.ascontiguousarray(field))
+        else:
+            digest.update(field.data)
+            digest.update(field.indices)
+            digest.update(field.indptr)
+    return digest.digest()
