@@ -94,7 +94,7 @@ def content_of(*fields: NDArray[Any] | sparse.csr_array) -> bytes:
     for field in fields:
         digest.update(f"{field.shape} {field.dtype}".encode())
         if isinstance(field, np.ndarray):
-            digest.update(np.ascontiguousarray(field))
+            digest.update(field.tobytes())
         else:
             digest.update(field.data)
             digest.update(field.indices)

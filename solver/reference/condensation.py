@@ -147,7 +147,7 @@ class GluedStructure:
         """Memory that the structure takes, B, without what is sparse and small."""
         dense = [self.stiffness, self.motions, self.gauge, self.stresses]
         dense += [self.given, self.given_force]
-        entries = self._factor.nnz + self.pulled.nnz
+        entries: int = self._factor.nnz + self.pulled.nnz
         return sum(field.nbytes for field in dense) + OF_ENTRY * entries
 
     def _subtract_glued(
