@@ -8,10 +8,11 @@ kept result has the bits of a new one. Kept results are never changed.
 from __future__ import annotations
 
 import hashlib
+import sys
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from threading import Lock
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,15 +22,7 @@ LARGEST = 80_000_000
 """Largest memory of all kept results, B: a wall of 75 bricks takes half of it."""
 
 
-class Weighed(Protocol):
-    """A result with a known size."""
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the result takes, B."""
-
-
-Result = TypeVar("Result", bound=Weighed)
+Result = TypeVar("Result")
 
 
 class Kept:
@@ -54,7 +47,7 @@ class Kept:
         key
             Everything that the result depends on.
         make
-            Function that makes the result.
+            Function that makes the result; one with arrays in it has `nbytes`.
         """
         with self._lock:
             if key in self._results:
@@ -62,11 +55,11 @@ class Kept:
                 known: Result = self._results[key]
                 return known
         result = make()
-        if result.nbytes <= self._largest:
+        if _size_of(result) <= self._largest:
             self._keep(key, result)
         return result
 
-    def _keep(self, key: Hashable, result: Weighed) -> None:
+    def _keep(self, key: Hashable, result: object) -> None:
         """Keep a result, and drop the oldest ones that no longer fit."""
         with self._lock:
             self._results[key] = result
@@ -81,7 +74,12 @@ class Kept:
     @property
     def nbytes(self) -> int:
         """Memory of all results, B."""
-        return sum(result.nbytes for result in self._results.values())
+        return sum(_size_of(result) for result in self._results.values())
+
+
+def _size_of(result: object) -> int:
+    """Memory of a result, B: its `nbytes`, as an array has, or that of the object."""
+    return int(getattr(result, "nbytes", sys.getsizeof(result)))
 
 
 KEPT = Kept(LARGEST)

@@ -63,6 +63,12 @@ class Elasticity:
         )
 
     @property
+    def nbytes(self) -> int:
+        """Memory of the operator, B, without the places of sparse entries."""
+        fields = (self.stiffness, self.trace, self.direction)
+        return sum(field.size * field.dtype.itemsize for field in fields)
+
+    @property
     def _is_symmetric(self) -> bool:
         """Check whether the stiffness is symmetric, in two products.
 

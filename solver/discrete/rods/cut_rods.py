@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from solver.discrete.substructure import (
     substructure_sizes,
     tributary,
 )
+from solver.kept import KEPT
 from solver.laws import (
     Component,
     Contact,
@@ -222,14 +224,17 @@ class CutRods:
             springs = piece.springs(rods)
             # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
+            unit = self._scales.force / self._scales.displacement
             key = (
+                "rod",
                 is_row.tobytes(),
                 stiffness[piece.elements].tobytes(),
-                rods.length,
-                tuple(springs),
+                (rods.length / self._scales.displacement, rods.elements),
+                tuple((node, end.spring / unit) for node, end in springs.items()),
             )
             if key not in shared:
-                shared[key] = self._operator(rods, piece, stiffness, springs, is_row)
+                make = partial(self._operator, rods, piece, stiffness, springs, is_row)
+                shared[key] = KEPT.of(key, make)
             first_of_piece = first_dof + first + int(self._beyond[rod, number])
             pushing = None
             if free_force is not None:
@@ -311,7 +316,7 @@ class CutRods:
         springs: Mapping[int, End],
         is_row: NDArray[np.bool_],
     ) -> Elasticity:
-        """Operator of a piece.
+        """Operator of a piece, which is kept between runs (`solver.kept`).
 
         `stiffness` is ES of the elements of the rod, (n_elements,), scaled; `springs`
         hold nodes of the piece; `is_row` says which boundary rows there are, (n,), of
