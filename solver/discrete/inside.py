@@ -166,8 +166,8 @@ class Inside:
             bodies[dofs] = part.body
         return bodies
 
-    def rigid_motions(self, fixed: Indices) -> Array:
-        """Independent rigid motions of bodies, (n_dofs, n_motions), if any.
+    def rigid_motions(self, fixed: Indices) -> Array | None:
+        """Independent rigid motions of bodies, (n_dofs, n_motions), or None.
 
         The motions are zero at the degrees of freedom of prescribed displacement,
         `fixed`, (n,).
@@ -185,7 +185,8 @@ class Inside:
             of_body = np.zeros((len(bodies), 3 - hindered))
             of_body[dofs] = modes @ combinations[hindered:].T
             motions.append(of_body)
-        return read_only(np.concatenate(motions, axis=1))
+        together = np.concatenate(motions, axis=1)
+        return read_only(together) if together.size else None
 
     def hold_still(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]

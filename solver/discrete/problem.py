@@ -406,14 +406,13 @@ class Problem:
     @cached_property
     def is_chain(self) -> bool:
         """Check whether the stiffness is tridiagonal in the degrees of freedom."""
-        operators = {
-            id(part.elasticity): part.elasticity for part in self.substructures
-        }
-        for operator in operators.values():
-            rows, columns = sparse.coo_array(operator.stiffness).coords
-            if np.abs(rows - columns).max(initial=0) > 1:
-                return False
-        return all(np.all(np.diff(part.dofs) == 1) for part in self.substructures)
+        if not all(part.elasticity.is_tridiagonal for part in self.substructures):
+            return False
+        dofs = [part.dofs for part in self.substructures]
+        steps = np.diff(np.concatenate(dofs))
+        # From one substructure to the next any step will do.
+        steps[np.cumsum([len(of_part) for of_part in dofs])[:-1] - 1] = 1
+        return bool(np.all(steps == 1))
 
     @cached_property
     def motions(self) -> Array | None:
@@ -426,8 +425,7 @@ class Problem:
             return None
         fixed = self.prescribed[0]
         key = "motions", self.place_of_bodies, content_of(fixed)
-        motions = KEPT.of(key, lambda: inside.rigid_motions(fixed))
-        return motions if motions.size else None
+        return KEPT.of(key, lambda: inside.rigid_motions(fixed))
 
     @cached_property
     def place_of_bodies(self) -> bytes:

@@ -85,6 +85,12 @@ class Elasticity:
         return abs(difference) <= ALIKE * float(np.abs(first) @ np.abs(force))
 
     @cached_property
+    def is_tridiagonal(self) -> bool:
+        """Check whether degrees of freedom are tied to their neighbours alone."""
+        rows, columns = sparse.coo_array(self.stiffness).coords
+        return bool(np.abs(rows - columns).max(initial=0) <= 1)
+
+    @cached_property
     def boundary(self) -> tuple[Indices, Indices, sparse.csr_array | Array]:
         """Degrees of freedom at the boundary, and their rows of the stiffness.
 

@@ -1,4 +1,4 @@
-"""What loads and friction leave alone is kept, with the bits of a new one."""
+"""Results that loads and friction leave alone are kept, and have the same bits."""
 
 from __future__ import annotations
 
