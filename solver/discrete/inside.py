@@ -186,7 +186,9 @@ class Inside:
             of_body[dofs] = modes @ combinations[hindered:].T
             motions.append(of_body)
         together = np.concatenate(motions, axis=1)
-        return read_only(together) if together.size else None
+        if not together.size:
+            return None
+        return read_only(together)
 
     def hold_still(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]

@@ -331,7 +331,7 @@ class Known(NamedTuple):
 def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) -> Known:
     """Find the reference without a run; `stop` is asked again and again to give up.
 
-    Nothing that it prepares is kept: a run afterwards prepares its own, in its own time.
+    Nothing that it prepares is kept: a run afterwards prepares its own in its time.
     """
     try:
         reference = reference_of(problem, stop)
