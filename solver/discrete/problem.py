@@ -428,6 +428,18 @@ class Problem:
         return KEPT.of(key, lambda: inside.rigid_motions(fixed))
 
     @cached_property
+    def content_of_stiffness(self) -> bytes:
+        """Digest of the parts of which the stiffness of the structure is assembled."""
+        operators = {
+            id(part.elasticity): part.elasticity for part in self.substructures
+        }
+        numbers = {identity: number for number, identity in enumerate(operators)}
+        of_parts = [numbers[id(part.elasticity)] for part in self.substructures]
+        matrices = [operator.stiffness for operator in operators.values()]
+        dofs = [part.dofs for part in self.substructures]
+        return content_of(*matrices, np.array(of_parts), *dofs)
+
+    @cached_property
     def place_of_bodies(self) -> bytes:
         """Digest of where the degrees of freedom of each body are; b"" of rods."""
         inside = self.inside

@@ -101,6 +101,8 @@ class GluedStructure:
         Jumps of the base that prescribed displacements make, (n_base, n_instants).
     given_force
         S times these jumps, same shape, scaled.
+    pulls_of_gauge
+        As of `Condensation`.
     """
 
     def __init__(
@@ -141,12 +143,13 @@ class GluedStructure:
         if self.gauge.size:
             self._set_motions_apart()
         read_only(self.stiffness)
+        self.pulls_of_gauge = read_only(self.stiffness @ self.gauge)
 
     @property
     def nbytes(self) -> int:
         """Memory that the structure takes, B, without what is sparse and small."""
         dense = [self.stiffness, self.motions, self.gauge, self.stresses]
-        dense += [self.given, self.given_force]
+        dense += [self.given, self.given_force, self.pulls_of_gauge]
         entries: int = self._factor.nnz + self.pulled.nnz
         return sum(field.nbytes for field in dense) + OF_ENTRY * entries
 
@@ -219,6 +222,8 @@ class Condensation:
     motions, gauge
         Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q
         of the base that they make, shape (n_base, n_motions).
+    pulls_of_gauge
+        (S + s Q Q') Q, shape (n_base, n_motions), scaled.
     stresses, tie
         Forces that move nothing, where jumps of the base depend on each other, shape
         (n_base, n_stresses); and the stiffness in S that keeps the jumps from coming
@@ -259,6 +264,7 @@ class Condensation:
         self.springs = self._glued.springs
         self.motions = self._glued.motions
         self.gauge = self._glued.gauge
+        self.pulls_of_gauge = self._glued.pulls_of_gauge
         self.stresses = self._glued.stresses
         self.tie = self._glued.tie
         self._condense_load()
@@ -273,7 +279,8 @@ class Condensation:
         key = (
             "glued",
             problem.place_of_bodies,
-            content_of(self._fixed, self._whole, moving, rigid, given),
+            problem.content_of_stiffness,
+            content_of(self._fixed, moving, rigid, given),
         )
         return KEPT.of(
             key,
