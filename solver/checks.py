@@ -414,9 +414,10 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
     """Return whether a shape is a wanted one, in which None is any size."""
     if len(shape) != len(wanted):
         return False
-    return all(
-        allowed in (None, size) for size, allowed in zip(shape, wanted, strict=True)
-    )
+    for size, allowed in zip(shape, wanted, strict=True):
+        if allowed is not None and allowed != size:
+            return False
+    return True
 
 
 def _described(value: object) -> object:
