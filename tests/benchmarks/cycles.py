@@ -118,8 +118,11 @@ def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], lis
     settings = settings_of(name, cycles)
     problem = discretise(settings)
     reference = reference_of(problem)
-    courses = {way: _course(problem, settings, way, reference) for way in ways}
-    counts = {way: course for way, course in courses.items() if course}
+    counts = {}
+    for way in ways:
+        course = _course(problem, settings, way, reference)
+        if course:
+            counts[way] = course
     seconds: dict[str, list[float]] = {"": [], **{way: [] for way in counts}}
     words = {}
     while len(seconds[""]) < REPEATS and sum(map(sum, seconds.values())) <= SHORT:
@@ -131,10 +134,8 @@ def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], lis
     medians = {way: statistics.median(own) for way, own in seconds.items()}
     lines = [f"{cycles:>6}  {'incremental solver':<18}  {medians['']:.2g} s"]
     for way in counts:
-        ratios = (
-            medians.get(other, math.nan) / medians[way] for other in ("", "LATIN")
-        )
-        ups = ", ".join(f"{ratio:.2g}" for ratio in ratios)
+        others = (medians[""], medians.get("LATIN", math.nan))
+        ups = ", ".join(f"{other / medians[way]:.2g}" for other in others)
         lines.append(
             f"{cycles:>6}  {way:<18}  {medians[way]:.2g} s, {words[way]}; S {ups}"
         )

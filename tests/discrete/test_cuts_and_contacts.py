@@ -432,7 +432,7 @@ def test_fields_of_a_contact_are_its_forces_jumps_and_gap_in_si() -> None:
 
 
 def driven(**along: Any) -> tuple[DrivenFriction, Array]:
-    """Two points of three whose displacement is given, and that displacement."""
+    """Two points of three whose displacement is given, and that, (2, n_instants)."""
     random = np.random.default_rng(7)
     values = np.cumsum(random.normal(size=(2, 30)), axis=1)
     values[:, 10:14] = values[:, 10:11]

@@ -106,8 +106,9 @@ def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
 def on_supports(
     problem: Problem, fields: LoopFields
 ) -> tuple[list[Array], list[Array], list[Array]]:
-    """Forces along x and y of supports and springs,
-    and their moments about the origin.
+    """Forces along x and y of supports and springs, (n_instants,) each.
+
+    And their moments about the origin.
     """
     x = []
     y = []

@@ -99,7 +99,7 @@ class Mixed:
         return self.group.state.copy()
 
     def step(self, image: Array) -> Array:
-        """State that an iteration leads to whose image is given."""
+        """State that an iteration leads to whose image is given, of the same shape."""
         self.state.start()
         self.group.state[:] = image
         self.state.mix()
@@ -176,7 +176,7 @@ def test_a_motion_that_the_local_stage_chooses_anew_has_no_weight() -> None:
 
 
 def stages(of: Problem, pgd: PGD) -> tuple[LinearStage, LinearStage, Array]:
-    """The linear stage in full and on bases."""
+    """The linear stage in full and on bases, and their k, (n_rows,)."""
     k = np.random.default_rng(0).uniform(0.5, 2.0) * of.direction
     both = [
         LinearStage(of, k, form, Blocks(of.n_rows, of.n_instants), multiscale=True)

@@ -196,7 +196,7 @@ def known_sides(condensed: Condensation, random: np.random.Generator) -> Sides:
 
 
 def enumerated(matrix: Array, sides: Sides) -> list[tuple[States, Array]]:
-    """All states, and their jumps, that obey Coulomb's law under a known bound."""
+    """All states, and jumps, (n,) each, that obey Coulomb's law of known bound."""
     found = []
     for choice in product((-1, 0, 1), repeat=len(matrix)):
         states = np.array(choice, dtype=np.int8)

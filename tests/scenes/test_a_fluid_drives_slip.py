@@ -44,7 +44,7 @@ def solved(**changes: Any) -> tuple[FaultSettings, Problem, Reference]:
 
 
 def reached(problem: Problem, found: Reference) -> Array:
-    """Farthest place that slips at every instant, m."""
+    """Farthest place that slips at every instant, (n_instants,), m."""
     slips = found.contact("support").status == 1
     return np.where(slips, problem.rubbing["support"].positions[:, None], 0.0).max(
         axis=0

@@ -52,7 +52,7 @@ def settings_of(**values: Any) -> Any:
 
 
 def deflection(settings: Any) -> Array:
-    """Deflection of the end over time."""
+    """Deflection of the end over time, (n_instants,), m."""
     problem = discretise(settings)
     loop = settings.structure().loop(problem)
     return np.asarray(loop.displacement(reference_of(problem).displacement))
