@@ -28,9 +28,7 @@ Callback = Callable[[], Any]
 
 
 class Document:
-    """A document whose next tick comes when it is called for,
-    in the context that asked for it.
-    """
+    """A document whose next tick comes in the context that asked, when called."""
 
     def __init__(self) -> None:
         self.due: list[Callback] = []

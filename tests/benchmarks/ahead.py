@@ -1,5 +1,4 @@
-"""LATIN beside the incremental solver on the same mesh: who is first, and how LATIN
-gets there.
+"""LATIN beside the incremental solver on the same mesh: times, and LATIN's way.
 
 `python tests/benchmarks/ahead.py`, of one group `ahead.py strand`; `--large` for those
 of minutes
@@ -162,7 +161,7 @@ def _course(settings: Settings) -> tuple[bool, int, int, str]:
 def _seconds(
     settings: Settings, way: Callable[..., Iterator[object]], number: int
 ) -> float:
-    """Seconds of so many iterations that no status step ends; NaN of none."""
+    """Seconds of a number of iterations that no status step ends; NaN of none."""
     own = settings.replace(finish="none")
 
     def work() -> None:

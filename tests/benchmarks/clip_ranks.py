@@ -30,8 +30,7 @@ Loss = Callable[[Array], tuple[float, Array]]
 
 @dataclass(frozen=True)
 class Traction:
-    """Friction and its bound, times the roots of lengths and of weights of the
-    instants.
+    """Friction and its bound, times the roots of lengths and of weights of instants.
 
     Attributes
     ----------

@@ -88,7 +88,7 @@ class AtInstants:
 
 
 def settings_of(name: str, cycles: int) -> Settings:
-    """Settings of a problem with so many cycles of a second each."""
+    """Settings of a problem with a number of cycles of a second each."""
     scene, changes, _ = PROBLEMS[name]
     path = [[0.0, 0.0]]
     for cycle in range(cycles):
@@ -114,7 +114,7 @@ def settings_of(name: str, cycles: int) -> Settings:
 
 
 def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Lines of so many cycles, and the ways that came there."""
+    """Lines of a number of cycles, and the ways that came there."""
     settings = settings_of(name, cycles)
     problem = discretise(settings)
     reference = reference_of(problem)
@@ -187,7 +187,7 @@ def _course(
 def _run(
     problem: Problem, settings: Settings, way: str, counts: Sequence[int]
 ) -> tuple[float, str]:
-    """Seconds of so many iterations of every slab, and of what they consist."""
+    """Seconds of a number of iterations of every slab, and their parts."""
     local = 0.0
     iterate = None
 

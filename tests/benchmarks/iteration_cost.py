@@ -180,9 +180,7 @@ class _Unproven(ErrorEstimate):
 
 
 def overhead(settings: Settings, repeats: int) -> Overhead:
-    """Measure a run up to its accuracy in three ways,
-    interleaved: bare, with iterates, judged.
-    """
+    """Measure a run up to its accuracy three ways in turns: bare, iterates, judged."""
     settings = settings.replace(finish="none")
     problem = discretise(settings)
     method = method_of(settings)

@@ -61,9 +61,7 @@ class ReductionCost:
 
     @property
     def pays_up_to(self) -> int:
-        """Most of the measured modes with which projecting
-        is cheaper than the full stage.
-        """
+        """Largest measured number of modes with which projecting is cheaper."""
         return max(
             (n for n, seconds in self.reduced.items() if seconds < self.full), default=0
         )
@@ -93,8 +91,7 @@ def medians_of(
 
 
 def half_plane(points: int, instants: int) -> Problem:
-    """Make a body whose boundary response is dense: the surface of an elastic half
-    plane.
+    """Make a body whose boundary response is dense: an elastic half plane.
 
     Its surface stiffness is the root of the negative second derivative (Johnson,
     Contact Mechanics, 1985, chapter 2), here with a spring to rest so that it cannot
@@ -210,8 +207,7 @@ TIGHT = 1e-14
 def whole_iterations(
     nodes: int, instants: int, repeats: int
 ) -> dict[str, tuple[float, float]]:
-    """Measure whole iterations of the bar with 5 substructures, in full and in reduced
-    forms.
+    """Measure whole iterations of a bar of 5 substructures, in full and reduced.
 
     Returns
     -------

@@ -64,9 +64,7 @@ def assert_rods_balance(rods: Rods, problem: Problem, fields: LoopFields) -> Non
 
 
 def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
-    """Resultants of all loads, N,
-    and their moment about the origin, N m, (n_instants,) each.
-    """
+    """Resultants, N, of all loads, and their moment, N m, (n_instants,) each."""
     assert problem.inside is not None
     force = external_force(problem) * problem.scales.force
     (x, y) = problem.positions.T
@@ -103,9 +101,7 @@ def on_supports(
 
 
 def assert_bodies_balance(problem: Problem, fields: LoopFields) -> None:
-    """In the plane: sides, loads, supports and springs,
-    along x and y, and about the origin.
-    """
+    """Check bodies in the plane along x and y, and about the origin."""
     loads = loads_of(problem)
     every = [
         [load, *more]

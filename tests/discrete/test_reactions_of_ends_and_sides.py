@@ -74,9 +74,7 @@ def largest(name: str, run: FinishedRun) -> float:
 def test_the_force_of_an_end_is_that_of_its_closed_form_on_every_mesh(
     elements: int,
 ) -> None:
-    """900 N move the end of Table 1's bar by 0.409 mm,
-    and whatever moves it so far needs 900 N.
-    """
+    """900 N move the end of Table 1's bar by 0.409 mm, and the other way round."""
     path = [[0.0, 0.0], [1.0, 900.0**2 / (2.0 * 659_400.0 * 1500.0)]]
     held = {
         "right_end": "held",
@@ -121,9 +119,7 @@ def test_a_pushed_side_carries_all_friction() -> None:
 def test_a_clamp_carries_what_friction_leaves_of_a_pull_on_every_mesh(
     elements: int,
 ) -> None:
-    """1800 N pull Table 1's bar,
-    of which friction holds 1500 N up to the clamp itself.
-    """
+    """1800 N pull Table 1's bar, of which friction holds 1500 N up to the clamp."""
     pulled = {"load": [[0.0, 0.0], [1.0, 1800.0]], "instants": 5, "elements": elements}
     run = run_of("bar", **pulled)
     assert largest("left_force", run) == pytest.approx(-300.0, rel=1e-9)

@@ -1,6 +1,4 @@
-"""Mixtures, separated bases, indicators,
-starts and ends: each by what it must not change.
-"""
+"""Mixtures, bases, indicators, starts and ends, by what they must not change."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""The incremental reference obeys the laws of contact exactly,
-or says where it does not.
-"""
+"""The incremental reference obeys contact exactly, or says where it does not."""
 
 from itertools import product
 
@@ -52,9 +50,7 @@ def components(of, found):
 
 
 def assert_laws(of, found, slack=SMALL):
-    """Check Signorini and Coulomb on the fields,
-    and equilibrium on the assembled structure.
-    """
+    """Check Signorini and Coulomb on the fields, and equilibrium of the structure."""
     for opening, slip, normal, bound, friction in components(of, found):
         if opening is not None:
             assert opening.min() >= -slack

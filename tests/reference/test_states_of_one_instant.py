@@ -40,9 +40,7 @@ SEEDS = range(6)
 
 
 def random_jumps(seed: int, *, rings: bool) -> sparse.csr_array:
-    """Jumps between 12 points and the ground,
-    in random order; as a forest, or with rings.
-    """
+    """Jumps between 12 points and the ground, shuffled; a forest, or with rings."""
     random = np.random.default_rng(seed)
     n_points = 12
     edges = [

@@ -1,6 +1,4 @@
-"""A strand of helical wires is rods on supports of their own,
-held to the closed form.
-"""
+"""A strand of helical wires is rods on supports of their own, as closed forms say."""
 
 from __future__ import annotations
 
@@ -93,9 +91,7 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
 
 
 def test_outer_layers_press_on_what_is_below_them() -> None:
-    """All that is laid presses on the core,
-    metre by metre of strand, and nothing on it.
-    """
+    """All wires press on the core, metre by metre of strand, and nothing on it."""
     section = CONSTRUCTIONS["mooring"](4)
     tension = np.array([2e5])
     below, above = section.line_pressures(tension)
