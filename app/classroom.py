@@ -18,10 +18,11 @@ import param
 import segno
 from panel.io.state import set_curdoc
 
+from app.history import History
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
 from app.server import address_for_others, port
-from app.state import History, PageState, Poll
+from app.state import PageState, Poll
 from app.supervisor import Supervisor
 from app.widgets import PlainText, button, dialog, html
 

@@ -17,8 +17,9 @@ from panel.io.state import set_curdoc
 from app import classroom
 from app.classroom import ClassDialog, ClassMember, begin_with_class, find
 from app.frame import Frame
+from app.history import History
 from app.messages import Needs, Order, Ready, Start
-from app.state import History, PageState, default_settings
+from app.state import PageState, default_settings
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
 from solver.study.quantities.finished import finished_run

@@ -209,12 +209,18 @@ def enumerated(matrix: Array, sides: Sides) -> list[tuple[States, Array]]:
     return found
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_newton_finds_the_one_solution_among_all_states(seed: int) -> None:
+def of_two_strands(
+    seed: int,
+) -> tuple[np.random.Generator, Condensation, Newton, Sides]:
+    """Random numbers, and an instant of two strands whose bound is known."""
     random = np.random.default_rng(seed)
     condensed = Condensation(rubbing_strands(random, 2, 5))
-    newton = Newton(condensed)
-    sides = known_sides(condensed, random)
+    return random, condensed, Newton(condensed), known_sides(condensed, random)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_newton_finds_the_one_solution_among_all_states(seed: int) -> None:
+    random, condensed, newton, sides = of_two_strands(seed)
     (only,) = enumerated(condensed.stiffness, sides)
     reached = 0
     for _ in range(10):
@@ -248,10 +254,7 @@ def test_a_solution_is_found_again_from_itself_in_one_step(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_springs_that_soften_lead_to_the_solution_from_any_states(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    condensed = Condensation(rubbing_strands(random, 2, 5))
-    newton = Newton(condensed)
-    sides = known_sides(condensed, random)
+    _, condensed, newton, sides = of_two_strands(seed)
     (only,) = enumerated(condensed.stiffness, sides)
     wrong = begin(condensed, np.where(only[0] == 1, -1, 1).astype(np.int8))
     found = newton.follow(wrong, sides, newton.approach(wrong, sides))
