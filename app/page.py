@@ -10,7 +10,8 @@ from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
 from app.browser import Browser
-from app.classroom import ClassDialog, ClassMember, begin_with_class
+from app.class_dialog import ClassDialog
+from app.classroom import ClassMember, begin_with_class
 from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports

@@ -15,7 +15,8 @@ import pytest
 from panel.io.state import set_curdoc
 
 from app import classroom
-from app.classroom import ClassDialog, ClassMember, begin_with_class, find
+from app.class_dialog import ClassDialog
+from app.classroom import ClassMember, begin_with_class, find
 from app.frame import Frame
 from app.history import History
 from app.messages import Needs, Order, Ready, Start
