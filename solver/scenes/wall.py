@@ -9,15 +9,38 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.arrays import Indices
-from solver.discrete.plane.bricks import Brick, bonded, grouped, with_opening
+from solver.arrays import Flags, Indices
+from solver.discrete.plane.bricks import (
+    Brick,
+    bonded,
+    grouped,
+    strips_below,
+    with_opening,
+)
 from solver.discrete.plane.sides import Given, Side, Support
 from solver.discrete.plane.stack import Stack
 from solver.scenes.plane import PlaneSettings
-from solver.settings.definitions import BODY, DECOMPOSITION, LOAD, redefined
-from solver.settings.load_paths import PRESETS
+from solver.settings.definitions import (
+    BODY,
+    CONTACT,
+    DECOMPOSITION,
+    LOAD,
+    redefined,
+)
+from solver.settings.load_paths import HELD, PRESETS, Preset
 from solver.settings.scene import Icon
 
+SETTLEMENTS = {
+    "delayed ramp": Preset(
+        "0 for a quarter of the interval, then rises evenly to the value",
+        lambda _seed: (np.array([0.0, 1.0]), np.array([0.0, 1.0])),
+        begins=HELD,
+    ),
+    **PRESETS,
+}
+"""Presets of the settlement: by the first one the wall stands before it begins."""
+CAP_STIFFNESS = 1e5
+"""Young's modulus of the cap over that of the bricks."""
 MOST_BRICKS = 1500
 """Largest number of bricks: with their joints they take some 2 GB."""
 
@@ -136,6 +159,47 @@ class WallSettings(PlaneSettings):
         "Largest angle by which the ground is tilted, the right end upwards.",
         "delayed",
     )
+    settlement, settlement_load = shared.sized_path(
+        "settlement_load",
+        "settlement",
+        "m",
+        0.0,
+        (0.0, 1e3),
+        (0.0, 5e-3),
+        "Largest distance by which a part of the ground goes down. The wall then "
+        "stands on strips of ground, one element high and as stiff as the bricks.",
+        "delayed ramp",
+        SETTLEMENTS,
+        title="Settlement of the ground",
+        places=("bottom y",),
+    )
+    settled_length = LOAD.quantity(
+        1.0,
+        (1e-6, 1e4),
+        (0.25, 3.0),
+        "Length of the ground that settles, rounded to elements.",
+        title="Length that settles",
+        unit="m",
+        applies=lambda settings: settings.acts("settlement_load"),
+    )
+    settled_from = LOAD.quantity(
+        1.0,
+        (0.0, 1e4),
+        (0.0, 3.0),
+        "Distance of the ground that settles from the left end of the wall, rounded to "
+        "elements.",
+        title="Settles from",
+        unit="m",
+        applies=lambda settings: settings.acts("settlement_load"),
+    )
+    cap = BODY.choice(
+        "none",
+        ["none", "free", "guided"],
+        "A stiff plate on the highest course, as high as a course. free: it turns as "
+        "the bricks below let it. guided: it stays level; its ends stand out by an "
+        "element and are held upright.",
+        title="Cap on the wall",
+    )
     unit_weight = LOAD.quantity(
         2e4,
         (0.0, 1e12),
@@ -145,6 +209,20 @@ class WallSettings(PlaneSettings):
         places=("body",),
     )
     friction = redefined(PlaneSettings.param["friction"], 0.6)
+    head_friction = CONTACT.quantity(
+        1.0,
+        (0.0, 1e3),
+        (0.0, 2.0),
+        "Factor on μ of the joints between bricks of a course.",
+        title="μ of head joints over μ",
+    )
+    ground_friction = CONTACT.quantity(
+        1.0,
+        (0.0, 1e3),
+        (0.0, 2.0),
+        "Factor on μ between the wall and the ground.",
+        title="μ of the ground over μ",
+    )
     plane = redefined(PlaneSettings.param["plane"], "stress")
     young = redefined(PlaneSettings.param["young"], 1e10)
     poisson = redefined(PlaneSettings.param["poisson"], 0.2)
@@ -245,6 +323,10 @@ class WallSettings(PlaneSettings):
                 f"these are {self.n_substructures}: take fewer courses, or bricks of a "
                 "course",
             )
+        if self.cap == "guided" and self.top != "moved":
+            raise self.refusal(
+                "cap", "none or free where top is pulled", "take top=moved"
+            )
 
     def _check_opening(self, name: str, largest: int, reason: str) -> None:
         """Refuse a size of the opening beyond the largest one, in bricks or courses."""
@@ -254,6 +336,87 @@ class WallSettings(PlaneSettings):
                 f"at most {max(largest, 0)}, as {reason}",
                 "lower it, or build a larger wall",
             )
+
+    @cached_property
+    def _is_settled(self) -> Flags:
+        """Whether each strip of ground below the wall settles, (n_strips,)."""
+        middles = [strip.x + 0.5 * strip.columns for strip in self._strips]
+        first, last = self._settled
+        return (np.array(middles) > first) & (np.array(middles) < last)
+
+    @property
+    def _settled(self) -> tuple[int, int]:
+        """Ends of the ground that settles, in elements from the left end."""
+        element = self.length / self.elements
+        end = self.settled_from + self.settled_length
+        return round(self.settled_from / element), round(end / element)
+
+    @cached_property
+    def _strips(self) -> list[Brick]:
+        """Strips of ground below the wall, from the left."""
+        return strips_below(self._bricks, self._settled)
+
+    @property
+    def _settles(self) -> bool:
+        """Whether ground below the wall settles: it is rigid otherwise."""
+        return self.acts("settlement_load") and bool(self._is_settled.any())
+
+    @property
+    def _overhang(self) -> int:
+        """Elements by which a guided cap stands out at each end."""
+        return 1 if self.cap == "guided" else 0
+
+    def _with_cap(self, stack: Stack) -> Stack:
+        """Put the cap, which is the last body, on the wall."""
+        if self.cap == "none":
+            return stack
+        bricks = list(stack.rectangles)
+        columns, rows = stack.grid
+        sides = dict(stack.sides)
+        out = self._overhang
+        bricks = [brick._replace(x=brick.x + out) for brick in bricks]
+        if out:
+            free = Given(False, np.zeros_like(stack.instants))
+            sides["left"] = Side(sides["top"].x, free)
+            sides["right"] = sides["left"]
+        bricks.append(Brick(0, rows, columns + 2 * out, self.elements_up))
+        stiffness = np.ones(len(bricks))
+        stiffness[-1] = CAP_STIFFNESS
+        groups = stack.groups
+        if groups is not None:
+            groups = np.append(groups, groups.max() + 1)
+        return replace(
+            stack, bricks=bricks, stiffness=stiffness, groups=groups, sides=sides
+        )
+
+    def _on_strips(self, stack: Stack) -> Stack:
+        """Put the wall on strips of ground, of which some settle."""
+        strips = [strip._replace(x=strip.x + self._overhang) for strip in self._strips]
+        above = [brick._replace(y=brick.y + 1) for brick in stack.rectangles]
+        moved = -np.outer(self._is_settled, self.path("settlement_load"))
+        still = Given(True, np.zeros_like(stack.instants))
+        stiffness = stack.stiffness
+        if stiffness is not None:
+            stiffness = np.concatenate([np.ones(len(strips)), stiffness])
+        groups = stack.groups
+        if groups is not None:
+            numbers = groups.max() + 1 + np.arange(len(strips))
+            groups = np.concatenate([numbers, groups])
+        return replace(
+            stack,
+            bricks=[*strips, *above],
+            stiffness=stiffness,
+            groups=groups,
+            support=Support(
+                np.zeros(stack.grid[0] + 1), self._on_ground, strips=len(strips)
+            ),
+            sides=stack.sides | {"bottom": Side(still, Given(True, moved))},
+        )
+
+    @property
+    def _on_ground(self) -> float:
+        """Coefficient mu of the ground."""
+        return self.friction * self.ground_friction
 
     @cached_property
     def bodies(self) -> Stack:
@@ -266,14 +429,17 @@ class WallSettings(PlaneSettings):
             self.stack(),
             bricks=self._bricks,
             groups=self._groups,
+            head_friction=self.friction * self.head_friction,
             substructures=(1, 1),
             body_force=-weight * np.stack([np.sin(angle), np.cos(angle)]),
             sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
             tilt=angle if np.any(angle) else None,
         )
-        return replace(
-            stack, support=Support(np.zeros(stack.grid[0] + 1), self.friction)
-        )
+        stack = self._with_cap(stack)
+        if self._settles:
+            return self._on_strips(stack)
+        gap = np.zeros(stack.grid[0] + 1)
+        return replace(stack, support=Support(gap, self._on_ground))
 
     def sentence(self) -> str:
         """Describe the wall in a sentence."""

@@ -24,7 +24,7 @@ from solver.discrete.elements import (
 from solver.discrete.inside import RectangularSubstructure
 from solver.discrete.plane.bricks import Brick, Joint, joints_of
 from solver.discrete.plane.sides import Given
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.stack import SETTLED, Stack
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
 from solver.kept import KEPT
 
@@ -230,7 +230,7 @@ class CutStack:
     def _joints(self) -> list[Joint]:
         """Joints of substructures; those with a support only where there is one."""
         joints = joints_of([piece.rectangle for piece in self._pieces])
-        if self.stack.support is not None:
+        if self.stack.support is not None and not self.stack.strips:
             return joints
         return [joint for joint in joints if joint.below is not None]
 
@@ -373,9 +373,15 @@ class CutStack:
             if below is None:
                 return "support"
             return f"contact {above}-{above + 1}"
+        strips = self.stack.strips
+        brick = f"brick {above + 1 - strips}"
         if below is None:
-            return f"support and brick {above + 1}"
-        return f"brick {below + 1} and brick {above + 1}"
+            return f"support and {brick}"
+        if below >= strips:
+            return f"brick {below + 1 - strips} and {brick}"
+        if self.stack.settlement[below].any():
+            return f"{SETTLED} and {brick}"
+        return f"support and {brick}"
 
     def basis(self, joint: Joint, which: int) -> Array:
         """Macro basis of one component on a joint, (n_points, n_macro).
@@ -523,7 +529,7 @@ class CutStack:
                     continue
                 traction = self.values(number, span, given) / stack.young
                 _add_traction(total[:, component], mesh, span, traction)
-        if stack.body_force is not None:
+        if stack.body_force is not None and self.body_of(number) >= stack.strips:
             areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
             density = stack.body_force * stack.length / stack.young
             total += areas.reshape(-1, 1, 1) * density
@@ -544,8 +550,11 @@ class CutStack:
         else:
             corner = rectangle.x
             whole = self.stack.grid[0]
+        mean = given.mean
+        if mean.ndim > 1:
+            mean = mean[body]
         nodes = corner + np.arange(span.first, span.last + 1)[:, None]
-        return np.asarray(given.mean + (2.0 * nodes / whole - 1.0) * given.slope)
+        return np.asarray(mean + (2.0 * nodes / whole - 1.0) * given.slope)
 
 
 def _add_traction(force: Array, mesh: Rectangle, span: Span, traction: Array) -> None:

@@ -13,6 +13,7 @@ from solver.checks import (
     FLAG,
     NON_NEGATIVE,
     POSITIVE,
+    Count,
     Either,
     Numbers,
     check,
@@ -32,7 +33,8 @@ class Given:
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
         Values over time, shape (n_instants,); the slope may be 0. On the left and the
-        right s runs over each body anew.
+        right s runs over each body anew. Below strips of ground the mean may be that of
+        each strip, shape (n_strips, n_instants).
     """
 
     prescribed: bool
@@ -41,9 +43,8 @@ class Given:
 
     def __post_init__(self) -> None:
         over_time = Numbers(((None,),))
-        check(
-            self, prescribed=FLAG, mean=over_time, slope=Either(ANY_NUMBER, over_time)
-        )
+        mean = Numbers(((None,), (None, None)))
+        check(self, prescribed=FLAG, mean=mean, slope=Either(ANY_NUMBER, over_time))
 
     @property
     def is_zero(self) -> bool:
@@ -75,12 +76,18 @@ class Support:
         Whether below lies the image of the stack, turned by half a turn, which moves
         along as much the other way: slip is between both, twice the displacement of the
         stack, and the friction law is one of this slip. The strength has to be known.
+    strips
+        Number of strips of elastic ground: the first bodies of the stack, one element
+        high and without weight. The side "bottom" moves their lower sides, and the
+        others lie on them; none of these strips touches another. 0: the ground is
+        rigid.
     """
 
     gap: Array
     friction: float | Array
     strength: Array | None = None
     is_image: bool = False
+    strips: int = 0
 
     def __post_init__(self) -> None:
         along = Numbers(((None,),))
@@ -90,6 +97,7 @@ class Support:
             gap=along,
             friction=friction,
             strength=Numbers(((None, None),), low=0.0),
+            strips=Count(0),
         )
         if self.is_image and self.strength is None:
             raise RefusedError(

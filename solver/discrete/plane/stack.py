@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -51,6 +51,8 @@ SIDES = "left", "right", "top", "bottom"
 MOST_POISSON = 0.4999
 """Largest Poisson's ratio; above it a body keeps its volume up to the rounding of its
 strains."""
+SETTLED = "settled support"
+"""Beginning of the names of contacts with strips of ground that settle."""
 DRIVEN = "top", "left", "right"
 """Sides of a body on a support; the first that is loaded or moved drives the body."""
 
@@ -88,11 +90,14 @@ class Stack:
         Coefficient mu between the bodies, that of the nodes along them, shape (nodes
         along,), or that of each interface, shape (bodies - 1, 1) or (bodies - 1, nodes
         along).
+    head_friction
+        Coefficient mu of upright joints; None is `friction`.
     support
         Support below the lowest body, or None.
     sides
         Displacements and tractions along the outer sides, by "left", "right", "top",
-        "bottom"; others are free. A support replaces "bottom". "left" and "right" run
+        "bottom"; others are free. A rigid support replaces "bottom", which moves the
+        lower sides of strips of ground where there are any. "left" and "right" run
         over the sides of all bodies.
     body_force
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
@@ -122,6 +127,7 @@ class Stack:
     state: str = "strain"
     stiffness: Array | None = None
     friction: float | Array = 0.0
+    head_friction: float | None = None
     support: Support | None = None
     sides: Mapping[str, Side] = field(default_factory=dict)
     body_force: Array | None = None
@@ -189,6 +195,7 @@ class Stack:
         check(
             self,
             friction=Either(NON_NEGATIVE, Numbers(((nodes,), *joints), low=0.0)),
+            head_friction=NON_NEGATIVE,
             stiffness=Numbers(((bodies,),), low=0.0, above=True),
             groups=Numbers(((bodies,),), whole=True),
             body_force=Numbers(((2, instants),)),
@@ -196,10 +203,13 @@ class Stack:
         )
         slope = Either(ANY_NUMBER, over_time)
         for side, components in self.sides.items():
+            mean = over_time
+            if side == "bottom" and self.strips:
+                mean = Numbers(((instants,), (self.strips, instants)))
             for component, given in zip("xy", components, strict=True):
                 where = f"Stack.sides[{side!r}].{component}"
                 check_value(where, given, Part(Given))
-                check_value(f"{where}.mean", given.mean, over_time)
+                check_value(f"{where}.mean", given.mean, mean)
                 check_value(f"{where}.slope", given.slope, slope)
         if self.support is not None:
             self._check_support(self.support, nodes, instants)
@@ -210,6 +220,8 @@ class Stack:
         friction = Either(NON_NEGATIVE, along)
         check_value("Stack.support.gap", support.gap, along)
         check_value("Stack.support.friction", support.friction, friction)
+        strips = Count(0, len(self.rectangles) - 1)
+        check_value("Stack.support.strips", support.strips, strips)
         if support.strength is not None:
             strength = Numbers(((nodes, instants),), low=0.0)
             check_value("Stack.support.strength", support.strength, strength)
@@ -221,10 +233,15 @@ class Stack:
             return [Brick(0, 0, *self.elements)]
         return self.bricks
 
+    @property
+    def strips(self) -> int:
+        """Number of the first bodies that are strips of ground."""
+        return 0 if self.support is None else self.support.strips
+
     @cached_property
     def is_pile(self) -> bool:
         """Check whether all bodies begin at the left, one on the other."""
-        return not any(brick.x for brick in self.rectangles)
+        return not self.strips and not any(brick.x for brick in self.rectangles)
 
     @cached_property
     def grid(self) -> tuple[int, int]:
@@ -245,7 +262,8 @@ class Stack:
         """Resultant of the body force, shape (2, n_instants), N."""
         if self.body_force is None:
             return np.zeros((2, len(self.instants)))
-        elements = sum(brick.columns * brick.rows for brick in self.rectangles)
+        heavy = self.rectangles[self.strips :]
+        elements = sum(brick.columns * brick.rows for brick in heavy)
         of_one_body = self.elements[0] * self.elements[1]
         area = elements / of_one_body * self.length * self.height
         return np.asarray(self.body_force * area)
@@ -275,6 +293,8 @@ class Stack:
     @property
     def axes(self) -> Axes:
         """Titles and units of the loop."""
+        if self._shows_settlement:
+            return ("Settlement", "m"), ("Force on the settled ground", "N")
         if self.tilt is not None and self.spring is not None:
             return ("Angle of the slope", "°"), ("Spring force", "N")
         if self.support is not None:
@@ -285,6 +305,18 @@ class Stack:
         if self._is_turned:
             return ("Rotation of the end", "rad"), ("Moment", "N·m")
         return ("Deflection of the end", "m"), ("Transverse force", "N")
+
+    @cached_property
+    def settlement(self) -> Array:
+        """Settlement of each strip of ground, shape (n_strips, n_instants), m."""
+        shape = self.strips, len(self.instants)
+        return np.broadcast_to(-self.sides["bottom"].y.mean, shape)
+
+    @property
+    def _shows_settlement(self) -> bool:
+        """Check whether ground settles, and nothing drives the bodies along it."""
+        is_driven = any(not side.x.is_zero for side in self.sides.values())
+        return bool(np.any(self.settlement)) and not is_driven
 
     @property
     def _is_turned(self) -> bool:
@@ -306,7 +338,16 @@ class Stack:
         return DRIVEN[0]
 
     def loop(self, problem: Problem) -> Loop:
-        """Loop of the spring force, the shear force, or the load that bends the end."""
+        """Loop of the spring force, the shear force, or the load that bends the end.
+
+        Where ground settles and nothing drives the bodies along it, of the force that
+        the settled ground still carries.
+        """
+        if self._shows_settlement:
+            settled = np.abs(self.settlement).max(axis=1).argmax()
+            names = [name for name in problem.rubbing if is_settled(name)]
+            moved = constant(self.settlement[settled])
+            return Loop(*self.axes, moved, partial(pressing_force, names))
         if self.tilt is not None and self.spring is not None:
             # The spring's force lags behind on the way back.
             angle = constant(np.degrees(self.tilt))
@@ -334,6 +375,11 @@ class Stack:
         given = self.sides[side][component]
         if rests and len(self.rectangles) == 1:
             return _shear_force
+        holding = [each for each in self.sides.values() if each[component].prescribed]
+        if rests and len(holding) > 1 + bool(self.strips):
+            # Sides that share a corner share its force, too: the ground tells the sum.
+            names = [name for name in problem.rubbing if "support and" in name]
+            return partial(_rubbing_force, names)
         if given.prescribed:
             return reaction(problem, side, component).of
         if rests:
@@ -424,6 +470,8 @@ class Stack:
         if self.support is not None:
             yield Hold("support", "bottom", gap=self.support.gap)
         for name, side in self.sides.items():
+            if name == "bottom" and self.support is not None:
+                continue
             is_still = [given.prescribed and given.is_zero for given in side]
             if all(is_still):
                 yield Hold("clamp", name)
@@ -431,6 +479,25 @@ class Stack:
                 yield Hold("rollers", name)
         if self.spring is not None:
             yield Hold("spring", "right")
+
+
+def is_settled(name: str) -> bool:
+    """Check whether a contact is with ground that settles, by its name."""
+    return name.startswith(SETTLED)
+
+
+def pressing_force(names: Sequence[str], fields: LoopFields) -> Array:
+    """Sum of the pressing forces of contacts by name, shape (n_instants,), N."""
+    forces = [np.asarray(fields.contact(name).normal_force) for name in names]
+    total: Array = np.concatenate(forces).sum(axis=0)
+    return total
+
+
+def _rubbing_force(names: Sequence[str], fields: LoopFields) -> Array:
+    """Shear force by the friction of contacts by name, shape (n_instants,), N."""
+    forces = [-np.asarray(fields.contact(name).tangential_force) for name in names]
+    force = np.concatenate(forces)
+    return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
 
 
 def _spring_force(fields: LoopFields) -> Array:

@@ -331,7 +331,14 @@ def _coefficients(stack: Stack, support: Support | None, pairs: _Pairs) -> Array
     else:
         rows = pairs.bodies - 1
     columns = pairs.nodes if mu.shape[1] > 1 else 0
-    return np.asarray(mu[rows, columns])
+    of_pairs = np.asarray(mu[rows, columns])
+    if stack.head_friction is not None:
+        of_pairs = np.where(pairs.is_upright, stack.head_friction, of_pairs)
+    if stack.strips and stack.support is not None:
+        on_ground = (pairs.others >= 0) & (pairs.others < stack.strips)
+        of_ground = np.broadcast_to(stack.support.friction, stack.grid[0] + 1)
+        of_pairs = np.where(on_ground, of_ground[pairs.nodes], of_pairs)
+    return of_pairs
 
 
 def _stiffness_beside(stack: Stack, pairs: _Pairs) -> BodyStiffness:
