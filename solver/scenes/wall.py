@@ -164,7 +164,7 @@ class WallSettings(PlaneSettings):
         "settlement",
         "m",
         0.0,
-        (0.0, 1e3),
+        (-1e3, 1e3),
         (0.0, 5e-3),
         "Largest distance by which a part of the ground goes down. The wall then "
         "stands on strips of ground, one element high and as stiff as the bricks.",
@@ -174,7 +174,7 @@ class WallSettings(PlaneSettings):
         places=("bottom y",),
     )
     settled_length = LOAD.quantity(
-        1.0,
+        0.5,
         (1e-6, 1e4),
         (0.25, 3.0),
         "Length of the ground that settles, rounded to elements.",
@@ -183,7 +183,7 @@ class WallSettings(PlaneSettings):
         applies=lambda settings: settings.acts("settlement_load"),
     )
     settled_from = LOAD.quantity(
-        1.0,
+        1.25,
         (0.0, 1e4),
         (0.0, 3.0),
         "Distance of the ground that settles from the left end of the wall, rounded to "
@@ -410,13 +410,13 @@ class WallSettings(PlaneSettings):
             support=Support(
                 np.zeros(stack.grid[0] + 1), self._on_ground, strips=len(strips)
             ),
-            sides=stack.sides | {"bottom": Side(still, Given(True, moved))},
+            sides={**stack.sides, "bottom": Side(still, Given(True, moved))},
         )
 
     @property
     def _on_ground(self) -> float:
         """Coefficient mu of the ground."""
-        return self.friction * self.ground_friction
+        return float(self.friction * self.ground_friction)
 
     @cached_property
     def bodies(self) -> Stack:
@@ -429,7 +429,7 @@ class WallSettings(PlaneSettings):
             self.stack(),
             bricks=self._bricks,
             groups=self._groups,
-            head_friction=self.friction * self.head_friction,
+            head_friction=float(self.friction * self.head_friction),
             substructures=(1, 1),
             body_force=-weight * np.stack([np.sin(angle), np.cos(angle)]),
             sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
@@ -457,7 +457,7 @@ class WallSettings(PlaneSettings):
         pressed = ""
         if np.any(self.path("pressure_load")):
             pressed = ", pressed from above,"
-        if self.n_substructures == 1:
+        if self.n_substructures == 1 and self.cap == "none" and not self._settles:
             return f"One brick{pressed} stands on {ground}; its top is {driven}."
         bond = "one above the other"
         if self.bond == "running":
@@ -465,6 +465,10 @@ class WallSettings(PlaneSettings):
         bricks = f"{self.n_substructures} bricks {bond}"
         if self.opening:
             bricks = f"{bricks} round an opening"
+        if self.cap != "none":
+            bricks = f"{bricks}, with a stiff cap,"
+        if self._settles:
+            ground = f"{ground}, of which a part settles"
         touch = "slide freely on"
         if self.is_rough:
             touch = "rub on"

@@ -325,6 +325,21 @@ def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
     yield "force on the ground", "N/m", 4.0 * (pressing + 4.0 * brick), found
 
 
+def corbelled_wall(answer: SolvedCase) -> Iterator[Number]:
+    """Force on ground that has settled below n bricks of a wall in running bond.
+
+    Each course reaches over the gap by half a brick at both ends, held down by what
+    presses on it: n bricks of the lowest course fall with the ground, n - 1 of the next
+    one, and so on.
+    """
+    settings = answer.settings
+    _, brick = _forces(answer)
+    count = round(settings.settled_length / settings.length)
+    _, force = answer.loop.along(answer.fields)
+    known = 0.5 * count * (count + 1) * brick
+    yield "force on the settled ground", "N/m", known, float(force[-1])
+
+
 def moved_end(answer: SolvedCase) -> Iterator[Number]:
     """Force that moves an end of a rod with a free other end: sqrt(2 E S mu p u)."""
     rods = answer.settings.structure()

@@ -409,6 +409,8 @@ class Stack:
                 continue
             for component, given in enumerate(side):
                 yield self._act_on_side(given, name, component)
+        if np.any(self.settlement):
+            yield self._act_of_ground()
         size = np.hypot(*self.weight)
         towards = self.weight / np.where(size > 0.0, size, 1.0)
         yield Act("body", "W", on_side("body", [0.5]), towards, size, "N")
@@ -443,6 +445,26 @@ class Stack:
             towards=((1.0, 0.0), (0.0, 1.0))[component],
             values=values,
             unit=unit,
+        )
+
+    def _act_of_ground(self) -> Act:
+        """Settlement of the ground, in the middle of what settles most."""
+        size = np.abs(self.settlement).max(axis=1)
+        strips = [
+            strip
+            for strip, moved in zip(self.rectangles, size.tolist(), strict=False)
+            if moved == size.max()
+        ]
+        first = strips[0].x
+        last = strips[-1].x + strips[-1].columns
+        middle = 0.5 * (first + last) / self.grid[0]
+        return Act(
+            where="bottom y",
+            symbol="u_y",
+            points=on_side("bottom", [middle]),
+            towards=(0.0, -1.0),
+            values=self.settlement[size.argmax()],
+            unit="m",
         )
 
     def _on_bodies(self, side: str, points: Array) -> Array:
