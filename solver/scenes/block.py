@@ -20,7 +20,7 @@ from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_on_spring, exact_parabola
-from solver.scenes.plane import PlaneSettings
+from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
     BODY,
     CONTACT,
@@ -196,7 +196,7 @@ TOP_NORMAL = SideLoad("top", "normal")
 TOP_TANGENTIAL = SideLoad("top", "tangential")
 
 
-class SideSettings(PlaneSettings):
+class SideSettings(RectangleSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
     left = _kind_of("left")
