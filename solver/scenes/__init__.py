@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from solver import discrete
 from solver.discrete.problem import Problem
+from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.fault import FaultSettings
@@ -27,6 +28,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         RopeSettings,
         StrandSettings,
         WallSettings,
+        ArchSettings,
     )
 }
 

@@ -26,6 +26,12 @@ ROUND = 180.0
 """Angle of a semicircle, degrees."""
 SHOWN = 9
 """Number of arrows of a fill."""
+HINGED = 300.0
+"""Movement of an abutment, over the radius and the strain of the weight, from which on
+the thrust is the least."""
+ALIKE = 1e-6
+"""Largest relative difference of the thrusts with and without slip that are the same.
+"""
 DOWN = 0.0, -1.0
 """Direction of a load that weighs."""
 LATER = replace(
@@ -216,17 +222,6 @@ class ArchSettings(PlaneSettings):
         """Number of components of all contacts."""
         return 2 * self.n_interfaces * (2 * self.elements + 1)
 
-    def check_together(self) -> None:
-        """Refuse two abutments on one stone, and a fill that ends below the arch."""
-        super().check_together()
-        parts = self.elements * self.ring.along
-        if self.substructures > parts:
-            raise self.refusal(
-                "substructures",
-                f"at most {parts}, the elements of a voussoir",
-                "lower it, or raise elements",
-            )
-
     def structure(self) -> Arch:
         """Make the arch; one metre thick."""
         ring = self.ring
@@ -283,13 +278,28 @@ class ArchSettings(PlaneSettings):
     def exact(
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
-        """Thrust of an arch with hinges, after its abutments have moved apart."""
-        known = self.statics.thrusts()
-        if known is None or not self._has_hinges:
+        """Least thrust, once the abutment has moved apart so far that hinges open."""
+        least = self._least_thrust
+        if least is None or self.has_live or self.abutment != "apart":
             return
         moved = self.path("abutment_load")
-        thrust = known[0] * self.weight * self._hold
-        yield ExactCurve("loop", moved, thrust)
+        strain = self.unit_weight * self.length / self.young
+        is_apart = (self._hold == 1.0) & (moved >= HINGED * strain * self.length)
+        if is_apart.any():
+            across = np.where(is_apart, moved, moved[is_apart.argmax()])
+            thrust = least * float(self.structure().downwards[-1])
+            yield ExactCurve("loop", across, np.full_like(across, thrust))
+
+    @property
+    def _least_thrust(self) -> float | None:
+        """Least thrust over the weight; None where friction bounds it, or it falls."""
+        thrusts = self.statics.thrusts()
+        without_slip = replace(self.statics, friction=np.inf).thrusts()
+        if thrusts is None or without_slip is None or not self.unit_weight:
+            return None
+        if not np.isclose(thrusts[0], without_slip[0], rtol=ALIKE, atol=0.0):
+            return None
+        return thrusts[0]
 
     @property
     def statics(self) -> VoussoirArch:
