@@ -64,3 +64,12 @@ def discretise(structure: Structure) -> Problem:
 discretise.register(Rods, cut_rods.problem_of)
 discretise.register(Rope, cut_rope.problem_of)
 discretise.register(Stack, stack_problem.problem_of)
+
+
+@discretise.register
+def _of_bodies(structure: Bodies) -> Problem:
+    """Discrete problem of bodies of any shape."""
+    # Other structures do not pay for the import of finite elements.
+    from solver.discrete.plane import bodies_problem
+
+    return bodies_problem.problem_of(structure)

@@ -89,7 +89,7 @@ class Bodies:
         # Joints and holds are interfaces of one problem.
         check_names([*self.joints, *self.held, *self.loads])
         if self.shown is not None:
-            shown = [each.name for each in (*self.held, *self.loads)]
+            shown = [each.name for each in self._given]
             check_value("Bodies.shown", self.shown, Choice(tuple(shown)))
         instants = len(self.instants)
         for body in self.bodies:
@@ -117,9 +117,14 @@ class Bodies:
         return nodes.min(axis=0), np.ptp(nodes, axis=0)
 
     @property
+    def _given(self) -> list[Held | Load]:
+        """Holds, and after them loads."""
+        return [*self.held, *self.loads]
+
+    @property
     def _shown(self) -> Held | Load | None:
         """Held or Load that the loop shows; None where nothing is held or loaded."""
-        for each in (*self.held, *self.loads):
+        for each in self._given:
             if self.shown in (None, each.name):
                 return each
         return None
@@ -190,9 +195,8 @@ class Bodies:
         for load in self.loads:
             whole = load.force.sum(axis=0)
             yield self._act(load, "F", *_directed(whole), "N")
-        towards, size = _directed(self.weights)
         middle = np.array([[0.5, 0.5]])
-        yield Act("body", "W", middle, towards, size, "N")
+        yield Act("body", "W", middle, *_directed(self.weights), "N")
 
     def _act(
         self,

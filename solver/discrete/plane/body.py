@@ -14,6 +14,7 @@ from solver.checks import (
     POSITIVE,
     Count,
     Either,
+    Kind,
     Number,
     Numbers,
     Part,
@@ -70,7 +71,7 @@ class Body:
     substructures: int = 1
 
     def __post_init__(self) -> None:
-        kinds = {
+        kinds: dict[str, Kind] = {
             "shape": Part(Mesh, Beam),
             "young": POSITIVE,
             "poisson": Number(-1.0, MOST_POISSON, above=True),

@@ -118,7 +118,7 @@ class Mesh:
         places = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
         if not np.array_equal(keys[places], wanted):
             return None
-        return numbers[places]
+        return np.asarray(numbers[places], dtype=np.intp)
 
     def along(self, corners: Sequence[int] | Indices) -> Indices:
         """Chain of nodes along neighbouring corners, (n,), with middles of edges.
@@ -156,9 +156,52 @@ class Mesh:
         """Number of corners."""
         return len(self.corners)
 
+    @cached_property
+    def element_nodes(self) -> Indices:
+        """Nodes of every element, shape (n_elements, 6) or (n_elements, 9)."""
+        nodes = [self.elements, self.n_corners + self.grid.t2f.T]
+        if self.elements.shape[1] == 4:
+            last = len(self.nodes) - len(self.elements)
+            nodes.append(last + np.arange(len(self.elements))[:, None])
+        return np.concatenate(nodes, axis=1).astype(np.intp)
+
+    @property
+    def element_corners(self) -> Indices:
+        """Corners of every element, the last of a triangle twice, (n_elements, 4)."""
+        return self.elements[:, [0, 1, 2, -1]]
+
     def elements_at(self, edges: Indices) -> Indices:
         """Element at each edge, (n,); of two the first."""
         return np.asarray(self.grid.f2t[0, edges], dtype=np.intp)
+
+    def steps(self, chain: Indices) -> tuple[Indices, Array]:
+        """Steps from node to node of a chain: elements, and lengths of their ends.
+
+        Elements have the shape (n - 1,), lengths that belong to both ends of each step
+        (n - 1, 2), m.
+        """
+        edges = self.edges_of(chain)
+        assert edges is not None
+        lengths = np.linalg.norm(np.diff(self.nodes[chain[::2]], axis=0), axis=1)
+        # The middle has its 4/6 from both halves of an edge.
+        halves = np.array([[1.0, 2.0], [2.0, 1.0]]) / 6.0
+        shares = np.multiply.outer(lengths, halves).reshape(-1, 2)
+        return np.repeat(self.elements_at(edges), 2), shares
+
+    def seams(self, labels: Indices) -> tuple[Indices, Indices, Array]:
+        """Edges between elements of different labels, (n_elements,).
+
+        Labels on both sides of each, the smaller first, (n, 2); its nodes, (n, 3); and
+        the length that belongs to each of these, (n, 3), m.
+        """
+        first, second = self.grid.f2t
+        both = np.sort([labels[first], labels[second]], axis=0)
+        edges = np.flatnonzero((second >= 0) & (both[0] != both[1]))
+        ends = self.grid.facets[:, edges]
+        nodes = np.stack([ends[0], self.n_corners + edges, ends[1]], axis=1)
+        lengths = np.linalg.norm(np.subtract(*self.corners[ends]), axis=1)
+        shares = np.multiply.outer(lengths, SIMPSON)
+        return both[:, edges].T, nodes.astype(np.intp), shares
 
     def shares(self, chain: Indices) -> Array:
         """Length of a chain that belongs to each of its nodes, shape (n,), m."""
