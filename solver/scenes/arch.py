@@ -76,9 +76,9 @@ class ArchSettings(PlaneSettings):
         "abutment_load",
         "movement of the abutment",
         "m",
-        2e-5,
+        5e-5,
         (-1e3, 1e3),
-        (-1e-4, 1e-4),
+        (-2e-4, 2e-4),
         "Largest displacement of the right abutment.",
         "delayed",
         MOVES,
@@ -224,6 +224,14 @@ class ArchSettings(PlaneSettings):
 
     def structure(self) -> Arch:
         """Make the arch; one metre thick."""
+        return self._arch(self._filled + self._passing)
+
+    def unloaded(self) -> Arch:
+        """Make the arch without the load on its back, at the same instants."""
+        return self._arch(self._filled)
+
+    def _arch(self, downwards: Array) -> Arch:
+        """Arch under forces on its back, (voussoirs, n_nodes, n_instants), N."""
         ring = self.ring
         weight = np.stack([np.zeros_like(self._hold), -self.unit_weight * self._hold])
         path = self.path("abutment_load")
@@ -237,7 +245,7 @@ class ArchSettings(PlaneSettings):
             bodies=ring.bodies(self.young, self.poisson, weight, self.substructures),
             joints=ring.joints(self.friction),
             held=ring.abutments(moved),
-            loads=tuple(ring.loads(self._downwards())),
+            loads=tuple(ring.loads(downwards)),
             instants=self.times(),
             duration=self.duration,
             state=self.plane,
@@ -252,15 +260,17 @@ class ArchSettings(PlaneSettings):
         """Course of the weights over time, (n_instants,)."""
         return PRESETS["hold"].value(self.times() / self.duration, 1)
 
-    def _downwards(self) -> Array:
-        """Forces on the back, (voussoirs, n_nodes, n_instants), N."""
-        ring = self.ring
-        columns = ring.under_fill(ring.outer + self.cover)
-        forces = np.multiply.outer(self.fill * columns, self._hold)
-        if self.has_live:
-            shares = ring.under_load(self.path("place_load"))
-            forces += self.path("live_load") * shares
-        return forces
+    @property
+    def _filled(self) -> Array:
+        """Weight of the fill on the back, (voussoirs, n_nodes, n_instants), N."""
+        columns = self.ring.under_fill(self.ring.outer + self.cover)
+        return np.multiply.outer(self.fill * columns, self._hold)
+
+    @property
+    def _passing(self) -> Array:
+        """Load on the back, (voussoirs, n_nodes, n_instants), N; or zeros."""
+        shares = self.ring.under_load(self.path("place_load"))
+        return np.asarray(self.path("live_load") * shares)
 
     def _above(self) -> Iterator[Act]:
         """Fill and load on the back, as drawings show them, at positions in m."""
@@ -271,8 +281,7 @@ class ArchSettings(PlaneSettings):
         pressures = np.multiply.outer(self.fill * heights, self._hold)
         yield Act("top fill", "σ", backs[shown], DOWN, pressures, "Pa")
         if self.has_live:
-            shares = ring.under_load(self.path("place_load"))
-            forces = self.path("live_load") * shares.reshape(len(backs), -1)
+            forces = self._passing.reshape(len(backs), -1)
             yield Act("top load", "F", backs, DOWN, forces, "N")
 
     def exact(

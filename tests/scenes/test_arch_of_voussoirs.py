@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from solver import discrete
 from solver.latin import Latin, iterations, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of, load_factors
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 from solver.study.quantities import QUANTITIES
 from solver.study.quantities.finished import FinishedRun
 
@@ -49,7 +51,7 @@ def test_an_arch_falls_where_no_forces_in_its_joints_balance_its_weight(
     changes, stands
 ):
     """Statics: 0.10717 of the radius, and a coefficient of friction of 0.3084."""
-    settings = settings_of(young=1e12, **STILL, **changes)
+    settings = settings_of(young=1e12, elements=4, **STILL, **changes)
     problem = discretise(settings)
     assert (collapse_of(problem) is None) is stands
     assert settings.statics.stands is stands
@@ -95,8 +97,8 @@ def test_the_thrust_of_a_moved_arch_stays_between_both_bounds():
     settings = settings_of()
     thrust = thrust_of(settings)[settings.times() >= 0.25]
     least, largest = settings.statics.thrusts()
-    assert least <= thrust.min() < 0.95 * thrust[0]
-    assert 1.05 * thrust[0] < thrust.max() <= largest
+    assert least <= thrust.min() < 0.98 * thrust[0]
+    assert 1.02 * thrust[0] < thrust.max() <= largest
 
 
 @pytest.mark.parametrize("voussoirs", [31, 61])
@@ -118,11 +120,12 @@ def test_the_search_takes_no_longer_with_more_voussoirs(voussoirs):
 
 def run_of(**changes):
     settings = settings_of(**changes)
-    return FinishedRun(settings, solve(discretise(settings), Latin()))
+    return FinishedRun(settings, solve(discretise(settings), method_of(settings)))
 
 
 def test_an_abutment_that_moves_apart_makes_three_hinges():
-    run = run_of(voussoirs=15, friction=0.9, instants=5, abutment_load=MOVED)
+    run = run_of(voussoirs=16, friction=0.9, instants=5, abutment_load=MOVED)
+    assert run.solution.is_certified
     assert QUANTITIES["hinges"](run) == 3.0
     least, _ = run.settings.statics.thrusts()
     assert QUANTITIES["thrust"](run) == pytest.approx(least, rel=2e-3)
@@ -172,11 +175,12 @@ def test_the_limit_of_a_load_is_that_of_rigid_stones(place):
     settings = settings_of(
         place=place, place_load=[[0.0, place]], displacement=0.0, instants=3, **changes
     )
-    bare = settings.replace(live=0.0)
-    factors = load_factors(discretise(settings), discretise(bare))
+    bare = settings.unloaded()
+    factors = load_factors(discretise(settings), discrete.discretise(bare))
     ring = settings.ring
-    limit = rigid_factor(ring, ring.span * (place - 0.5), weight_of(bare))
-    assert factors[-1] * 100.0 / weight_of(bare) == pytest.approx(limit, rel=0.01)
+    weight = bare.downwards[-1]
+    limit = rigid_factor(ring, ring.span * (place - 0.5), weight)
+    assert factors[-1] * 100.0 / weight == pytest.approx(limit, rel=0.01)
 
 
 def test_a_load_acts_at_its_place_whatever_the_mesh():

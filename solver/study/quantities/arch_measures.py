@@ -6,20 +6,15 @@ import math
 
 import numpy as np
 
-from solver.arrays import Array
-from solver.discrete.contacts import Stacked
+from solver.discrete import discretise
 from solver.discrete.plane.voussoirs import Arch
 from solver.laws import OPEN
 from solver.reference.limit_analysis import load_factors
-from solver.scenes import discretise
+from solver.scenes.arch import ArchSettings
 from solver.settings.scene import Settings
 from solver.study.quantities.contact_measures import AT, instant_at
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import quantity
-
-EDGE = 0.1
-"""Largest distance of a resultant from the edge of a joint that is a hinge there, over
-the length of the joint."""
 
 
 def _is_arch(settings: Settings) -> bool:
@@ -46,40 +41,24 @@ def thrust(run: FinishedRun, at: float | None) -> float:
 
 
 @quantity(
-    "Number of hinges", parameter=AT, applies=lambda settings: settings.has_joints
+    "Joints that are hinges", parameter=AT, applies=lambda settings: settings.has_joints
 )
 def hinges(run: FinishedRun, at: float | None) -> float:
-    """Joints that are open at one edge, with the resultant at the other.
+    """Number of joints that touch at one edge alone, and so turn freely about it.
 
     At the end of the run, or at a share of the interval.
     """
     instant = _instant(run, at)
     count = 0
-    for stacked in run.problem.rubbing.stacks:
-        pressing = run.iterate.contact_force[stacked.forces[0], instant]
-        status = run.iterate.status[stacked.points, instant]
-        count += _hinges_of(stacked, np.maximum(pressing, 0.0), status == OPEN)
+    for law, _, points, _ in run.problem.rubbing.stacks:
+        touches = run.iterate.status[points, instant] != OPEN
+        firsts = np.cumsum(law.sizes) - law.sizes
+        lasts = firsts + law.sizes - 1
+        touching = np.add.reduceat(touches.astype(np.intp), firsts)
+        is_at_edge = touches[firsts] | touches[lasts]
+        is_hinge = (touching == 1) & is_at_edge & (law.sizes > 1)
+        count += np.count_nonzero(is_hinge)
     return float(count)
-
-
-def _hinges_of(stacked: Stacked, pressing: Array, is_open: Array) -> int:
-    """Number of the joints of a law that are hinges.
-
-    From the pressing forces of all points, N, and whether they are open, (n_points,).
-    """
-    law = stacked.law
-    firsts = np.cumsum(law.sizes) - law.sizes
-    lasts = firsts + law.sizes - 1
-    positions = law.positions
-    whole = np.add.reduceat(pressing, firsts)
-    moment = np.add.reduceat(pressing * positions, firsts)
-    # Joints without any force are no hinges.
-    resultant = moment / np.where(whole > 0.0, whole, np.nan)
-    lengths = positions[lasts] - positions[firsts]
-    from_first = (resultant - positions[firsts]) / lengths
-    at_first = is_open[lasts] & (from_first <= EDGE)
-    at_last = is_open[firsts] & (from_first >= 1.0 - EDGE)
-    return int(np.count_nonzero(at_first | at_last))
 
 
 @quantity(
@@ -91,5 +70,6 @@ def live_factor(run: FinishedRun) -> float:
 
     At the worst place of its way, by limit analysis.
     """
-    unloaded = discretise(run.settings.replace(live=0.0, live_load="hold"))
+    assert isinstance(run.settings, ArchSettings)
+    unloaded = discretise(run.settings.unloaded())
     return float(load_factors(run.problem, unloaded).min())
