@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import chain
 from typing import Any
 
@@ -108,12 +108,12 @@ class Display:
             lambda *events: self._update(), ["frame", "selection", "ghost", "is_new"]
         )
 
-    def look_at(self, views: list[View]) -> None:
-        """Set the views in sight."""
+    def look_at(self, views: list[View], also: Iterable[str] = ()) -> None:
+        """Set the views in sight, and needs of frames beside theirs."""
+        needs = chain.from_iterable(view.needs for view in views)
+        self._state.needs = frozenset([*needs, *also])
         if views != self.views:
             self.views = views
-            needs = chain.from_iterable(view.needs for view in views)
-            self._state.needs = frozenset(needs)
             self._update()
 
     def catch_up(self) -> None:

@@ -58,6 +58,9 @@ class InterfaceFields:
     """Pressure, same shape, Pa; None where it is given."""
     status: Bytes
     """Status of the points: -1, 0, +1 or `OPEN`, same shape."""
+    slip: Floats | None = None
+    """Tangential displacement over the body below, same shape, m; None where nobody
+    takes it away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,8 +215,9 @@ class Frame:
         arrays = [moved.nodes, moved.points, moved.status, self.loop]
         for fields in self.contact.values():
             arrays += [fields.friction, fields.status]
-            if fields.pressure is not None:
-                arrays.append(fields.pressure)
+            for more in (fields.pressure, fields.slip):
+                if more is not None:
+                    arrays.append(more)
         return sum(array.nbytes for array in arrays) + _size(self.extras)
 
     @property

@@ -9,6 +9,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.browser import Display
+from app.messages import TABLE
 from app.state import TABS, PageState
 from app.status import figures_line, status_line
 from app.transport import Transport
@@ -72,6 +73,7 @@ class Live:
             margin=0,
         )
         self._is_open = False
+        self._also: list[str] = []
         look = {"css_classes": ["words"], "sizing_mode": "stretch_width"}
         styles = {"flex-wrap": "wrap", "justify-content": "space-between"}
         below = wrapped(self._sentence, self._figures, styles=styles, **look)
@@ -186,10 +188,15 @@ class Live:
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
+        views: list[View] = []
         if self._is_open and self.state.tab == TABS[0]:
-            self.display.look_at(self._in_sight())
-        else:
-            self.display.look_at([])
+            views = self._in_sight()
+        self.display.look_at(views, self._also)
+
+    def offer(self, is_offered: bool) -> None:
+        """Have frames with all that is taken away, as long as files are offered."""
+        self._also = [TABLE] if is_offered else []
+        self.look()
 
     def _in_sight(self) -> list[View]:
         seen = [card.seen for card in self._cards if card.seen is not None]

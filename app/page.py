@@ -113,6 +113,7 @@ class Page:
             self._words,
         ):
             each.param.watch(self._put, "open")
+        self._away.param.watch(lambda event: self._live.offer(event.new), "open")
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[Controls(state).view],

@@ -488,6 +488,9 @@ class PageState(param.Parameterized):
         if is_news or needs != self._sent:
             self._sent = needs
             self.send(needs)
+            # The newest frame comes by itself.
+            if self.iteration is not None and self.frame is not self.newest:
+                self.send(Show(self.iteration))
 
     def turn(self, step: int) -> None:
         """Select the interface that is a number of interfaces further."""
