@@ -201,6 +201,8 @@ class Frame:
     """Energy lost in the whole interval, J."""
     residual: float | None = None
     """KKT residual of a certified solution; None for all other iterates."""
+    is_followed: bool = False
+    """Whether the states of the run before led to the answer, without an iteration."""
     remarks: tuple[str, ...] = ()
     """Remarks on the answer, in plain sentences."""
     extras: Mapping[str, Any] = field(default_factory=dict)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -188,8 +189,10 @@ class Live:
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
+        if not self._is_open:
+            return
         views: list[View] = []
-        if self._is_open and self.state.tab == TABS[0]:
+        if self.state.tab == TABS[0]:
             views = self._in_sight()
         self.display.look_at(views, self._also)
 
@@ -259,11 +262,9 @@ class Card:
         """Offer the views that apply to the settings; show the one in the state."""
         state = self._state
         offered = [view for view in self.views if view.applies(state.settings)]
-        names = [view.name for view in offered]
-        named = [names.index(name) for name in state.plots if name in names]
         seen = None
         if offered:
-            seen = offered[next(iter(named), 0)]
+            seen = offered[on_top(offered, state)]
         if offered == self._offered and seen == self.seen:
             return
         is_turned = seen is not self.seen
@@ -305,6 +306,29 @@ class Card:
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
         return pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=0)
+
+
+def first_needs(state: PageState, kinds: Kinds | None) -> frozenset[str]:
+    """Extras for the views that a browser shows first, of all cards or of a lesson.
+
+    It has not told yet how many cards its window has room for.
+    """
+    groups: Iterable[Kinds] = (*LARGE_CARDS, *CARDS)
+    if kinds is not None:
+        groups = [(kind,) for kind in kinds]
+    needs = set(Scene.needs)
+    for group in groups:
+        offered = [kind for kind in group if kind.applies(state.settings)]
+        if offered:
+            needs |= offered[on_top(offered, state)].needs
+    return frozenset(needs)
+
+
+def on_top(offered: Sequence[View] | Sequence[type[View]], state: PageState) -> int:
+    """Number of the view, of those that a card offers, that the state names; or 0."""
+    names = [view.name for view in offered]
+    named = [names.index(name) for name in state.plots if name in names]
+    return next(iter(named), 0)
 
 
 def column(role: str, *parts: Any) -> pn.Column:
