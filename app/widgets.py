@@ -129,7 +129,8 @@ def file_button(
     )
 
     def pass_on(event: Any) -> None:
-        if event.new:
+        # An empty file is one, too, and has its message.
+        if event.new is not None:
             name = file.filename
             # The same file may be opened once more.
             file.clear()

@@ -139,7 +139,7 @@ class CurveDialog:
 
     def _take(self, table: str | bytes, source: str) -> None:
         """Use a table as the path; a refused one stays there to be mended."""
-        if self._is_updating or not table:
+        if self._is_updating or table == "":
             return
         settings = self._state.settings
         try:

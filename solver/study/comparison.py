@@ -119,12 +119,15 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         unit = PER[kind]
         _refuse_nodal_forces(table, column, unit)
     used = {"x": (position, "m"), "t": (time, "s"), quantity: (column, unit)}
-    reading = in_si(table, used)
+    named = table.find(table.columns, {"interface"})
+    # What is read is not said to be passed over.
+    others = [column for column in table.columns if column is not named]
+    reading = in_si(replace(table, columns=tuple(others)), used)
     x, t, values = reading.numbers
     _check_places(x, t, reading.lines, settings, table.refuse)
     contacts = None
-    names = _names_of_contacts(table)
-    if names is not None:
+    if named is not None:
+        names = np.array([row[named.number] for row in table.cells])
         contacts = names[np.isin(table.lines, reading.lines)]
     return OtherResults(
         quantity=quantity,
@@ -136,14 +139,6 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         message=reading.message,
         contacts=contacts,
     )
-
-
-def _names_of_contacts(table: Table) -> NDArray[np.str_] | None:
-    """Name of the interface of every row, (n_rows,), if the head names that column."""
-    column = table.find(table.columns, {"interface"})
-    if column is None:
-        return None
-    return np.array([row[column.number] for row in table.cells])
 
 
 def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:

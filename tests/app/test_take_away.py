@@ -118,6 +118,7 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
     assert ("contact" in read.columns) == several
     brought = results_in(table_of(text.encode(), "contact.csv"), frame.run.settings)
     assert brought.quantity == FRICTION
+    assert "'contact'" not in brought.message
     names = list(frame.run.interfaces)
     for name, fields in frame.contact.items():
         rows = read[read["contact"] == name] if several else read

@@ -76,8 +76,8 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
 def test_while_a_slow_page_loads_a_word_says_so(visit: Visit) -> None:
     page = visit(f"?{ANSWER}")
     held: list[Route] = []
-    scripts = re.compile(r"\.js")
-    page.route(scripts, held.append)
+    scripts = re.compile(r"material-ui\.bundle\.js")
+    page.route(scripts, lambda route: held.append(route))
     page.reload(wait_until="commit")
     words = "getComputedStyle(document.querySelector('#loader'), '::after').content"
     page.wait_for_function(f"{words}.includes('Slipfront is loading')")
