@@ -199,7 +199,8 @@ class Browser(DataModel):
     The window has a `height` in px and may be narrow. `pressed` is the last key, and
     `count` grows with every key. `search` is the address to which the browser went back
     or on, `copied` a link that it is to copy, `spoken` a text for screen readers,
-    `destination` an address whose page it is to open. A browser is new until somebody has done something on a page.
+    `destination` an address whose page it is to open. A browser is new until somebody
+    has done something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]

@@ -198,7 +198,9 @@ class Live:
 
     def offer(self, is_offered: bool) -> None:
         """Have frames with all that is taken away, as long as files are offered."""
-        self._also = [TABLE] if is_offered else []
+        self._also = []
+        if is_offered:
+            self._also.append(TABLE)
         self.look()
 
     def _in_sight(self) -> list[View]:

@@ -73,7 +73,7 @@ def status_line(state: PageState) -> str:
 
 
 def spoken_status(state: PageState) -> str:
-    """Text for screen readers: messages, and the status of a run that does not go on."""
+    """Text for screen readers: messages, and the status of a run that rests."""
     sentences = _said(state)
     frame = state.frame
     newest = state.newest
@@ -96,7 +96,9 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     if newest.status is None:
         paused = "" if state.running else " · paused"
         return counted, f" · {wrong} wrong{paused}"
-    count = 0 if newest.is_followed else newest.iteration
+    count = newest.iteration
+    if newest.is_followed:
+        count = 0
     iterations = f"{count} iterations"
     if count == 1:
         iterations = "1 iteration"

@@ -172,7 +172,9 @@ class Sampler:
     def _names(self, needs: Needs) -> tuple[str, ...]:
         """Names of the interfaces whose contact a frame has."""
         size = sum(len(rows) for rows in self.rows.values()) * len(self.columns)
-        most = MOST_IN_TABLE if TABLE in needs.extras else MOST_VALUES
+        most = MOST_VALUES
+        if TABLE in needs.extras:
+            most = MOST_IN_TABLE
         if size <= most:
             return tuple(self.rows)
         return (needs.interface,)

@@ -119,16 +119,12 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         unit = PER[kind]
         _refuse_nodal_forces(table, column, unit)
     used = {"x": (position, "m"), "t": (time, "s"), quantity: (column, unit)}
-    named = table.find(table.columns, {"interface"})
-    # What is read is not said to be passed over.
-    others = [column for column in table.columns if column is not named]
-    reading = in_si(replace(table, columns=tuple(others)), used)
+    table, names = _with_contacts(table)
+    reading = in_si(table, used)
     x, t, values = reading.numbers
     _check_places(x, t, reading.lines, settings, table.refuse)
-    contacts = None
-    if named is not None:
-        names = np.array([row[named.number] for row in table.cells])
-        contacts = names[np.isin(table.lines, reading.lines)]
+    if names is not None:
+        names = names[np.isin(table.lines, reading.lines)]
     return OtherResults(
         quantity=quantity,
         positions=np.clip(x, 0.0, settings.length),
@@ -137,8 +133,21 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         source=table.source,
         scene=settings.scene,
         message=reading.message,
-        contacts=contacts,
+        contacts=names,
     )
+
+
+def _with_contacts(table: Table) -> tuple[Table, NDArray[np.str_] | None]:
+    """Take the column of contacts out of a table: name of every row, shape (n_rows,).
+
+    What was taken out is not said to be passed over.
+    """
+    column = table.find(table.columns, {"interface"})
+    if column is None:
+        return table, None
+    others = tuple([each for each in table.columns if each is not column])
+    names = np.array([row[column.number] for row in table.cells])
+    return replace(table, columns=others), names
 
 
 def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:

@@ -121,7 +121,9 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
     assert "'contact'" not in brought.message
     names = list(frame.run.interfaces)
     for name, fields in frame.contact.items():
-        rows = read[read["contact"] == name] if several else read
+        rows = read
+        if several:
+            rows = read[read["contact"] == name]
         np.testing.assert_array_equal(rows["slip, m"].astype("f4"), fields.slip.ravel())
         sticks = rows["status"].to_numpy() == "stick"
         np.testing.assert_array_equal(sticks, fields.status.ravel() == 0)
