@@ -69,8 +69,18 @@ def status_line(state: PageState) -> str:
         rest=explained(rest, *TERMS),
         details=[explained(sentence, *TERMS) for sentence in details],
         said=" ".join(said),
-        is_running=state.running and not state.is_over,
     )
+
+
+def spoken_status(state: PageState) -> str:
+    """Text for screen readers: messages, and the status of a run that rests."""
+    sentences = _said(state)
+    frame = state.frame
+    newest = state.newest
+    goes_on = state.running and not state.is_over
+    if frame is not None and newest is not None and not goes_on:
+        sentences.insert(0, "".join(_progress(state, frame, newest)))
+    return " ".join(sentences)
 
 
 def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
@@ -86,8 +96,11 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     if newest.status is None:
         paused = "" if state.running else " · paused"
         return counted, f" · {wrong} wrong{paused}"
-    iterations = f"{newest.iteration} iterations"
-    if newest.iteration == 1:
+    count = newest.iteration
+    if newest.is_followed:
+        count = 0
+    iterations = f"{count} iterations"
+    if count == 1:
         iterations = "1 iteration"
     if frame.run.is_idle:
         hint = "nothing acts here; give a load, or move a side"

@@ -103,14 +103,6 @@ class Guide:
         for pane, text in self._texts:
             pane.object = text()
 
-    @property
-    def kinds(self) -> tuple[type[View], ...] | None:
-        """The plots that stand beside the lesson; None without a lesson."""
-        lesson = LESSONS.get(self._state.lesson)
-        if lesson:
-            return kinds_of(lesson, is_answered=not self._state.is_asked)
-        return None
-
     def predict(self, choice: int) -> None:
         """Take a prediction; outside a class, or from its leader, show the answer."""
         self._state.prediction = choice
@@ -308,3 +300,11 @@ def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
         heading = pn.pane.Markdown(title, margin=(0, 8))
         columns.append(pn.Column(heading, *buttons, width=380, margin=0))
     return pn.FlexBox(*columns, gap="8px 32px", margin=0)
+
+
+def kinds_beside(state: PageState) -> tuple[type[View], ...] | None:
+    """The plots that stand beside the lesson; None without a lesson."""
+    lesson = LESSONS.get(state.lesson)
+    if lesson:
+        return kinds_of(lesson, is_answered=not state.is_asked)
+    return None

@@ -103,7 +103,8 @@ class Convergence(ErrorPlot):
             text_font_size=self.words,
         )
         self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
-        self.legend(stage="local stage", ghost="ghost")
+        titles = {column: title for column, (title, *_) in CURVES.items()}
+        self.legend(**titles, stage="local stage", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
         self._inner_height = HEIGHT

@@ -87,6 +87,30 @@ def test_mixtures_move_a_point_off_the_way_to_balance_and_never_to_the_law() -> 
     assert not way["straight"][3:, 1, column].any()
 
 
+@pytest.mark.parametrize(("changes", "is_mixed"), [({}, True), (PLAIN, False)])
+def test_a_way_that_mixtures_moved_is_dashed(
+    changes: dict[str, Any], is_mixed: bool
+) -> None:
+    frame = run_of("bar", 12, elements=50, **changes).frame(
+        Needs(frozenset({"zigzag"}))
+    )
+    state = PageState(frame.run.settings)
+    state.newest = state.frame = frame
+    view = Zigzag(state)
+    dashes = {
+        renderer.name: renderer.glyph.line_dash
+        for renderer in view.figure.renderers
+        if renderer.name in ("along", "mixed")
+    }
+    assert dashes == {"along": "solid", "mixed": "dashed"}
+    view.update(frame, Selection(phase=SHEAR), None)
+    mixed = view.sources["mixed"].data
+    assert bool(len(mixed["x0"])) == is_mixed
+    # Only the ways to balance: those to the law all go along k.
+    assert len(mixed["x0"]) <= 12
+    assert len(view.sources["along"].data["x0"]) >= 12
+
+
 def test_the_line_of_balance_is_as_steep_as_the_bar_is_stiff_up_to_the_point() -> None:
     way = way_of("bar", 3, elements=50)
     settings = default_settings("bar")
