@@ -192,7 +192,8 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         return _anchor_above(arrows, layout, side)
     if side == "body":
         length, height = layout.size * layout.scale
-        if length < 0.5 * layout.width:
+        # Beside a body that tilts they would meet its corners.
+        if length < 0.5 * layout.width and layout.description.tilt is None:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
         above = height + layout.arrow + 6.0 + layout.letter
         return np.array([0.0, above]), "center"
@@ -227,8 +228,10 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
         top = up * max(heights, default=up * nearest[1] + above)
         return np.array([middle, top + up * (6.0 + layout.letter)]), "center"
     y = nearest[1] + above * up
+    # Clear of other arrows at the end of the bodies.
+    half = 0.5 * float(layout.size[0] * layout.scale[0])
     if is_left:
-        return np.array([ends.min() - 10.0, y]), "right"
+        return np.array([min(ends.min() - 10.0, -half - 16.0), y]), "right"
     return np.array([ends.max() + 10.0, y]), "left"
 
 
@@ -247,7 +250,9 @@ def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
         room = layout.width - across.max()
     if is_aside(act):
         room -= LONGEST * layout.arrow
-    return bool(room > layout.letter * (len(act.symbol) + WORD))
+    # A load that varies along its side has the values at both ends.
+    values = 2 if act.values.ndim > 1 else 1
+    return bool(room > layout.letter * (len(act.symbol) + values * WORD))
 
 
 def text_of(act: Act, column: int) -> str:

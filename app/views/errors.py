@@ -85,6 +85,16 @@ class Convergence(ErrorPlot):
         whole(plot.xaxis[0])
         self.add("shown", "VSpan", "x", color=REFERENCE, line_width=1.5)
         self.add("goal", "HSpan", "y", color=ERROR, line_dash="dashed", line_alpha=0.6)
+        # At the left end of its line, where most curves are still far above it.
+        self.add(
+            "goal name",
+            "Text",
+            "x y text",
+            text_color=ERROR,
+            text_baseline="bottom",
+            text_font_size=self.words,
+            x_offset=4,
+        )
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         lines = []
         for column, (_, color, width, dash) in reversed(CURVES.items()):
@@ -130,7 +140,9 @@ class Convergence(ErrorPlot):
             answers = [newest.iteration]
         foot = 1.6 * self.figure.y_range.reset_start
         self.draw("answer", answers, [foot] * len(answers))
-        self.fill("goal", y=[newest.run.settings.accuracy])
+        goal = newest.run.settings.accuracy
+        self.fill("goal", y=[goal])
+        self.fill("goal name", x=[0.0], y=[goal], text=[f"goal {percent(goal)}"])
         self._show_names(newest)
 
     def _scale(self, newest: Frame) -> None:
@@ -145,7 +157,7 @@ class Convergence(ErrorPlot):
         self.x.hold(number, [0.0, rounded_up(NAMED * max(*ends, SHORTEST))])
 
     def _show_names(self, newest: Frame) -> None:
-        """Write the names of curves at their ends, one above the other, and the goal.
+        """Write the names of curves at their ends, one above the other.
 
         Heights are logarithms, over the height of the axis.
         """
@@ -158,9 +170,6 @@ class Convergence(ErrorPlot):
             if len(data["x"]):
                 height = (np.log10(data["y"][-1]) - low) / (high - low)
                 names.append((height, float(data["x"][-1]), title, color))
-        goal = newest.run.settings.accuracy
-        height = (np.log10(goal) - low) / (high - low)
-        names.append((height, float(newest.iteration), f"goal {percent(goal)}", ERROR))
         for iteration in self.sources["answer"].data["x"]:
             names.append((0.04, float(iteration), "exact", ERROR))
         names.sort()

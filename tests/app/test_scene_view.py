@@ -399,10 +399,25 @@ def test_marks_of_a_first_visit_stay_until_somebody_does_something() -> None:
     view.update(frame, Selection(0.25), None)
     x, y, texts, _ = view.sources["hints"].data.values()
     assert len(texts) == 3
-    (pulled,) = (n for n, text in enumerate(texts) if text.startswith("pulled"))
+    (pulled,) = (n for n, text in enumerate(texts) if "pulled" in text)
     (rubs,) = (n for n, text in enumerate(texts) if text.endswith("rubs here"))
     assert x[pulled] > 0.9 * np.nanmax(view.sources["bodies"].data["x"])
     assert y[rubs] < np.nanmin(view.sources["bodies"].data["y"])
     view.state.is_new = False
     view.update(frame, Selection(0.25), None)
     assert not len(view.sources["hints"].data["text"])
+
+
+def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_narrow_picture() -> (
+    None
+):
+    frame = frame_of(default_settings("bar"))
+    view = Scene(PageState(frame.run.settings, is_new=True))
+    (keys,) = view.figure.legend
+    for width, is_seen in ((900.0, True), (390.0, False)):
+        view.lay_out(width, 150.0)
+        view.update(frame, Selection(0.25), None)
+        assert keys.visible == is_seen
+    view.state.is_new = False
+    view.update(frame, Selection(0.25), None)
+    assert keys.visible
