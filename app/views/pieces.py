@@ -367,7 +367,7 @@ class _Placed:
 
     @property
     def _is_lying(self) -> Array:
-        """Whether sides lie, (n_sides, 1); others stand upright."""
+        """Truth of sides that lie, (n_sides, 1); others stand upright."""
         sizes = np.ptp(self._extra.quarters, axis=1) * self._pixels
         return np.asarray(sizes[:, :1] > sizes[:, 1:])
 

@@ -158,7 +158,9 @@ class Scene(View):
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
         if not self.is_bare:
-            hints = hints_of(picture) if self.state.is_new else NONE
+            hints = NONE
+            if self.state.is_new:
+                hints = hints_of(picture)
             self.fill("hints", **hints)
             # They stand where a narrow picture has its keys.
             is_narrow = layout.width < NARROW
