@@ -228,11 +228,25 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
         top = up * max(heights, default=up * nearest[1] + above)
         return np.array([middle, top + up * (6.0 + layout.letter)]), "center"
     y = nearest[1] + above * up
-    # Clear of other arrows at the end of the bodies.
-    half = 0.5 * float(layout.size[0] * layout.scale[0])
     if is_left:
-        return np.array([min(ends.min() - 10.0, -half - 16.0), y]), "right"
+        x = ends.min() - 10.0
+        if _meets_arrows(act, layout, x):
+            x = -0.5 * float(layout.size[0] * layout.scale[0]) - 16.0
+        return np.array([x, y]), "right"
     return np.array([ends.max() + 10.0, y]), "left"
+
+
+def _meets_arrows(act: Act, layout: Layout, right: float) -> bool:
+    """Check whether words of a load that end at the right, px, meet other arrows."""
+    side = act.where.partition(" ")[0]
+    left = right - layout.letter * (len(act.symbol) + WORD)
+    for other in layout.description.acts:
+        if other is act or not other.where.startswith(side):
+            continue
+        across = layout.local(other.points * layout.size)[:, 0]
+        if np.any((across > left) & (across < right)):
+            return True
+    return False
 
 
 def _has_aside(layout: Layout, side: str) -> bool:

@@ -362,7 +362,7 @@ class _Placed:
         edges = middles + 2.0 * (quarters - middles)
         strokes = [np.zeros((0, 2))]
         for edge, away in zip(edges, self._outward[is_held], strict=True):
-            strokes.append(hatched(edge, away))
+            strokes.append(hatched(edge + 0.5 * APART * away, away))
         return np.concatenate(strokes)
 
     @property
