@@ -233,7 +233,12 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
         if _meets_arrows(act, layout, x):
             x = -0.5 * float(layout.size[0] * layout.scale[0]) - 16.0
         return np.array([x, y]), "right"
-    return np.array([ends.max() + 10.0, y]), "left"
+    x = ends.max()
+    surroundings = layout.surroundings
+    if surroundings is not None and surroundings.place == "around":
+        # Beside the ground, in which the arrows stand.
+        x = max(x, 0.5 * float(layout.size[0] * layout.scale[0]))
+    return np.array([x + 10.0, y]), "left"
 
 
 def _meets_arrows(act: Act, layout: Layout, right: float) -> bool:

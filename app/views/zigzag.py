@@ -74,6 +74,8 @@ class Zigzag(ExtraView):
                 line_width=1.5,
                 line_dash=dash,
             )
+            # Without data, which have the opacity, a segment has no look of its own.
+            self.add(f"{name} key", color=REFERENCE, width=1.5, dash=dash)
         points = []
         for stage, marker in MARKERS.items():
             look = {"marker": marker, "size": 7, "color": STAGES[stage]}
@@ -82,13 +84,14 @@ class Zigzag(ExtraView):
         self.add("newest", "Scatter", "x y line_color", **RING)
         self.add("star", "Scatter", marker="star", size=18, color=EXACT)
         self.mark({"law": STAGES[LOCAL], "balance": STAGES[LINEAR]})
-        self.legend(
-            "law",
-            "balance",
-            along="slope ±k",
-            mixed="coarse problem, too",
-            star="solution",
-        )
+        titles = {
+            "law": "law",
+            "balance": "balance",
+            "along key": "slope ±k",
+            "mixed key": "coarse problem, too",
+            "star": "solution",
+        }
+        self.legend(**titles)
         tips = {"iteration": "@iteration", "slip": "@x{0.00}", "force": "@y{0.00}"}
         hover(plot, points, tips)
         self._grid = GridBox(
@@ -222,6 +225,7 @@ class Zigzag(ExtraView):
                 y1=self.y(steps[:, 1, 1]),
                 line_alpha=alpha,
             )
+            self.show(f"{name} key", len(steps) > 0)
         self.fill(
             "newest",
             x=self.x(way.newest[:1]),

@@ -13,6 +13,7 @@ import pytest
 from app.frame import LINEAR, LOCAL, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.views.colors import REFERENCE
 from app.views.zigzag import Zigzag
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -198,7 +199,9 @@ def test_the_legend_tells_ways_along_k_from_others() -> None:
     looks = {}
     for name in ("slope ±k", "coarse problem, too"):
         assert named[name].visible == bool(len(view.sources[NAMED[name]].data["x0"]))
-        looks[name] = named[name].renderers[0].glyph.line_dash
+        glyph = named[name].renderers[0].glyph
+        assert glyph.line_color == REFERENCE
+        looks[name] = glyph.line_dash
     assert looks == {"slope ±k": "solid", "coarse problem, too": "dashed"}
 
 
