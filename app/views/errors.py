@@ -27,6 +27,9 @@ LEAST = 1e-14
 NAMED = 1.25
 """Length of the axis of iterations over that of the curves, at whose ends their names
 stand."""
+UNNAMED = 0.65
+"""Largest length of curves over that of the axis for which the right end is free of
+these names."""
 APART = 1.05
 """Least distance of two of these names over their type size."""
 SEEN_IN_TIME = (1e-2, 2.0)
@@ -85,15 +88,13 @@ class Convergence(ErrorPlot):
         whole(plot.xaxis[0])
         self.add("shown", "VSpan", "x", color=REFERENCE, line_width=1.5)
         self.add("goal", "HSpan", "y", color=ERROR, line_dash="dashed", line_alpha=0.6)
-        # At the left end of its line, where most curves are still far above it.
         self.add(
             "goal name",
             "Text",
-            "x y text",
+            "x y text text_align",
             text_color=ERROR,
             text_baseline="bottom",
             text_font_size=self.words,
-            x_offset=4,
         )
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         lines = []
@@ -142,7 +143,16 @@ class Convergence(ErrorPlot):
         self.draw("answer", answers, [foot] * len(answers))
         goal = newest.run.settings.accuracy
         self.fill("goal", y=[goal])
-        self.fill("goal name", x=[0.0], y=[goal], text=[f"goal {percent(goal)}"])
+        # At an end of its line: the right one, unless the names of curves are there.
+        end = float(self.figure.x_range.reset_end)
+        is_left = newest.iteration > UNNAMED * end
+        self.fill(
+            "goal name",
+            x=[0.0 if is_left else end],
+            y=[goal],
+            text=[f" goal {percent(goal)} "],
+            text_align=["left" if is_left else "right"],
+        )
         self._show_names(newest)
 
     def _scale(self, newest: Frame) -> None:
