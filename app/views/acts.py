@@ -219,7 +219,8 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     nearest = arrows.points[0 if is_left else -1]
     ends = np.append(arrows.lines[:, :, 0], nearest[0])
     if is_aside(act):
-        above = beside(layout.description, side)
+        # Large words are higher than their arrow stands above the bodies.
+        above = max(beside(layout.description, side), 0.5 * layout.row)
     else:
         above = 0.75 * layout.arrow
     if not _has_room(act, layout, is_left):
