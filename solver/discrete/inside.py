@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, read_only
 from solver.discrete.elements import Rectangle, SchurComplement, dofs_of
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
@@ -186,7 +186,9 @@ class Inside:
             of_body[dofs] = modes @ combinations[hindered:].T
             motions.append(of_body)
         together = np.concatenate(motions, axis=1)
-        return together if together.size else None
+        if not together.size:
+            return None
+        return read_only(together)
 
     def hold_still(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
