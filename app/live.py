@@ -25,7 +25,7 @@ STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding=
 LARGE = 0.026
 """Type size of plots on a projector over the window's height."""
 LOW = 60
-HIGH = 0.1
+HIGH = 0.12
 """Height of the time line: px on the page, share of the window's on a projector."""
 ROOM = 900
 """Height of a window, px, from which all cards have room."""
@@ -251,7 +251,8 @@ class Card:
         self.kinds: Kinds = tuple([type(view) for view in views])
         self.seen: View | None = None
         self._offered: list[View] = []
-        look = {"margin": (0, 20, 0, 0), **looks("small-tabs")}
+        # Beside them is the mark of what the plot shows.
+        look = {"margin": (0, 28, 0, 0), **looks("small-tabs")}
         look["sizing_mode"] = "stretch_width"
         self.tabs = pmui.TabMenu(items=[], **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")

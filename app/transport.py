@@ -112,6 +112,7 @@ class Transport:
             size="small",
             width=136,
             margin=(6, 4),
+            **looks("large"),
         )
         self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
 

@@ -14,7 +14,7 @@ import param
 from app.browser import fade_first
 from app.controls import SettingControl
 from app.frame import Selection
-from app.lessons.cases import gallery, texts_of
+from app.lessons.cases import formula_of, gallery, texts_of
 from app.lessons.catalogue import (
     CASES,
     KNOWN,
@@ -171,7 +171,7 @@ class Guide:
         )
         texts = [self._markdown(text) for text in texts_of(case, self._state)]
         controls = [self._control(name) for name in case.controls]
-        return [*texts, *controls, buttons]
+        return [*texts[:-1], formula_of(case), texts[-1], *controls, buttons]
 
     def _look(self, lesson: Lesson) -> None:
         """Select the instant of the answer, or play the picture of the question."""

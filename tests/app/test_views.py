@@ -332,7 +332,10 @@ def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None
     answer = frames_of("bar")[2]
     view = view_of(Convergence, answer)
     names = view.sources["names"].data
-    assert {"goal 1 %", "force", "displ.", "exact"} <= set(names["text"])
+    assert {"force", "displ.", "exact"} <= set(names["text"])
+    # The goal has its name on its line, wherever curves end.
+    goal = view.sources["goal name"].data
+    assert (goal["text"], goal["y"]) == ([" goal 1 % "], [answer.run.settings.accuracy])
     assert list(view.sources["goal"].data["y"]) == [answer.run.settings.accuracy]
     axis = view.figure.y_range
     heights = np.sort(np.log10(names["y"])) / np.log10(axis.end / axis.start)

@@ -13,6 +13,7 @@ import pytest
 from app.frame import LINEAR, LOCAL, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.views.colors import REFERENCE
 from app.views.zigzag import Zigzag
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -211,3 +212,22 @@ def test_both_figures_have_one_scale_of_forces_and_a_tap_on_the_field_selects() 
     assert marked["y"] == pytest.approx(view.sources["newest"].data["y"], rel=1e-4)
     view._select(SimpleNamespace(x=0.3))
     assert state.selection.position == pytest.approx(0.3)
+
+
+def test_the_legend_tells_ways_along_k_from_others() -> None:
+    frame = run_of("bar", 6, elements=50).frame(Needs(frozenset({"zigzag"})))
+    view = Zigzag(PageState(frame.run.settings))
+    (legend,) = view.figure.legend
+    view.update(frame, Selection(), None)
+    named = {item.label.value: item for item in legend.items}
+    looks = {}
+    for name in ("slope ±k", "coarse problem, too"):
+        assert named[name].visible == bool(len(view.sources[NAMED[name]].data["x0"]))
+        glyph = named[name].renderers[0].glyph
+        assert glyph.line_color == REFERENCE
+        looks[name] = glyph.line_dash
+    assert looks == {"slope ±k": [], "coarse problem, too": [6]}
+
+
+NAMED = {"slope ±k": "along", "coarse problem, too": "mixed"}
+"""Names of the ways of a point by their titles in the legend."""
