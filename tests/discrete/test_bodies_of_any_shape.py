@@ -13,6 +13,7 @@ from shaped import (
     block_on_ground,
     distorted,
     grid,
+    half_wire,
     in_triangles,
     sides,
 )
@@ -249,6 +250,24 @@ def test_an_arch_is_as_thin_as_it_may_be() -> None:
         thin = arch(31, thickness, friction=0.8, across=3, young=1e12, instants=4)
         problem = discretise(thin)
         assert bool(reference_of(problem).converged.all()) == stands
+
+
+def test_a_round_wire_is_pressed_as_hertz_says_the_finer_the_better() -> None:
+    half_width = 4e-4
+    # 4 P R = pi E' b^2 (MATHEMATICS.md, 6).
+    force = 0.25 * np.pi * 1e11 / 0.91 * half_width**2 / 0.01
+    errors = []
+    for fine in (4, 8, 16):
+        structure = half_wire(fine, force)
+        contact = reference_of(discretise(structure)).contact("ground")
+        pressing = np.asarray(contact.normal_force)[:, -1]
+        assert pressing.sum() == pytest.approx(force)
+        nodes = structure.bodies[0].nodes[structure.joints[0].nodes]
+        # Half an ellipse has the variance b^2 / 4.
+        spread = 2.0 * np.sqrt(pressing @ nodes[:, 0] ** 2 / pressing.sum())
+        errors.append(abs(spread / half_width - 1.0))
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[-1] < 0.01
 
 
 def test_equal_voussoirs_share_operators() -> None:

@@ -21,8 +21,8 @@ from solver.discrete.elements import (
     elastic_matrix,
     side_basis,
 )
-from solver.discrete.inside import RectangularSubstructure
 from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
+from solver.discrete.plane.rectangular_parts import RectangularSubstructure
 from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import Stack
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
