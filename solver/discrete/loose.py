@@ -12,12 +12,17 @@ from solver.laws import Contact
 
 
 def is_loose(problem: Problem) -> bool:
-    """Check whether bodies can move though all contacts are closed and stick.
+    """Check whether bodies can move though all contacts are closed and stick."""
+    return len(loose_bodies(problem)) > 0
 
-    False along rods, and beside a user's law, which may hold what it likes.
+
+def loose_bodies(problem: Problem) -> Indices:
+    """Numbers of the bodies that can move though all contacts are closed and stick.
+
+    Shape (n,); empty along rods, and beside a user's law, which may hold what it likes.
     """
     if problem.inside is None or problem.own_laws:
-        return False
+        return np.zeros(0, dtype=np.intp)
     bodies = problem.inside.body_of_dofs
     ground = int(bodies.max()) + 1
     joined = [np.zeros((2, 0), dtype=np.intp)]
@@ -36,7 +41,8 @@ def is_loose(problem: Problem) -> bool:
     group_of_dofs = groups[bodies]
     group_of_dofs[group_of_dofs == groups[ground]] = -1
     fixed, _ = problem.prescribed
-    return not problem.inside.hold_still(group_of_dofs, fixed, jumps)
+    free = problem.inside.free_groups(group_of_dofs, fixed, jumps)
+    return np.unique(bodies[np.isin(group_of_dofs, free)])
 
 
 def _pairs_that_hold(problem: Problem, law: Contact) -> list[tuple[Indices, Indices]]:
