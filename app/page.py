@@ -10,7 +10,8 @@ from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
 from app.browser import Browser
-from app.classroom import ClassDialog, ClassMember, begin_with_class
+from app.class_dialog import ClassDialog
+from app.classroom import ClassMember, begin_with_class
 from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
@@ -82,8 +83,8 @@ class Page:
     def __init__(self, state: PageState, iteration: int = 0) -> None:
         self.state = state
         document = pn.state.curdoc
-        browser = Browser(name="browser")
-        self._link = Link(state, browser)
+        self._browser = Browser(name="browser")
+        self._link = Link(state, self._browser)
         self._supervisor = Supervisor(state, document)
         if not state.room:
             # The first picture is there once the browser is.
@@ -101,25 +102,39 @@ class Page:
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
+        self._make_dialogs()
+        self.template = self._framed()
+        follow_itself(self.template)
+        keys = transport.keys() | {"p": self._present, "?": self._help}
+        self._browser.listen(state, document, keys)
+        self._follow_state()
+        self._turn(state.tab)
+        self._guide.show()
+
+    def _make_dialogs(self) -> None:
+        """Make the page's own dialogs; all are put on it when they are first opened."""
         self._away = dialog("Take away")
         self._words = dialog(
             "Keys and words", pn.pane.Markdown(GLOSSARY), width_option="md"
         )
-        # Dialogs are put on the page when they are first opened.
-        for each in (
+        dialogs = [
             *self._guide.dialogs.values(),
             self._class.dialog,
             self._away,
             self._words,
-        ):
+        ]
+        for each in dialogs:
             each.param.watch(self._put, "open")
-        self.template = pmui.Page(
+
+    def _framed(self) -> pmui.Page:
+        """The template, with header, controls and main area."""
+        return pmui.Page(
             title="Slipfront",
-            sidebar=[Controls(state).view],
+            sidebar=[Controls(self.state).view],
             sidebar_width=320,
             header=[self._header()],
             main=[self._main],
-            sidebar_open=not state.is_narrow,
+            sidebar_open=not self.state.is_narrow,
             sidebar_variant="persistent",
             raw_css=[LOADING],
             busy_indicator=None,
@@ -128,18 +143,17 @@ class Page:
             sx=COMPACT,
             theme_config=HEADINGS,
         )
-        follow_itself(self.template)
-        keys = transport.keys() | {"p": self._present, "?": self._help}
-        browser.listen(state, document, keys)
+
+    def _follow_state(self) -> None:
+        """Have the page follow the state, and the line of the class."""
         self._class.view.param.watch(lambda event: self._place(), "visible")
         acts = [*TOUCHED, "plots", "view"]
-        state.param.watch(lambda *events: browser.update(is_new=False), acts)
-        state.param.watch(lambda event: self._turn(event.new), "tab")
-        state.param.watch(lambda event: self._dress(), "view")
-        state.param.watch(lambda event: self._show_controls(), "is_narrow")
-        state.param.watch(lambda event: self._on_height(), "height")
-        self._turn(state.tab)
-        self._guide.show()
+        watch = self.state.param.watch
+        watch(lambda *events: self._browser.update(is_new=False), acts)
+        watch(lambda event: self._turn(event.new), "tab")
+        watch(lambda event: self._dress(), "view")
+        watch(lambda event: self._show_controls(), "is_narrow")
+        watch(lambda event: self._on_height(), "height")
 
     def loaded(self) -> None:
         """Show the figures once a browser is there, and go on or follow a class."""

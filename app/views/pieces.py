@@ -16,7 +16,8 @@ from app.units import number, unit_for
 from app.views.acts import gapped
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
-from app.views.view import TEXT, ExtraView, bare
+from app.views.parts import bare
+from app.views.view import TEXT, ExtraView
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
 

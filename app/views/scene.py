@@ -18,8 +18,9 @@ from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, GROUND, HINT, KEYS, LATIN, UNSEEN
 from app.views.hints import NONE, hints_of
 from app.views.layout import Layout, layout_of
+from app.views.parts import bare, color_bar
 from app.views.picture import Picture
-from app.views.view import View, bare, color_bar
+from app.views.view import View
 from solver.settings.scene import Settings
 
 WIDTH = 950.0

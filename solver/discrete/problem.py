@@ -20,13 +20,18 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.checks import (
-    ALIKE,
     INSTANTS,
     Each,
     Named,
     Numbers,
     Part,
     check,
+)
+from solver.discrete.consistency import (
+    check_cover,
+    check_instants,
+    check_names,
+    check_prescribed,
 )
 from solver.discrete.contacts import Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_contacts
@@ -37,7 +42,6 @@ from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
-from solver.refusal import RefusedError, Words
 
 
 @dataclass(frozen=True)
@@ -106,59 +110,12 @@ class Problem:
         dofs = [part.dofs for part in self.substructures]
         rows = [part.rows for part in self.substructures]
         rows_of_laws = [law.rows for law in self.interfaces.values()]
-        _check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
-        _check_cover("substructures", "row", self.n_rows, rows, once=True)
-        _check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
-        self._check_names()
-        self._check_instants()
-        self._check_prescribed()
-
-    def _check_names(self) -> None:
-        """Refuse names that interfaces share, and an order without some of them."""
-        names = self.rubbing.names_of_laws
-        if len(set(names)) < len(names) or sorted(self.rubbing.names) != sorted(names):
-            raise RefusedError(
-                "Problem.order",
-                Words(f"of {len(self.rubbing.names)} names"),
-                f"all {len(names)} interfaces with friction once",
-                "give each a name of its own, and all of them a place",
-            )
-
-    def _check_instants(self) -> None:
-        """Refuse laws and body forces with values for another number of instants."""
-        counts = {
-            f"interfaces[{name!r}]": law.n_instants
-            for name, law in self.interfaces.items()
-        }
-        for number, part in enumerate(self.substructures):
-            if part.body_force is not None:
-                counts[f"substructures[{number}].body_force"] = part.body_force.shape[1]
-        for name, count in counts.items():
-            if count not in (None, self.n_instants):
-                allowed = f"as many as Problem.instants has, {self.n_instants}"
-                shown = Words(f"of {count} instants")
-                raise RefusedError(
-                    f"Problem.{name}", shown, allowed, "give one value an instant"
-                )
-
-    def _check_prescribed(self) -> None:
-        """Refuse displacements that differ at one degree of freedom."""
-        given = self.given_displacements
-        if len(given) < 2:
-            return
-        dofs = np.concatenate([self.row_dofs[each.rows] for each in given])
-        values = np.concatenate([each.values for each in given])
-        _, first, inverse = np.unique(dofs, return_index=True, return_inverse=True)
-        differences = np.abs(values - values[first][inverse])
-        largest = float(np.abs(values).max(initial=0.0))
-        if float(differences.max(initial=0.0)) > ALIKE * largest:
-            number = int(differences.max(axis=1).argmax())
-            raise RefusedError(
-                "Problem.interfaces",
-                Words(f"two displacements of degree of freedom {dofs[number]}"),
-                "one displacement of each",
-                "prescribe it once, or both alike",
-            )
+        check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
+        check_cover("substructures", "row", self.n_rows, rows, once=True)
+        check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
+        check_names(self.rubbing)
+        check_instants(self.n_instants, self.interfaces, self.substructures)
+        check_prescribed(self.given_displacements, self.row_dofs)
 
     def absolute(self, displacement: Array) -> Array:
         """Absolute displacements: relative ones plus the motion of the support.
@@ -447,34 +404,6 @@ class Problem:
                 held[name] = np.setdiff1d(dofs, before)
                 before = np.concatenate([before, held[name]])
         return held
-
-
-def _check_cover(
-    owners: str, what: str, count: int, parts: list[Indices], *, once: bool = False
-) -> None:
-    """Refuse parts that do not have all numbers from 0 to `count` - 1.
-
-    With `once`, refuse numbers that occur more than once, too.
-    """
-    numbers = np.concatenate([np.zeros(0, dtype=np.intp), *parts])
-    largest = int(numbers.max(initial=-1))
-    times = np.bincount(numbers, minlength=count)
-    if once:
-        wrong = times != 1
-    else:
-        wrong = times == 0
-    if largest < count and not wrong.any():
-        return
-    if largest >= count:
-        number = largest
-    else:
-        number = int(np.argmax(wrong))
-    how_often = "at least once"
-    if once:
-        how_often = "once"
-    allowed = f"each {what} from 0 to {count - 1} {how_often}"
-    shown = Words(f"{what} {number}, {times[number]} times")
-    raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")
 
 
 def nothing_acts(problem: Problem) -> bool:

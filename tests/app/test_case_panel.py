@@ -166,16 +166,19 @@ def test_a_case_opens_at_the_instant_of_its_number(case: Case) -> None:
     assert case.flag is None or case.flag.plot in KINDS
 
 
-def test_a_pile_stands_upright_in_its_soil_and_its_force_is_dragged_there() -> None:
-    case = CASES["pile"]
-    frame = sampled(case)
-    settings = frame.run.settings
-    state = PageState(settings, frame=frame, case="pile")
-    view = Scene(state)
-    _ = view.figure
+def pile() -> Scene:
+    """The picture of the pile, higher than wide."""
+    frame = sampled(CASES["pile"])
+    view = Scene(PageState(frame.run.settings, frame=frame, case="pile"))
     view.figure.trigger("inner_width", 950.0, 260.0)
     view.figure.trigger("inner_height", 190.0, 420.0)
     view.update(frame, Selection(1.0), None)
+    return view
+
+
+def test_a_pile_stands_upright_in_its_soil() -> None:
+    view = pile()
+    frame = view.state.frame
     picture = view.picture
     assert picture is not None
     x, y = picture.page(picture.nodes).T
@@ -188,12 +191,19 @@ def test_a_pile_stands_upright_in_its_soil_and_its_force_is_dragged_there() -> N
         across = np.concatenate([np.ravel(line) for line in data["xs"]])
         assert np.nanmin(across) > 0.0
         assert np.nanmax(across) < 260.0
+
+
+def test_the_force_of_a_pile_is_dragged_where_it_stands_upright() -> None:
+    view = pile()
+    picture = view.picture
+    assert picture is not None
+    pressure = view.state.settings.pressure
     arrows = next(each for each in picture.draggable if each.setting == "pressure")
     start = picture.page(arrows.handle)
     half = picture.page(0.5 * (arrows.base[0] + arrows.handles[0]))
     view._hold(SimpleNamespace(x=start[0], y=start[1]))
     view._drag(SimpleNamespace(x=half[0], y=half[1]))
-    assert state.settings.pressure == pytest.approx(0.5 * settings.pressure, rel=1e-2)
+    assert view.state.settings.pressure == pytest.approx(0.5 * pressure, rel=1e-2)
 
 
 @each

@@ -1,6 +1,4 @@
-"""The controls at the side show every setting,
-and refuse at the control what does not hold.
-"""
+"""The controls at the side show every setting, and refuse what does not hold."""
 
 from __future__ import annotations
 

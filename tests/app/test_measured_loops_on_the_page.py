@@ -1,6 +1,4 @@
-"""A loop that is opened on the page is read as its dialog says,
-drawn, compared and fitted.
-"""
+"""A loop opened on the page is read as its dialog says, drawn and fitted."""
 
 from __future__ import annotations
 

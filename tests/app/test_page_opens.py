@@ -1,4 +1,4 @@
-"""A page begins its run for whoever sees it, and is told nothing of other pages."""
+"""A page begins its run for each visitor, and is told nothing of other pages."""
 
 from __future__ import annotations
 

@@ -32,9 +32,7 @@ SIZES = (
 
 
 def print_whole_cost() -> None:
-    """Print seconds of the processor and memory of runs
-    without a reference, and its seconds.
-    """
+    """Print CPU seconds and memory of runs without a reference, and its seconds."""
     settle()
     print(machine())
     print("expected beside measured; the reference apart")

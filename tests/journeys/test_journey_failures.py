@@ -1,6 +1,4 @@
-"""A person loses the network or the worker,
-reloads, goes back, or comes by a foolish address.
-"""
+"""A person loses network or worker, reloads, or comes by a foolish address."""
 
 from __future__ import annotations
 

@@ -186,9 +186,7 @@ PLACES = (
 
 @contextmanager
 def watched(page: Page) -> Iterator[None]:
-    """Check that nothing that was written for a page has
-    become a part of it, or has run.
-    """
+    """Check that text written for a page has not become a part of it, nor run."""
     done: list[str] = []
 
     def ask(request: Request) -> None:

@@ -1,6 +1,4 @@
-"""A run knows its error,
-heeds the accuracy or the limit that is asked, and bills every second.
-"""
+"""A run knows its error, heeds accuracy and limit, and bills every second."""
 
 from __future__ import annotations
 

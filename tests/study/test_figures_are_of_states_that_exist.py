@@ -121,9 +121,7 @@ def test_of_friction_that_changes_with_slip_no_force_is_said_to_hold() -> None:
 
 
 def test_where_friction_goes_under_a_steady_load_the_displacement_is_the_last() -> None:
-    """F^2 / (2 E A q), with the last q,
-    for the bar that slips no farther than it would at once.
-    """
+    """F^2 / (2 E A q), with the last q, of a bar that slips no farther than at once."""
     run = ran("bar", **LOOSENED)
     displacement, force = figures_of(run)
     exact = 600.0**2 / (2.0 * STIFFNESS * 0.3 * 3750.0)

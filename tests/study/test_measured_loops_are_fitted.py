@@ -232,9 +232,7 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
 def test_what_is_known_as_a_product_alone_stays_near_its_start(
     name: str, value: float, noise: float
 ) -> None:
-    """Displacement under a given force knows mu p,
-    and of E S mu p no more (theory of the bar).
-    """
+    """Displacement under a given force knows mu p, and of E S the product E S mu p."""
     true = {"friction": 0.37, name: value}
     settings = scene_settings("bar").checked(
         {**BAR, "friction": 0.3, name: 0.8 * value}
@@ -282,9 +280,7 @@ FLAT = {**BAR, "elements": 16, "instants": 21, "substructures": 4}
 
 
 def flat_valley() -> tuple[Settings, dict[str, float], MeasuredLoop]:
-    """A bar of which friction and Young's modulus are known together,
-    and a loop with noise.
-    """
+    """A bar whose friction and Young's modulus are known together, in noise."""
     true = {"friction": 0.54, "young": 5.95e10}
     start = scene_settings("bar").checked({**FLAT, "friction": 0.436, "young": 7.35e10})
     return start, true, made(true, start, 0.01, seed=3)

@@ -1,6 +1,4 @@
-"""Sweeps have a row for every point,
-whatever becomes of it, and what closed forms say of it.
-"""
+"""Sweeps have a row for every point, with what closed forms say of it."""
 
 from __future__ import annotations
 
@@ -263,7 +261,7 @@ def test_a_sweep_that_is_killed_goes_on(
 
 
 def in_session(leader: int) -> list[int]:
-    """Processes of a session that have not ended, whoever their parents are."""
+    """Processes of a session that have not ended, whatever their parents are."""
     found = []
     for process in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
