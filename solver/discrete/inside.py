@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, read_only
 from solver.discrete.elements import SchurComplement
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure
@@ -233,7 +233,9 @@ class Inside:
             of_body[dofs] = modes @ combinations[hindered:].T
             motions.append(of_body)
         together = np.concatenate(motions, axis=1)
-        return together if together.size else None
+        if not together.size:
+            return None
+        return read_only(together)
 
     def free_groups(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
