@@ -139,6 +139,7 @@ class Runner:
         self._kept: dict[int, Iterate] = {}
         self.pacing = Pacing(start.pace, start.steps)
         self._before = before
+        self._is_near = False
         self._iterates: Iterator[tuple[Iterate, Decision]] | None = None
         self._references = references
         self._interrupted = interrupted
@@ -189,7 +190,8 @@ class Runner:
     def frame(self, needs: Needs) -> Frame:
         """Frame of the newest iterate."""
         self.has_news = False
-        return self.sampler.frame(self.iterate, self.history, self.status, needs)
+        frame = self.sampler.frame(self.iterate, self.history, self.status, needs)
+        return replace(frame, is_followed=self._is_near)
 
     def earlier(self, iteration: int, needs: Needs) -> Frame | None:
         """Frame of an earlier iteration as it was; None where it is not kept."""
@@ -219,6 +221,7 @@ class Runner:
         # What was tried in vain is time of the run all the same.
         self._spent += time.perf_counter() - began
         if near is not None:
+            self._is_near = True
             self._take(*near)
 
     def _iterate(self) -> None:
