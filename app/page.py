@@ -10,17 +10,19 @@ from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
 from app.browser import Browser
-from app.classroom import ClassDialog, ClassMember, begin_with_class
+from app.class_dialog import ClassDialog
+from app.classroom import ClassMember, begin_with_class
 from app.controls import Controls
 from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
 from app.files.export import LOOK, offers
-from app.lessons.guide import Guide
+from app.lessons.guide import Guide, kinds_beside
 from app.link import Link, read, show
-from app.live import LARGE, STYLE, Live, column
+from app.live import LARGE, STYLE, Live, column, first_needs
 from app.server import PAGES
 from app.state import TABS, PageState
+from app.status import spoken_status
 from app.supervisor import Supervisor
 from app.transport import TOUCHED
 from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
@@ -82,11 +84,12 @@ class Page:
     def __init__(self, state: PageState, iteration: int = 0) -> None:
         self.state = state
         document = pn.state.curdoc
-        browser = Browser(name="browser")
-        self._link = Link(state, browser)
+        self._browser = Browser(name="browser")
+        self._link = Link(state, self._browser)
         self._supervisor = Supervisor(state, document)
         if not state.room:
             # The first picture is there once the browser is.
+            state.needs = first_needs(state, kinds_beside(state))
             self._supervisor.begin()
             state.reset(iteration or 1)
             state.running = not iteration
@@ -101,25 +104,40 @@ class Page:
         self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
+        self._make_dialogs()
+        self.template = self._framed()
+        follow_itself(self.template)
+        keys = transport.keys() | {"p": self._present, "?": self._help}
+        self._browser.listen(state, document, keys)
+        self._follow_state()
+        self._turn(state.tab)
+        self._guide.show()
+
+    def _make_dialogs(self) -> None:
+        """Make the page's own dialogs; all are put on it when they are first opened."""
         self._away = dialog("Take away")
         self._words = dialog(
             "Keys and words", pn.pane.Markdown(GLOSSARY), width_option="md"
         )
-        # Dialogs are put on the page when they are first opened.
-        for each in (
+        dialogs = [
             *self._guide.dialogs.values(),
             self._class.dialog,
             self._away,
             self._words,
-        ):
+        ]
+        for each in dialogs:
             each.param.watch(self._put, "open")
-        self.template = pmui.Page(
+        self._away.param.watch(lambda event: self._live.offer(event.new), "open")
+
+    def _framed(self) -> pmui.Page:
+        """The template, with header, controls and main area."""
+        return pmui.Page(
             title="Slipfront",
-            sidebar=[Controls(state).view],
+            sidebar=[Controls(self.state).view],
             sidebar_width=320,
             header=[self._header()],
             main=[self._main],
-            sidebar_open=not state.is_narrow,
+            sidebar_open=not self.state.is_narrow,
             sidebar_variant="persistent",
             raw_css=[LOADING],
             busy_indicator=None,
@@ -128,23 +146,27 @@ class Page:
             sx=COMPACT,
             theme_config=HEADINGS,
         )
-        follow_itself(self.template)
-        keys = transport.keys() | {"p": self._present, "?": self._help}
-        browser.listen(state, document, keys)
+
+    def _follow_state(self) -> None:
+        """Have the page follow the state, and the line of the class."""
         self._class.view.param.watch(lambda event: self._place(), "visible")
         acts = [*TOUCHED, "plots", "view"]
-        state.param.watch(lambda *events: browser.update(is_new=False), acts)
-        state.param.watch(lambda event: self._turn(event.new), "tab")
-        state.param.watch(lambda event: self._dress(), "view")
-        state.param.watch(lambda event: self._show_controls(), "is_narrow")
-        state.param.watch(lambda event: self._on_height(), "height")
-        self._turn(state.tab)
-        self._guide.show()
+        watch = self.state.param.watch
+        watch(lambda *events: self._browser.update(is_new=False), acts)
+        told = ["newest", "frame", "running", "message", "refusal"]
+        watch(
+            lambda *events: self._browser.update(spoken=spoken_status(self.state)),
+            told,
+        )
+        watch(lambda event: self._turn(event.new), "tab")
+        watch(lambda event: self._dress(), "view")
+        watch(lambda event: self._show_controls(), "is_narrow")
+        watch(lambda event: self._on_height(), "height")
 
     def loaded(self) -> None:
         """Show the figures once a browser is there, and go on or follow a class."""
         self._supervisor.open()
-        self._live.open(self._guide.kinds)
+        self._live.open(kinds_beside(self.state))
         if not self.state.room:
             self._live.display.pulse.on_change("painted", self._go_on)
         elif not self._member.enter(self.state.room):
@@ -198,7 +220,7 @@ class Page:
 
     def _on_height(self) -> None:
         self._read()
-        self._live.arrange(self._guide.kinds)
+        self._live.arrange(kinds_beside(self.state))
 
     def _read(self) -> None:
         """Have the text beside the plots as large as they are."""
@@ -272,7 +294,7 @@ class Page:
         """
         self._place()
         self._read()
-        self._live.arrange(self._guide.kinds)
+        self._live.arrange(kinds_beside(self.state))
         self.template.sx = COMPACT if self.state.view == "page" else BARE
         self._show_controls()
 
@@ -296,7 +318,7 @@ def follow_itself(template: pmui.Page) -> None:
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     # Without notifications: each page's would stay in Panel's table of views for good.
-    pn.extension(reconnect=True, respect_explicit_sizing=True)
+    pn.extension("katex", reconnect=True, respect_explicit_sizing=True)
     # Panel sets this as it sends a page. One that is made anew by the socket, as its
     # session had ended while a slow browser was still loading, is not sent: its style
     # sheets would be asked from the internet.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import count
@@ -14,6 +13,7 @@ import param
 
 from app import messages
 from app.frame import LINEAR, LOCAL, Frame, Selection
+from app.history import History
 from app.messages import Needs, Order, Pace, Ready, Report, Show, Start, Step
 from app.refusals import message_of
 from solver.refusal import RefusedError
@@ -23,9 +23,6 @@ from solver.study.comparison import OtherResults
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.trade_case import Case, cases_by_name
 
-LIMIT = 24_000_000
-"""Largest memory of the frames of a run, bytes; beyond, every other frame is
-dropped."""
 SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings that show the search from its start, as a page begins."""
 ANSWER = {"start": "nested", "finish": "at-once"}
@@ -57,52 +54,6 @@ class Poll:
     present: int
     counts: tuple[int, ...] = ()
     is_answered: bool = False
-
-
-class History:
-    """Frames of a run that were shown, by iteration, thinned under a memory limit.
-
-    The frame of an iteration that is missing comes from the worker (`Show`).
-    """
-
-    def __init__(self) -> None:
-        self._frames: list[Frame] = []
-
-    @property
-    def newest(self) -> Frame | None:
-        """The last frame; of a run that has ended, its answer."""
-        if self._frames:
-            return self._frames[-1]
-        return None
-
-    def add(self, frame: Frame) -> None:
-        """Keep a frame in its order, in place of one of the same iterate."""
-        order = [_order(kept) for kept in self._frames]
-        index = bisect_left(order, _order(frame))
-        if index < len(order) and order[index] == _order(frame):
-            self._frames[index] = frame
-        else:
-            self._frames.insert(index, frame)
-        while len(self._frames) > 2 and self._nbytes() > LIMIT:
-            # Every other frame goes, but neither the first nor the last one, which is
-            # seen.
-            self._frames = [*self._frames[:-1:2], self._frames[-1]]
-
-    def at(self, iteration: int) -> Frame:
-        """The last kept frame of the search up to an iteration, or the first frame."""
-        return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
-
-    def _search(self) -> list[int]:
-        """Numbers of the kept iterates but for the answer, ascending."""
-        return [kept.iteration for kept in self._frames if not kept.is_answer]
-
-    def _nbytes(self) -> int:
-        return sum(kept.nbytes for kept in self._frames)
-
-
-def _order(frame: Frame) -> tuple[int, bool]:
-    """Place of a frame in its run: the answer follows the last iterate."""
-    return frame.iteration, frame.is_answer
 
 
 def default_settings(scene: str) -> Settings:
@@ -486,8 +437,12 @@ class PageState(param.Parameterized):
             self.brought,
         )
         if is_news or needs != self._sent:
+            is_more = not is_news and self._sent is not None
             self._sent = needs
             self.send(needs)
+            # The newest frame comes by itself, an earlier one when it is asked for.
+            if is_more and self.iteration is not None:
+                self.send(Show(self.iteration))
 
     def turn(self, step: int) -> None:
         """Select the interface that is a number of interfaces further."""

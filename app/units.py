@@ -8,8 +8,8 @@ from functools import cache
 
 import param
 
-from solver.files.columns import size_in
 from solver.files.numerals import leading_number
+from solver.files.units import size_in
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import Parameter, about
 

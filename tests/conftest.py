@@ -66,9 +66,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class Together(LoadFileScheduling):
-    """Gives a worker a file at a time,
-    or all journeys, which share a server and a browser.
-    """
+    """Scheduler that gives a worker a file at a time, or all journeys."""
 
     def _split_scope(self, nodeid: str) -> str:
         file = super()._split_scope(nodeid)

@@ -1,6 +1,4 @@
-"""The scripts of benchmarks count the iterations of runs,
-and other programs agree with us.
-"""
+"""Benchmarks count the iterations of runs, and other programs agree with us."""
 
 from __future__ import annotations
 

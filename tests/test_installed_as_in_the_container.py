@@ -1,5 +1,4 @@
-"""The Dockerfile's steps without a container engine: install, serve, ask the health
-check.
+"""The Dockerfile's steps without a container engine: install, serve, ask health.
 
 The clean environment is lent what the project declares that it needs, and nothing else:
 pip checks the versions, but unpacks no packages that these tests run on already.
@@ -75,13 +74,13 @@ def instructions(name: str) -> list[str]:
 
 
 def installation():
-    """Give the words of the command that installs the project."""
+    """Words of the command that installs the project."""
     (install,) = [run for run in instructions("RUN") if run.startswith("pip install")]
     return shlex.split(install)
 
 
 def declared():
-    """Give the distributions that the installation needs, directly or not."""
+    """Distributions that the installation needs, directly or not."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
         "project"
     ]
@@ -101,9 +100,7 @@ def declared():
 
 
 def lend(found, environment):
-    """Link the modules of a distribution into an environment,
-    and write its programs there.
-    """
+    """Link a distribution's modules into an environment, and write its programs."""
     (packages,) = environment.glob("lib/python*/site-packages")
     for file in found.files:
         if file.parts[0] == "..":
@@ -120,9 +117,7 @@ def lend(found, environment):
 
 @pytest.fixture(scope="module")
 def image(tmp_path_factory):
-    """Copy what the Dockerfile copies,
-    and run its installation in a clean environment.
-    """
+    """Copy as the Dockerfile does, and run its installation in a clean environment."""
     folder = tmp_path_factory.mktemp("image")
     for copied in instructions("COPY"):
         *sources, target = copied.split()

@@ -121,9 +121,9 @@ class Layout:
         self.motion = motion
 
     def _free(self) -> tuple[Array, Array, Array]:
-        """Lower corner and size of the place between the margins; size of the figure.
+        """Corner and size of the place between the margins; size of the figure, (2,).
 
-        All are along and across the bodies, (2,), px.
+        All are along and across the bodies, px; the corner is the lower one.
         """
         left, right, below, above = _margins(
             self.description, self.arrow, self.letter, self.deepest, self.surroundings

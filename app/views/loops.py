@@ -23,7 +23,8 @@ from app.views.colors import (
     UNSEEN,
     scaled,
 )
-from app.views.view import ExtraView, View, hover
+from app.views.parts import hover
+from app.views.view import ExtraView, View
 from app.worker.geometry import thinned
 from solver.arrays import Array
 from solver.laws import FrictionLaw

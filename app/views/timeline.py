@@ -14,7 +14,8 @@ from app.units import Unit, number, unit_for
 from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_opposite
-from app.views.view import View, bare
+from app.views.parts import bare
+from app.views.view import View
 from solver.arrays import Array
 from solver.discrete.structure import Description
 

@@ -21,10 +21,8 @@ from bokeh.models import (
     CustomJS,
     Glyph,
     GlyphRenderer,
-    HoverTool,
     Legend,
     LegendItem,
-    LinearColorMapper,
     Range1d,
     Scatter,
     Title,
@@ -37,6 +35,7 @@ from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
 from app.views.colors import CUT, FLAG
+from app.views.parts import visuals
 from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
@@ -50,7 +49,7 @@ FONT = value("Roboto, sans-serif")
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Script that keeps sizes that are not the theme's: the browser sets those of the theme
 as it draws a figure."""
-ABOVE = {"margin-left": "-60px", "top": "-1px"}
+ABOVE = {"margin-left": "-52px", "top": "-1px"}
 """Style of a legend that begins at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 5px !important; }
@@ -59,17 +58,19 @@ CLOSE = """
 """
 """Style sheet by which a legend of seven entries stands in one line; the theme keeps
 entries farther apart."""
-WRAPPED = """
-:host { max-width: calc(100% + 60px); }
+FLOWING = """
 .bk-grid {
   display: flex !important;
   flex-wrap: wrap;
   width: auto !important;
   gap: 0 5px !important;
 }
+:host(.column) .bk-grid { flex-direction: column; gap: 6px !important; }
 """
-"""Style sheet by which a legend above a plot takes a second line where the first has no
-room."""
+"""Style sheet by which the entries of a legend follow each other, and take a second
+line where the first has no room; or stand below each other."""
+WRAPPED = ":host { max-width: calc(100% + 52px); }"
+"""Style sheet of the room that a legend above a plot has."""
 
 
 HIDE = """
@@ -219,9 +220,9 @@ class View:
         x, y = points
         self.fill("level", y=levels)
         self.fill("flag", x=x[: len(x) - len(levels)], y=y[: len(y) - len(levels)])
-        # The text stands where the plot has room.
+        # The text stands where the plot has room: below a loop that rises to the right.
         is_right = x > _within(self._figure.x_range, 0.5)
-        is_above = y > _within(self._figure.y_range, 0.8)
+        is_above = y > _within(self._figure.y_range, 0.2)
         self.fill(
             "flag text",
             x=x,
@@ -419,69 +420,6 @@ def _within(axis: Range1d, share: float) -> float:
     return float((1.0 - share) * axis.reset_start + share * axis.reset_end)
 
 
-def bare(
-    min_height: int,
-    across: tuple[float, float],
-    up: tuple[float, float],
-    **more: Any,
-) -> figure:
-    """A figure without tools, frame and grid, with a least height, px, and limits."""
-    plot = figure(
-        sizing_mode="stretch_both",
-        min_height=min_height,
-        tools="",
-        toolbar_location=None,
-        title=None,
-        x_range=Range1d(*across),
-        y_range=Range1d(*up),
-        min_border=0,
-        y_axis_type=None,
-        **more,
-    )
-    plot.center = []
-    plot.outline_line_color = None
-    plot.background_fill_alpha = 0.0
-    plot.border_fill_alpha = 0.0
-    return plot
-
-
-def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A bar at the right of a figure that explains its colours."""
-    bar = ColorBar(
-        color_mapper=colors,
-        width=9,
-        padding=2,
-        margin=0,
-        title_standoff=4,
-        title_text_font_style="normal",
-        background_fill_alpha=0.0,
-        **look,
-    )
-    plot.add_layout(bar, "right")
-    return bar
-
-
-def hover(
-    plot: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]
-) -> None:
-    """Show values at the pointer: titles, and columns of the renderers' sources."""
-    plot.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
-
-
-def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
-    """Properties of a kind of glyph; `color`, `width` etc. are of its line and fill."""
-    names = kind.properties()
-    properties = {}
-    for trait, given in look.items():
-        if trait in names:
-            properties[trait] = given
-            continue
-        for name in (f"line_{trait}", f"fill_{trait}"):
-            if name in names:
-                properties[name] = given
-    return properties
-
-
 def _sent(values: Any) -> Any:
     """Values with short curves as lists: an array is sent in two further messages."""
     if isinstance(values, list):
@@ -517,7 +455,7 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
 def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
     """A legend in one line: above the plot, where it covers no curve, or inside."""
     styles = {"font-size": TEXT}
-    sheets = [CLOSE]
+    sheets = [CLOSE, FLOWING]
     if place == "above":
         styles |= ABOVE
         sheets.append(WRAPPED)

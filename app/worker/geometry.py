@@ -50,6 +50,19 @@ def thinned(size: int, limit: int) -> Indices:
     return np.unique(np.linspace(0, size - 1, limit).round().astype(np.intp))
 
 
+def _shares_of_points(pressed: Array, whole: Array, sizes: Indices) -> Array:
+    """Share of each point in the resultant of its joint, (n_points, n_shown).
+
+    A resultant acts at the mean of the points by their pressing force, (n_points,
+    n_shown), N; in the middle of a joint that is open. `whole` are the sums of these
+    forces, (n_joints, n_shown), N, `sizes` the numbers of points, (n_joints,).
+    """
+    divisor = np.repeat(np.where(whole > 0.0, whole, 1.0), sizes, axis=0)
+    is_closed = np.repeat(whole > 0.0, sizes, axis=0)
+    even = np.repeat(1.0 / sizes, sizes)[:, None]
+    return np.where(is_closed, pressed / divisor, even)
+
+
 class Drawn:
     """Bodies as they are drawn at some instants, and their contact points.
 
@@ -272,14 +285,7 @@ class DrawnMesh(Drawn):
             pressed = np.maximum(normal, 0.0)
             whole = np.add.reduceat(pressed, firsts)
             sheared = np.add.reduceat(tangential, firsts)
-            # The resultant acts at the mean of the points by their pressure; in the
-            # middle of a joint that is open.
-            share = pressed / np.repeat(
-                np.where(whole > 0.0, whole, 1.0), sizes, axis=0
-            )
-            even = np.repeat(1.0 / sizes, sizes)[:, None]
-            is_closed = np.repeat(whole > 0.0, sizes, axis=0)
-            weights = np.where(is_closed, share, even)
+            weights = _shares_of_points(pressed, whole, sizes)
             lines[stacked.numbers] = self._lines(stacked.law, firsts, weights)
             forces[stacked.numbers] = np.hypot(whole, sheared)
         return {"lines": floats(lines), "forces": floats(forces)}
@@ -345,6 +351,12 @@ def _quads_of(grid: Indices, up: Indices, across: Indices) -> Indices:
     return np.add.outer(row * (len(across) - 1), column).ravel()
 
 
+def ring_of(grid: Indices) -> Indices:
+    """Numbers around a grid, (n_rows, n_columns), the first again at the end, (n,)."""
+    sides = (grid[0], grid[1:, -1], grid[-1, -2::-1], grid[-2::-1, 0])
+    return np.concatenate(sides)
+
+
 def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
     """Nodes, quadrilaterals and outlines, as `Geometry` has them, of grids of nodes.
 
@@ -359,8 +371,7 @@ def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
         n = np.arange(first, first + size).reshape(n_rows, n_columns)
         corners = (n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1])
         quads.append(np.stack(corners, axis=-1).reshape(-1, 4))
-        ring = (n[0], n[1:, -1], n[-1, -2::-1], n[-2::-1, 0])
-        rings.append(np.concatenate(ring))
+        rings.append(ring_of(n))
         first += size
     nodes = np.concatenate([grid.reshape(-1, 2) for grid in grids])
     sides = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])

@@ -16,7 +16,7 @@ from scipy import sparse
 
 from app.frame import LINEAR, LOCAL, Floats
 from app.messages import Needs
-from app.worker.geometry import NONE, PITCH, THICKNESS, floats, thinned
+from app.worker.geometry import NONE, PITCH, THICKNESS, floats, ring_of, thinned
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.substructure import Substructure
@@ -172,9 +172,7 @@ def _outlines_of_bodies(problem: Problem) -> list[_Outline]:
     for number, grid in enumerate(inside.grids):
         numbers = np.arange(grid.size).reshape(grid.shape)
         up, across = [thinned(size, limit) for size in grid.shape]
-        kept = numbers[np.ix_(up, across)]
-        sides = (kept[0], kept[1:, -1], kept[-1, -2::-1], kept[-2::-1, 0])
-        ring = np.concatenate(sides)
+        ring = ring_of(numbers[np.ix_(up, across)])
         matrix, given = inside.of_part(number, ring)
         motion = matrix @ _mean_of_rows(problem.substructures[number])
         corners = inside.nodes[grid.ravel()[ring]]

@@ -78,12 +78,12 @@ class Drive:
         return f"{amount} ({factor} times its largest value)"
 
 
-def loads_at(drives: Sequence[Drive], instant: int, share: float = 1.0) -> str:
-    """Text on all drives that change, after a share of the step to an instant.
+def loads_at(drives: Sequence[Drive], instant: int) -> str:
+    """Text on all drives that change, with their values at an instant.
 
     Empty where no drive changes.
     """
-    moving = [drive.at(instant, share) for drive in drives if drive.changes(instant)]
+    moving = [drive.at(instant) for drive in drives if drive.changes(instant)]
     return " and ".join(moving)
 
 

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
-from solver.arrays import Array, Indices
-from solver.discrete.elements import Rectangle, SchurComplement
+from solver.arrays import Array, Indices, read_only
+from solver.discrete.elements import SchurComplement
 from solver.discrete.scales import Scales
-from solver.discrete.substructure import Elasticity
+from solver.discrete.substructure import Elasticity, Substructure
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
 that of a translation."""
-
-
+MOVES = 1e-6
+"""Smallest share in a free motion, over its size, of a body that moves."""
 N_AXES = 3
 """Ways in which a node may move: along x, along y, and turning."""
 
@@ -29,6 +28,14 @@ class CondensedPart(Protocol):
     @property
     def condensed(self) -> SchurComplement:
         """Stiffness condensed onto some of its degrees of freedom."""
+
+    @property
+    def elasticity(self) -> Elasticity:
+        """Operator, which equal parts share."""
+
+    @property
+    def rows(self) -> Mapping[Hashable, Indices]:
+        """Boundary rows by what has them, shape (n_nodes, n_components) each."""
 
     @property
     def nodes(self) -> Indices:
@@ -73,60 +80,17 @@ class CondensedPart(Protocol):
         """
 
 
-@dataclass(frozen=True, eq=False)
-class RectangularSubstructure:
-    """A rectangular substructure.
-
-    Attributes
-    ----------
-    rectangle, condensed, elasticity
-        Mesh, stiffness condensed onto its boundary rows, and operator; equal parts
-        share them.
-    nodes
-        Numbers of its nodes among those of all bodies, shape (n_rows, n_columns).
-    body
-        Number of its body.
-    rows
-        Boundary rows by joint or by the span of an outer side, shape (n_nodes,
-        n_components) each.
-    force
-        Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
-    """
-
-    rectangle: Rectangle
-    condensed: SchurComplement
-    elasticity: Elasticity
-    nodes: Indices
-    body: int
-    rows: Mapping[Hashable, Indices]
-    force: Array | None
-
-    @property
-    def dofs(self) -> Indices:
-        """Numbers of its degrees of freedom among those of all nodes, shape (n,)."""
-        return np.add.outer(N_AXES * self.nodes.ravel(), [0, 1]).ravel()
-
-    @property
-    def directions(self) -> Array:
-        """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
-        return np.tile(np.eye(2, N_AXES), (self.nodes.size, 1))
-
-    @property
-    def elements(self) -> Indices:
-        """Corners of every element among its own nodes, shape (n_elements, 4)."""
-        return self.rectangle.elements
-
-    def motion(self, moved: Array) -> Array:
-        """Displacement of its nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
-        return moved.reshape(-1, 2, moved.shape[1])
-
-    def forces(self, nodal: Array) -> Array:
-        """Forces on its degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
-        return nodal.ravel()
-
-    def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled."""
-        return self.rectangle.stress(displacement)
+def substructure_of(part: CondensedPart, dofs: Indices) -> Substructure:
+    """Substructure of a condensed part, with its degrees of freedom, (n_kept,)."""
+    body_force = None
+    if part.force is not None:
+        body_force = part.condensed.condense(part.force)
+    return Substructure(
+        elasticity=part.elasticity,
+        dofs=dofs,
+        rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
+        body_force=body_force,
+    )
 
 
 class Inside:
@@ -269,12 +233,14 @@ class Inside:
             of_body[dofs] = modes @ combinations[hindered:].T
             motions.append(of_body)
         together = np.concatenate(motions, axis=1)
-        return together if together.size else None
+        if not together.size:
+            return None
+        return read_only(together)
 
-    def hold_still(
+    def free_groups(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
-    ) -> bool:
-        """Check whether groups of bodies cannot move where some displacements vanish.
+    ) -> Indices:
+        """Numbers of the groups of bodies that can move, (n,).
 
         Parameters
         ----------
@@ -293,10 +259,16 @@ class Inside:
         for number, group in enumerate(moving):
             dofs = np.flatnonzero(groups == group)
             motions[dofs, 3 * number : 3 * number + 3] = self.rigid_modes(dofs)
-        hindered = [motions[fixed]]
-        hindered += [motions[above] - motions[below] for above, below in jumps]
-        sizes = np.linalg.svd(np.concatenate(hindered), compute_uv=False)
-        return int(np.count_nonzero(sizes > HELD)) == motions.shape[1]
+        rows = [motions[fixed]]
+        rows += [motions[above] - motions[below] for above, below in jumps]
+        hindered = np.concatenate(rows)
+        sizes = np.linalg.svd(hindered, compute_uv=False)
+        count = int(np.count_nonzero(sizes > HELD))
+        if count == motions.shape[1]:
+            return moving[:0]
+        free = np.linalg.svd(hindered, full_matrices=True)[2][count:]
+        largest = np.abs(free).reshape(-1, len(moving), 3).max(axis=(0, 2))
+        return np.asarray(moving[largest > MOVES], dtype=np.intp)
 
     def rigid_modes(self, dofs: Indices) -> Array:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""

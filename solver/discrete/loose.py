@@ -12,31 +12,46 @@ from solver.laws import Contact
 
 
 def is_loose(problem: Problem) -> bool:
-    """Check whether bodies can move though all contacts are closed and stick.
+    """Check whether bodies can move though all contacts are closed and stick."""
+    return len(loose_bodies(problem)) > 0
 
-    False along rods, and beside a user's law, which may hold what it likes.
+
+def loose_bodies(problem: Problem) -> Indices:
+    """Numbers of the bodies that can move though all contacts are closed and stick.
+
+    Shape (n,); empty along rods, and beside a user's law, which may hold what it likes.
     """
     if problem.inside is None or problem.own_laws:
-        return False
-    bodies = problem.inside.body_of_dofs
-    ground = int(bodies.max()) + 1
-    joined = [np.zeros((2, 0), dtype=np.intp)]
+        return np.zeros(0, dtype=np.intp)
+    tied = [np.zeros((2, 0), dtype=np.intp)]
     jumps = list[tuple[Indices, Indices]]()
-    with_ground = np.append(bodies, ground)
     for law in problem.rubbing.laws.values():
         # Two points in contact leave no motion of one body beside the other.
         is_wide = (law.sizes > 1)[law.interface_of_pairs] & law.opens
         for above, below in _pairs_that_hold(problem, law):
-            joined.append(with_ground[np.stack([above[is_wide], below[is_wide]])])
+            tied.append(np.stack([above[is_wide], below[is_wide]]))
             jumps.append((above[~is_wide], below[~is_wide]))
-    first, second = np.concatenate(joined, axis=1)
+    bodies = problem.inside.body_of_dofs
+    groups = _groups(bodies, np.concatenate(tied, axis=1))
+    fixed, _ = problem.prescribed
+    free = problem.inside.free_groups(groups, fixed, jumps)
+    return np.unique(bodies[np.isin(groups, free)])
+
+
+def _groups(bodies: Indices, tied: Indices) -> Indices:
+    """Group of tied bodies of every degree of freedom, (n_dofs,); -1 with the ground.
+
+    `bodies` are those of the degrees of freedom, (n_dofs,), `tied` pairs of degrees of
+    freedom, (2, n_pairs), in which -1 is the ground.
+    """
+    ground = int(bodies.max()) + 1
+    first, second = np.append(bodies, ground)[tied]
     size = ground + 1
     links = sparse.coo_array((np.ones(len(first)), (first, second)), (size, size))
     _, groups = connected_components(links, directed=False)
     group_of_dofs = groups[bodies]
     group_of_dofs[group_of_dofs == groups[ground]] = -1
-    fixed, _ = problem.prescribed
-    return not problem.inside.hold_still(group_of_dofs, fixed, jumps)
+    return np.asarray(group_of_dofs)
 
 
 def _pairs_that_hold(problem: Problem, law: Contact) -> list[tuple[Indices, Indices]]:

@@ -33,7 +33,7 @@ class LoopFields(Protocol):
 
     @property
     def displacement(self) -> Array:
-        """Displacement of the problem's degrees of freedom, m."""
+        """Displacement of all degrees of freedom, (n_dofs, n_instants), m."""
 
     def contact(self, name: str) -> ContactFields:
         """Fields of one interface with friction."""

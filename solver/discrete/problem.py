@@ -10,6 +10,7 @@ time.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -20,13 +21,18 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.checks import (
-    ALIKE,
     INSTANTS,
     Each,
     Named,
     Numbers,
     Part,
     check,
+)
+from solver.discrete.consistency import (
+    check_cover,
+    check_instants,
+    check_names,
+    check_prescribed,
 )
 from solver.discrete.contacts import Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_contacts
@@ -35,9 +41,9 @@ from solver.discrete.inside import Inside
 from solver.discrete.no_reference import Numbering, reason_against_reference
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
+from solver.kept import KEPT, content_of
 from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
-from solver.refusal import RefusedError, Words
 
 
 @dataclass(frozen=True)
@@ -106,59 +112,18 @@ class Problem:
         dofs = [part.dofs for part in self.substructures]
         rows = [part.rows for part in self.substructures]
         rows_of_laws = [law.rows for law in self.interfaces.values()]
-        _check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
-        _check_cover("substructures", "row", self.n_rows, rows, once=True)
-        _check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
-        self._check_names()
-        self._check_instants()
-        self._check_prescribed()
+        check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
+        check_cover("substructures", "row", self.n_rows, rows, once=True)
+        check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
+        check_names(self.rubbing)
+        check_instants(self.n_instants, self.interfaces, self.substructures)
+        check_prescribed(self.given_displacements, self.row_dofs)
 
-    def _check_names(self) -> None:
-        """Refuse names that interfaces share, and an order without some of them."""
-        names = self.rubbing.names_of_laws
-        if len(set(names)) < len(names) or sorted(self.rubbing.names) != sorted(names):
-            raise RefusedError(
-                "Problem.order",
-                Words(f"of {len(self.rubbing.names)} names"),
-                f"all {len(names)} interfaces with friction once",
-                "give each a name of its own, and all of them a place",
-            )
-
-    def _check_instants(self) -> None:
-        """Refuse laws and body forces with values for another number of instants."""
-        counts = {
-            f"interfaces[{name!r}]": law.n_instants
-            for name, law in self.interfaces.items()
-        }
-        for number, part in enumerate(self.substructures):
-            if part.body_force is not None:
-                counts[f"substructures[{number}].body_force"] = part.body_force.shape[1]
-        for name, count in counts.items():
-            if count not in (None, self.n_instants):
-                allowed = f"as many as Problem.instants has, {self.n_instants}"
-                shown = Words(f"of {count} instants")
-                raise RefusedError(
-                    f"Problem.{name}", shown, allowed, "give one value an instant"
-                )
-
-    def _check_prescribed(self) -> None:
-        """Refuse displacements that differ at one degree of freedom."""
-        given = self.given_displacements
-        if len(given) < 2:
-            return
-        dofs = np.concatenate([self.row_dofs[each.rows] for each in given])
-        values = np.concatenate([each.values for each in given])
-        _, first, inverse = np.unique(dofs, return_index=True, return_inverse=True)
-        differences = np.abs(values - values[first][inverse])
-        largest = float(np.abs(values).max(initial=0.0))
-        if float(differences.max(initial=0.0)) > ALIKE * largest:
-            number = int(differences.max(axis=1).argmax())
-            raise RefusedError(
-                "Problem.interfaces",
-                Words(f"two displacements of degree of freedom {dofs[number]}"),
-                "one displacement of each",
-                "prescribe it once, or both alike",
-            )
+    def driven_by(self, drives: tuple[Drive, ...]) -> Problem:
+        """The same problem with drives; what was checked and found stays."""
+        driven = copy(self)
+        object.__setattr__(driven, "drives", drives)
+        return driven
 
     def absolute(self, displacement: Array) -> Array:
         """Absolute displacements: relative ones plus the motion of the support.
@@ -398,14 +363,13 @@ class Problem:
     @cached_property
     def is_chain(self) -> bool:
         """Check whether the stiffness is tridiagonal in the degrees of freedom."""
-        operators = {
-            id(part.elasticity): part.elasticity for part in self.substructures
-        }
-        for operator in operators.values():
-            rows, columns = sparse.coo_array(operator.stiffness).coords
-            if np.abs(rows - columns).max(initial=0) > 1:
-                return False
-        return all(np.all(np.diff(part.dofs) == 1) for part in self.substructures)
+        if not all(part.elasticity.is_tridiagonal for part in self.substructures):
+            return False
+        dofs = [part.dofs for part in self.substructures]
+        steps = np.diff(np.concatenate(dofs))
+        # From one substructure to the next any step will do.
+        steps[np.cumsum([len(of_part) for of_part in dofs])[:-1] - 1] = 1
+        return bool(np.all(steps == 1))
 
     @cached_property
     def motions(self) -> Array | None:
@@ -413,9 +377,35 @@ class Problem:
 
         None without such motions, and along rods, where they cost no digits.
         """
-        if self.inside is None:
+        inside = self.inside
+        if inside is None:
             return None
-        return self.inside.rigid_motions(self.prescribed[0])
+        fixed = self.prescribed[0]
+        key = "motions", self.place_of_bodies, content_of(fixed)
+        return KEPT.of(key, lambda: inside.rigid_motions(fixed))
+
+    @cached_property
+    def content_of_stiffness(self) -> bytes:
+        """Digest of the parts of which the stiffness of the structure is assembled."""
+        operators = {
+            id(part.elasticity): part.elasticity for part in self.substructures
+        }
+        numbers = {identity: number for number, identity in enumerate(operators)}
+        of_parts = [numbers[id(part.elasticity)] for part in self.substructures]
+        matrices = [operator.stiffness for operator in operators.values()]
+        dofs = [part.dofs for part in self.substructures]
+        return content_of(*matrices, np.array(of_parts), *dofs)
+
+    @cached_property
+    def place_of_bodies(self) -> bytes:
+        """Digest of where the degrees of freedom of each body are; b"" of rods."""
+        inside = self.inside
+        if inside is None:
+            return b""
+        # Turns of beams are not over the unit of length as positions are.
+        unit = np.array([self.scales.displacement])
+        bodies = inside.body_of_dofs
+        return content_of(inside.positions, inside.directions, bodies, unit)
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
@@ -447,34 +437,6 @@ class Problem:
                 held[name] = np.setdiff1d(dofs, before)
                 before = np.concatenate([before, held[name]])
         return held
-
-
-def _check_cover(
-    owners: str, what: str, count: int, parts: list[Indices], *, once: bool = False
-) -> None:
-    """Refuse parts that do not have all numbers from 0 to `count` - 1.
-
-    With `once`, refuse numbers that occur more than once, too.
-    """
-    numbers = np.concatenate([np.zeros(0, dtype=np.intp), *parts])
-    largest = int(numbers.max(initial=-1))
-    times = np.bincount(numbers, minlength=count)
-    if once:
-        wrong = times != 1
-    else:
-        wrong = times == 0
-    if largest < count and not wrong.any():
-        return
-    if largest >= count:
-        number = largest
-    else:
-        number = int(np.argmax(wrong))
-    how_often = "at least once"
-    if once:
-        how_often = "once"
-    allowed = f"each {what} from 0 to {count - 1} {how_often}"
-    shown = Words(f"{what} {number}, {times[number]} times")
-    raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")
 
 
 def nothing_acts(problem: Problem) -> bool:

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from solver.files.columns import TableColumn, quantities_of, unit_doubt
+from solver.files.columns import TableColumn, quantities_of
 from solver.files.disk import read_bytes
 from solver.files.tables import Table, read_table
+from solver.files.units import unit_doubt
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import CurveParameter, SettingError, allowed
 from solver.settings.scene import Settings

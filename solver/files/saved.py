@@ -54,9 +54,9 @@ FORMAT = 2
 them the slip of a fault is that of one of its sides."""
 
 
-def settings_from_toml(text: str, source: str = "settings file") -> Settings:
+def settings_from_toml(text: str) -> Settings:
     """Settings of a saved file in TOML, as `read_settings`."""
-    return read_settings(text, source)[0]
+    return read_settings(text, "settings file")[0]
 
 
 def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:

@@ -68,11 +68,12 @@ from functools import partial
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices, read_only
-from solver.files.columns import TableColumn, examples_of, size_in
+from solver.files.columns import TableColumn
 from solver.files.disk import LARGEST, TOO_LARGE, Refuse
 from solver.files.numerals import SIGNS, decimal_signs, is_gap, number
 from solver.files.table_blocks import Block, block_of, fitted, headed
 from solver.files.table_lines import Line, lines_of_text
+from solver.files.units import examples_of, size_in
 from solver.files.workbooks import is_archive, lines_of_workbook
 from solver.settings.definitions import SettingError
 

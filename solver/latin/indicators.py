@@ -30,31 +30,31 @@ class Stages(Protocol):
 
     @property
     def outgoing(self) -> Array:
-        """W + F/k of the linear stage."""
+        """W + F/k of the linear stage, (n_rows, n_instants)."""
 
     @property
     def incoming(self) -> Array:
-        """W - F/k of the linear stage."""
+        """W - F/k of the linear stage, (n_rows, n_instants)."""
 
     @property
     def local_displacement(self) -> Array:
-        """W^ of the local stage."""
+        """W^ of the local stage, (n_rows, n_instants)."""
 
     @property
     def local_incoming(self) -> Array:
-        """W^ - F^/k of the local stage."""
+        """W^ - F^/k of the local stage, (n_rows, n_instants)."""
 
     @property
     def boundary_displacement(self) -> Array:
-        """W of the linear stage."""
+        """W of the linear stage, (n_rows, n_instants)."""
 
     @property
     def boundary_force(self) -> Array:
-        """F of the linear stage."""
+        """F of the linear stage, (n_rows, n_instants)."""
 
     @property
     def boundary_local_force(self) -> Array:
-        """F^ of the local stage."""
+        """F^ of the local stage, (n_rows, n_instants)."""
 
 
 def latin_indicator(iterate: Stages) -> float:

@@ -302,26 +302,33 @@ class Contact(Pairs):
         # The same basis on both sides, whose macro forces add up to zero.
         basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
         numbers, columns = basis.coords
-        # Of every interface the columns of one component follow those of the other.
+        n_rows, n_columns = basis.shape
+        n_components = len(self.components)
+        rows = [np.concatenate(component.sides) for component in self.components]
+        places = [number * n_rows + numbers for number in range(n_components)]
+        entries = (
+            np.tile(basis.data, n_components),
+            (np.concatenate(places), self._macro_columns(columns)),
+        )
+        shape = (n_components * n_rows, n_components * n_columns)
+        yield MacroPart(np.concatenate(rows), sparse.coo_array(entries, shape=shape))
+
+    def _macro_columns(self, columns: Indices) -> Indices:
+        """Columns of the macro basis of all components, from those of one, (n,).
+
+        One component behind the other, (n_components n,). In the basis, of every
+        interface the columns of one component follow those of the other.
+        """
         owners = self._interface_of_macro
         counts = np.bincount(owners, minlength=len(self.sizes))
         firsts = np.cumsum(counts) - counts
-        n_components = len(self.components)
-        within = columns - firsts[owners[columns]]
-        begins = n_components * firsts[owners[columns]] + within
-        rows = []
-        places = []
-        for number, component in enumerate(self.components):
-            rows.append(np.concatenate(component.sides))
-            places.append(begins + number * counts[owners[columns]])
-        n_rows = len(rows[0])
-        all_numbers = [number * n_rows + numbers for number in range(n_components)]
-        entries = (
-            np.tile(basis.data, n_components),
-            (np.concatenate(all_numbers), np.concatenate(places)),
-        )
-        shape = (n_components * n_rows, n_components * basis.shape[1])
-        yield MacroPart(np.concatenate(rows), sparse.coo_array(entries, shape=shape))
+        before = firsts[owners[columns]]
+        begins = len(self.components) * before + columns - before
+        step = counts[owners[columns]]
+        of_components = [
+            begins + number * step for number in range(len(self.components))
+        ]
+        return np.concatenate(of_components)
 
     def gaps(self, displacement: Array, force: Array, noise: float, k: Array) -> Gaps:
         """Violation of the balance of both sides' forces, as `Interface.gaps`.

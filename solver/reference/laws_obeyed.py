@@ -104,11 +104,8 @@ def law_residuals(
     _check_known(problem)
     displacement = answer.displacement / problem.scales.displacement
     force = answer.contact_force / problem.scales.force
-    outer = _outer_force(problem)
-    inner, elastic = _inner_force(problem, displacement)
     held, prescribed = _prescribed(problem)
-    missing = inner - outer - _contact_force(problem, force)
-    size = force_size(force, outer, elastic, missing[held], HIDDEN)
+    missing, size = _missing_force(problem, displacement, force, held)
     interfaces = _interface_fields(problem, displacement, force)
     length = ROUNDED * largest_size(displacement)
     length = max([length] + [each.largest_jump for each in interfaces])
@@ -127,6 +124,20 @@ def law_residuals(
         pressing=largest_size(*across),
         friction=largest_size(*along),
     )
+
+
+def _missing_force(
+    problem: Problem, displacement: Array, force: Array, held: Indices
+) -> tuple[Array, float]:
+    """Force that balance lacks, (n_dofs, n_instants), and the size of forces, scaled.
+
+    `displacement` has shape (n_dofs, n_instants), `force` (n_forces, n_instants); at
+    the degrees of freedom `held`, (n_held,), the support gives what is lacking.
+    """
+    outer = _outer_force(problem)
+    inner, elastic = _inner_force(problem, displacement)
+    missing = inner - outer - _contact_force(problem, force)
+    return missing, force_size(force, outer, elastic, missing[held], HIDDEN)
 
 
 def _check_known(problem: Problem) -> None:

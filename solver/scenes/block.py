@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
-from typing import Any, Literal, NamedTuple
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
-import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.drives import Drive, loads_at
 from solver.discrete.plane.rigid_stack import loss_of_equilibrium
-from solver.discrete.plane.sides import Given, Side, Spring, Support
+from solver.discrete.plane.sides import Spring, Support
 from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
 from solver.scenes.exact import exact_on_spring, exact_parabola
-from solver.scenes.plane import RectangleSettings
+from solver.scenes.side_loads import LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.settings.definitions import (
     BODY,
     CONTACT,
-    CurveParameter,
     Rows,
     SettingGroup,
     TablePreset,
@@ -37,218 +35,6 @@ from solver.settings.profiles import UNSEEN, gap_at, off_nodes
 from solver.settings.scene import Icon
 
 BODY_FORCE = SettingGroup("Body force")
-LOADED_SIDES = ("left", "right", "top")
-
-
-class Prescribed(NamedTuple):
-    """Components of the displacement of a side that are prescribed.
-
-    Of the others the traction is given.
-    """
-
-    normal: bool
-    tangential: bool
-
-
-PRESCRIBED: dict[str, Prescribed] = {
-    "free": Prescribed(normal=False, tangential=False),
-    "roller": Prescribed(normal=True, tangential=False),
-    "clamped": Prescribed(normal=True, tangential=True),
-    "displacement": Prescribed(normal=True, tangential=True),
-    "traction": Prescribed(normal=False, tangential=False),
-    "pushed": Prescribed(normal=True, tangential=False),
-    "dragged": Prescribed(normal=False, tangential=True),
-}
-"""Prescribed components by the kinds of a side."""
-AT_REST = ("free", "roller", "clamped")
-"""Kinds of a side of which all that is given is zero."""
-
-
-def _kind_of(side: str) -> param.Selector[str]:
-    """Define the kind of a side: which of its components are prescribed."""
-    group = SettingGroup(side.capitalize())
-    return group.choice(
-        "free",
-        PRESCRIBED,
-        "What is given. free: nothing. roller: no normal displacement. clamped: no "
-        "displacement. displacement: both displacements. traction: both tractions. "
-        "pushed: normal displacement, tangential traction. dragged: tangential "
-        "displacement, normal traction.",
-        title=f"{side.capitalize()} side",
-    )
-
-
-@dataclass(frozen=True)
-class SideLoad:
-    """Definitions of the settings of one component of the load of a side.
-
-    The component is a traction or a displacement, as the kind of the side says. It has
-    a mean along the side, a slope along the side, and a path over time.
-    """
-
-    side: str
-    component: Literal["normal", "tangential"]
-
-    def traction(self) -> param.Number[float]:
-        """Define the mean of a traction."""
-        return self._mean(
-            "traction",
-            "Pa",
-            bounds=(-1e15, 1e15),
-            slider=(-2e8, 2e8),
-            applies=lambda settings: (
-                self._is_given(settings) and not self._is_prescribed(settings)
-            ),
-        )
-
-    def displacement(self) -> param.Number[float]:
-        """Define the mean of a displacement."""
-        return self._mean(
-            "displacement",
-            "m",
-            bounds=(-1e12, 1e12),
-            slider=(-1e-4, 1e-4),
-            applies=lambda settings: (
-                self._is_given(settings) and self._is_prescribed(settings)
-            ),
-        )
-
-    def slope(self) -> param.Number[float]:
-        """Define the share by which the value changes from the middle to an end."""
-        return self._group.quantity(
-            0.0,
-            (-1e6, 1e6),
-            (-1.0, 1.0),
-            "How unevenly the value is spread along the side: from the mean times 1 - "
-            "slope at its lower or left end to the mean times 1 + slope at the other, "
-            "and linear between.",
-            applies=self._is_given,
-        )
-
-    def path(self) -> CurveParameter:
-        """Define the path over time, of a traction as of a displacement."""
-        return self._group.curve(
-            "hold" if self.component == "normal" else "delayed",
-            PRESETS,
-            {"time": "s", "value": "Pa or m"},
-            f"{self._title} value over time: a preset that reaches the mean, or points "
-            "(s, Pa or m).",
-            title=f"{self._title} path",
-            applies=self._is_given,
-        )
-
-    def _mean(
-        self,
-        quantity: str,
-        unit: str,
-        *,
-        bounds: tuple[float, float],
-        slider: tuple[float, float],
-        applies: Callable[[Any], bool],
-    ) -> param.Number[float]:
-        """Define the mean of a quantity along the side."""
-        towards = "outward"
-        if self.component == "tangential":
-            towards = f"along {self._axis}"
-        return self._group.quantity(
-            0.0,
-            bounds,
-            slider,
-            f"Mean {self.component} {quantity} of the {self.side} side, positive "
-            f"{towards}.",
-            unit=unit,
-            applies=applies,
-            path=f"{self.side}_{self.component}_load",
-            places=(f"{self.side} {self._axis}",),
-        )
-
-    @property
-    def _group(self) -> SettingGroup:
-        """Heading of the side."""
-        return SettingGroup(self.side.capitalize())
-
-    @property
-    def _title(self) -> str:
-        """Words on the component."""
-        return f"{self._group.name} {self.component}"
-
-    @property
-    def _axis(self) -> str:
-        """Axis of the component: the top side runs along x, the others along y."""
-        is_along_x = (self.side == "top") == (self.component == "tangential")
-        return "x" if is_along_x else "y"
-
-    def _is_given(self, settings: Any) -> bool:
-        """Return whether anything but rest is given along the side."""
-        return getattr(settings, self.side) not in AT_REST
-
-    def _is_prescribed(self, settings: Any) -> bool:
-        """Return whether the component is a displacement."""
-        kind = getattr(settings, self.side)
-        return bool(getattr(PRESCRIBED[kind], self.component))
-
-
-LEFT_NORMAL = SideLoad("left", "normal")
-LEFT_TANGENTIAL = SideLoad("left", "tangential")
-RIGHT_NORMAL = SideLoad("right", "normal")
-RIGHT_TANGENTIAL = SideLoad("right", "tangential")
-TOP_NORMAL = SideLoad("top", "normal")
-TOP_TANGENTIAL = SideLoad("top", "tangential")
-
-
-class SideSettings(RectangleSettings):
-    """Settings of a rectangle whose left, right and top side can be held or loaded."""
-
-    left = _kind_of("left")
-    left_normal_traction = LEFT_NORMAL.traction()
-    left_normal_displacement = LEFT_NORMAL.displacement()
-    left_normal_slope = LEFT_NORMAL.slope()
-    left_normal_load = LEFT_NORMAL.path()
-    left_tangential_traction = LEFT_TANGENTIAL.traction()
-    left_tangential_displacement = LEFT_TANGENTIAL.displacement()
-    left_tangential_slope = LEFT_TANGENTIAL.slope()
-    left_tangential_load = LEFT_TANGENTIAL.path()
-
-    right = _kind_of("right")
-    right_normal_traction = RIGHT_NORMAL.traction()
-    right_normal_displacement = RIGHT_NORMAL.displacement()
-    right_normal_slope = RIGHT_NORMAL.slope()
-    right_normal_load = RIGHT_NORMAL.path()
-    right_tangential_traction = RIGHT_TANGENTIAL.traction()
-    right_tangential_displacement = RIGHT_TANGENTIAL.displacement()
-    right_tangential_slope = RIGHT_TANGENTIAL.slope()
-    right_tangential_load = RIGHT_TANGENTIAL.path()
-
-    top = _kind_of("top")
-    top_normal_traction = TOP_NORMAL.traction()
-    top_normal_displacement = TOP_NORMAL.displacement()
-    top_normal_slope = TOP_NORMAL.slope()
-    top_normal_load = TOP_NORMAL.path()
-    top_tangential_traction = TOP_TANGENTIAL.traction()
-    top_tangential_displacement = TOP_TANGENTIAL.displacement()
-    top_tangential_slope = TOP_TANGENTIAL.slope()
-    top_tangential_load = TOP_TANGENTIAL.path()
-
-    def side(self, side: str) -> Side:
-        """Load of a side: its components along x and y."""
-        normal = self._given(side, "normal")
-        tangential = self._given(side, "tangential")
-        if side == "top":
-            return Side(tangential, normal)
-        return Side(normal, tangential)
-
-    def _given(self, side: str, component: str) -> Given:
-        """Displacement or traction of a side over time."""
-        kind = getattr(self, side)
-        prescribed: bool = getattr(PRESCRIBED[kind], component)
-        if kind in AT_REST:
-            rest = np.zeros(self.n_instants)
-            return Given(prescribed, rest, rest)
-        # On the left side outward is the negative x direction.
-        sign = -1.0 if side == "left" and component == "normal" else 1.0
-        mean = sign * self.path(f"{side}_{component}_load")
-        slope = mean * getattr(self, f"{side}_{component}_slope")
-        return Given(prescribed, mean, slope)
 
 
 def _gap_points(settings: BlockSettings) -> Rows:
@@ -393,7 +179,7 @@ class BlockSettings(SideSettings):
     def check_together(self) -> None:
         """Refuse loads under which contact alone cannot hold the body."""
         super().check_together()
-        loss = loss_of_equilibrium(self.structure())
+        loss = loss_of_equilibrium(self.bodies)
         if loss is not None:
             time, reason = loss
             loads = loads_at(self.drives(), int(np.searchsorted(self.times(), time)))
@@ -408,8 +194,9 @@ class BlockSettings(SideSettings):
                 "body where it tips, or hold a side",
             )
 
-    def structure(self) -> Stack:
-        """Make the block; one metre thick."""
+    @cached_property
+    def bodies(self) -> Stack:
+        """The block; one metre thick."""
         sides = {side: self.side(side) for side in LOADED_SIDES}
         if isinstance(self.gap, str):
             gap = self.gap_at(self.places)
@@ -433,26 +220,11 @@ class BlockSettings(SideSettings):
             block = "A steel block"
         support = {"flat": "flat", "parabola": "round"}.get(str(self.gap), "uneven")
         rough = "rough" if self.is_rough else "smooth"
-        clauses = [*self._side_clauses(), *self._other_clauses()]
+        clauses = [*self.side_clauses(), *self._other_clauses()]
         done = "left alone"
         if clauses:
             done = shared.listed(clauses)
         return f"{block} lies on a {support} {rough} support; it is {done}."
-
-    def _side_clauses(self) -> Iterator[str]:
-        """Yield clauses on the loads and motions of the sides."""
-        for side in LOADED_SIDES:
-            if getattr(self, side) in AT_REST:
-                continue
-            actions = []
-            inward = -self.path(f"{side}_normal_load")
-            if inward.any():
-                actions.append(shared.acting(inward, "pressed", "pulled"))
-            along = self.path(f"{side}_tangential_load")
-            if along.any():
-                actions.append(shared.acting(along, "moved", "moved back"))
-            if actions:
-                yield f"{shared.listed(actions)} at its {side}"
 
     def _other_clauses(self) -> Iterator[str]:
         """Yield clauses on the body force, the spring and clamped sides."""
@@ -468,7 +240,7 @@ class BlockSettings(SideSettings):
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
         """Tractions on a parabola, by a solution's forces, or the slide on a spring."""
-        body = self.structure()
+        body = self.bodies
         if self.gap != "parabola":
             return exact_on_spring(body)
         if solution is None:

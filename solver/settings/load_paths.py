@@ -136,6 +136,11 @@ def _sine(phase: Array) -> Array:
     return np.where(np.abs(wave) < NO_LOAD, 0.0, wave)
 
 
+def _sine_squared(phase: Array) -> Array:
+    """Sine squared, of two waves in a period of 1, of the shape of the phases."""
+    return _sine(phase) ** 2
+
+
 QUARTERS = 0.0, 1.0, 0.0, -1.0, 0.0
 PRESETS: dict[str, Preset] = {
     "ramp": _lines(
@@ -202,7 +207,7 @@ PULLS: dict[str, Preset] = {
         "two waves of a sine squared, from 0 to the value and back",
         *QUARTERS,
         repeats=0.0,
-        wave=lambda phase: _sine(phase) ** 2,
+        wave=_sine_squared,
     ),
     "decaying": _lines(
         "goes up and down, to 1, 0.075, 0.85, 0.225, 0.7, 0.375 and 0.55 times the "
@@ -221,7 +226,7 @@ PULLS: dict[str, Preset] = {
         *QUARTERS,
         begins=HELD,
         repeats=HELD,
-        wave=lambda phase: _sine(phase) ** 2,
+        wave=_sine_squared,
     ),
     "cycles": _lines(
         "0 for the first quarter of the interval, then six times to the value and back "

@@ -30,8 +30,9 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop
-from solver.files.columns import KINDS, TableColumn, unit_doubt
+from solver.files.columns import KINDS, TableColumn
 from solver.files.tables import Table
+from solver.files.units import unit_doubt
 from solver.settings.definitions import SettingError
 from solver.study.comparison import FEWEST, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import chain
 from types import SimpleNamespace
@@ -12,6 +13,7 @@ import panel as pn
 import pytest
 
 from app.frame import Frame, Selection
+from app.lessons.cases import formula_of
 from app.lessons.catalogue import (
     CASES,
     KINDS,
@@ -166,16 +168,19 @@ def test_a_case_opens_at_the_instant_of_its_number(case: Case) -> None:
     assert case.flag is None or case.flag.plot in KINDS
 
 
-def test_a_pile_stands_upright_in_its_soil_and_its_force_is_dragged_there() -> None:
-    case = CASES["pile"]
-    frame = sampled(case)
-    settings = frame.run.settings
-    state = PageState(settings, frame=frame, case="pile")
-    view = Scene(state)
-    _ = view.figure
+def pile() -> Scene:
+    """The picture of the pile, higher than wide."""
+    frame = sampled(CASES["pile"])
+    view = Scene(PageState(frame.run.settings, frame=frame, case="pile"))
     view.figure.trigger("inner_width", 950.0, 260.0)
     view.figure.trigger("inner_height", 190.0, 420.0)
     view.update(frame, Selection(1.0), None)
+    return view
+
+
+def test_a_pile_stands_upright_in_its_soil() -> None:
+    view = pile()
+    frame = view.state.frame
     picture = view.picture
     assert picture is not None
     x, y = picture.page(picture.nodes).T
@@ -188,12 +193,19 @@ def test_a_pile_stands_upright_in_its_soil_and_its_force_is_dragged_there() -> N
         across = np.concatenate([np.ravel(line) for line in data["xs"]])
         assert np.nanmin(across) > 0.0
         assert np.nanmax(across) < 260.0
+
+
+def test_the_force_of_a_pile_is_dragged_where_it_stands_upright() -> None:
+    view = pile()
+    picture = view.picture
+    assert picture is not None
+    pressure = view.state.settings.pressure
     arrows = next(each for each in picture.draggable if each.setting == "pressure")
     start = picture.page(arrows.handle)
     half = picture.page(0.5 * (arrows.base[0] + arrows.handles[0]))
     view._hold(SimpleNamespace(x=start[0], y=start[1]))
     view._drag(SimpleNamespace(x=half[0], y=half[1]))
-    assert state.settings.pressure == pytest.approx(0.5 * settings.pressure, rel=1e-2)
+    assert view.state.settings.pressure == pytest.approx(0.5 * pressure, rel=1e-2)
 
 
 @each
@@ -210,3 +222,23 @@ def test_a_changed_case_says_what_it_has_now() -> None:
     held = case.settings.replace(left_end="held")
     sentence = case.sentence_on(held.sentence())
     assert sentence.endswith("Now: free at its right end and held at its left end.")
+
+
+@each
+def test_the_formula_of_a_case_is_typeset_and_says_what_is_written(case: Case) -> None:
+    state = PageState(case.settings, case=case.name)
+    (pane,) = panel_of(state).view.select(pn.pane.LaTeX)
+    assert pane.renderer == "katex"
+    typeset = pane.object.replace(r"\displaystyle", "").strip("$ ")
+    assert typeset.count("{") == typeset.count("}")
+    # Each number and each Latin letter of the formula stands in both.
+    written = re.sub(
+        r"\b(sqrt|min|cos|cosh|sin|tanh|ln|the|largest|over)\b", "", case.formula
+    )
+    for sign in set(re.findall(r"[A-Za-z]|[\d.]+", written)):
+        assert sign in typeset
+
+
+def test_a_case_without_a_typeset_formula_has_it_as_it_is_written() -> None:
+    case = replace(CASES[NAME], typeset="")
+    assert formula_of(case).object == case.formula

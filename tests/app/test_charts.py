@@ -1,6 +1,4 @@
-"""Charts are drawn of plain data,
-in units that are read, and stand in pages by themselves.
-"""
+"""Charts drawn of plain data, in units that are read, in pages of their own."""
 
 from __future__ import annotations
 

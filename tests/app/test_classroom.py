@@ -15,10 +15,12 @@ import pytest
 from panel.io.state import set_curdoc
 
 from app import classroom
-from app.classroom import ClassDialog, ClassMember, begin_with_class, find
+from app.class_dialog import ClassDialog
+from app.classroom import ClassMember, begin_with_class, find
 from app.frame import Frame
+from app.history import History
 from app.messages import Needs, Order, Ready, Start
-from app.state import History, PageState, default_settings
+from app.state import PageState, default_settings
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
 from solver.study.quantities.finished import finished_run
@@ -28,9 +30,7 @@ Callback = Callable[[], Any]
 
 
 class Document:
-    """A document whose next tick comes when it is called for,
-    in the context that asked for it.
-    """
+    """A document whose next tick comes in the context that asked, when called."""
 
     def __init__(self) -> None:
         self.due: list[Callback] = []

@@ -39,9 +39,7 @@ async def until(condition: Any) -> None:
 
 
 async def open_and_close(address: str) -> None:
-    """Open three pages one after the other,
-    each until it has a picture, and close them.
-    """
+    """Open three pages, each until it has a picture, and close them."""
     visitors = []
     tasks = []
     for query in QUERIES:

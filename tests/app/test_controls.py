@@ -1,6 +1,4 @@
-"""The controls at the side show every setting,
-and refuse at the control what does not hold.
-"""
+"""The controls at the side show every setting, and refuse what does not hold."""
 
 from __future__ import annotations
 
@@ -331,6 +329,7 @@ def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:
     assert "much" in said
     # The button does not say what became of the file.
     assert opener.file.uploaded_label == "Open"
+    assert "empty.csv was refused" in open_file("empty.csv", "")
     assert "bad.csv" not in open_file("load.csv", "time,force\n0,0\n1,800\n")
     assert state.refusal == ""
     assert opener.columns_button.visible

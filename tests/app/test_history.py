@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +15,9 @@ import pytest
 import app.browser
 from app.browser import Display
 from app.frame import Frame
+from app.history import History
 from app.messages import Earlier, Needs, NewFrame, Ready, Show, Start, Step
-from app.state import History, PageState, default_settings
+from app.state import PageState, default_settings
 from app.status import status_line
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -139,14 +141,20 @@ def test_after_the_local_stage_the_bodies_stand_where_the_iteration_before_put_t
     assert state.before_linear(replace(before, run=nested)).deformed is moved
 
 
-def test_a_picture_whose_answer_got_lost_is_asked_for_again(
-    answer: Frame, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    state = PageState(answer.run.settings)
+def displayed(frame: Frame, **values: Any) -> tuple[PageState, Display, list[object]]:
+    """State of a page that shows a frame, its display, and the orders it sends."""
+    state = PageState(frame.run.settings, **values)
     orders: list[object] = []
     state.send = orders.append
     display = Display(state, None, lambda: None)
-    state.frame = answer
+    state.frame = frame
+    return state, display, orders
+
+
+def test_a_picture_whose_answer_got_lost_is_asked_for_again(
+    answer: Frame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, display, orders = displayed(answer)
     sent = display.pulse.sent
     display.catch_up()
     assert display.pulse.sent == sent
@@ -180,11 +188,7 @@ def test_of_many_pages_each_leaves_the_others_time(
 def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
     answer: Frame, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    state = PageState(answer.run.settings)
-    orders: list[object] = []
-    state.send = orders.append
-    display = Display(state, None, lambda: None)
-    state.frame = answer
+    state, display, orders = displayed(answer)
     assert orders == [Ready()]
     state.frame = replace(answer)
     assert orders == [Ready()]
@@ -199,11 +203,7 @@ def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
 def test_a_run_that_follows_a_slider_is_compared_once_its_picture_is_seen(
     answer: Frame,
 ) -> None:
-    state = PageState(answer.run.settings, is_dragged=True)
-    orders: list[object] = []
-    state.send = orders.append
-    display = Display(state, None, lambda: None)
-    state.frame = answer
+    _, display, orders = displayed(answer, is_dragged=True)
     assert orders == []
     display.pulse.painted = display.pulse.sent
     assert orders == [Ready()]

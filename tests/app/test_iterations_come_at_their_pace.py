@@ -1,6 +1,4 @@
-"""Iterations come at the pace that is chosen,
-and a search lasts as long whatever its count.
-"""
+"""Iterations come at the chosen pace; a search lasts as long whatever its count."""
 
 from __future__ import annotations
 

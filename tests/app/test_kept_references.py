@@ -1,6 +1,4 @@
-"""A reference is used again only where the problem asks for just that,
-and kept only as it pays.
-"""
+"""References are used again only where the problem asks for just them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""LATIN beside the incremental solver on the same mesh: who is first, and how LATIN
-gets there.
+"""LATIN beside the incremental solver on the same mesh: times, and LATIN's way.
 
 `python tests/benchmarks/ahead.py`, of one group `ahead.py strand`; `--large` for those
 of minutes
@@ -10,14 +9,15 @@ from __future__ import annotations
 import argparse
 import math
 import os
-import statistics
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from itertools import islice
 from multiprocessing import get_context
 from typing import Any
 
-from solver.latin import Ending, iterations, judged
+import numpy as np
+
+from solver.latin import Ending, Solution, iterations, judged
 from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
@@ -94,28 +94,42 @@ def measure(scene: str, changes: dict[str, Any]) -> list[str]:
     has_reference, own_at, known_at, known_by = _course(settings)
     solution = latin(settings)
     number = len(solution.records)
-    found_at = "-"
-    if solution.is_certified and number > 1:
-        error = solution.records[-2].estimated_error
-        found_at = f"{100.0 * error:.2g} %{' *' if error > NEAR else ''}"
+    found_at = _found_at(solution)
     del solution
-    samples = [
-        (
-            seconds_of(lambda: latin(settings)),
-            seconds_of(lambda: incremental(settings)) if has_reference else math.nan,
-            _seconds(settings, iterations, own_at),
-            _seconds(settings, judged, known_at),
+    samples = []
+    for _ in range(REPEATS):
+        seconds = math.nan
+        if has_reference:
+            seconds = seconds_of(lambda: incremental(settings))
+        samples.append(
+            [
+                seconds_of(lambda: latin(settings)),
+                seconds,
+                _seconds(settings, iterations, own_at),
+                _seconds(settings, judged, known_at),
+            ]
         )
-        for _ in range(REPEATS)
-    ]
-    mine, other, own, known = map(statistics.median, zip(*samples, strict=True))
-    assignments = [f"{name}={value:g}" for name, value in changes.items()]
+    mine, other, own, known = np.median(samples, axis=0)
     return [
-        " ".join([scene, *assignments]),
+        _titled(scene, changes),
         *(f"{mine:.2g}", f"{other:.2g}", f"{mine / other:.2g}", str(number), found_at),
         f"{own_at} in {own:.2g}" if own_at else "-",
         f"{known_at} in {known:.2g} {known_by}" if known_at else "-",
     ]
+
+
+def _titled(scene: str, changes: dict[str, Any]) -> str:
+    """Scene and its changed settings."""
+    assignments = [f"{name}={value:g}" for name, value in changes.items()]
+    return " ".join([scene, *assignments])
+
+
+def _found_at(solution: Solution) -> str:
+    """Estimated error before a certified solution was found, with * if it was far."""
+    if not solution.is_certified or len(solution.records) < 2:
+        return "-"
+    error = solution.records[-2].estimated_error
+    return f"{100.0 * error:.2g} %{' *' if error > NEAR else ''}"
 
 
 def _course(settings: Settings) -> tuple[bool, int, int, str]:
@@ -147,7 +161,7 @@ def _course(settings: Settings) -> tuple[bool, int, int, str]:
 def _seconds(
     settings: Settings, way: Callable[..., Iterator[object]], number: int
 ) -> float:
-    """Seconds of so many iterations that no status step ends; NaN of none."""
+    """Seconds of a number of iterations that no status step ends; NaN of none."""
     own = settings.replace(finish="none")
 
     def work() -> None:

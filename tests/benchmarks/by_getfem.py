@@ -96,9 +96,7 @@ def by_increments(settings: Any) -> BlockFields:
 
 
 def differences(settings: Any, python: str) -> dict[str, float]:
-    """Largest difference of the two at any node and instant,
-    over the largest of the field.
-    """
+    """Largest difference at any node and instant, over the largest of the field."""
     theirs = by_getfem(settings, python)
     ours = by_increments(settings)
     force, moved = (

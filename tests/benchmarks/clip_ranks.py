@@ -30,8 +30,7 @@ Loss = Callable[[Array], tuple[float, Array]]
 
 @dataclass(frozen=True)
 class Traction:
-    """Friction and its bound, times the roots of lengths and of weights of the
-    instants.
+    """Friction and its bound, times the roots of lengths and of weights of instants.
 
     Attributes
     ----------
@@ -82,14 +81,14 @@ class Traction:
 
 
 def product(both: Array, rank: int, points: int) -> Array:
-    """Multiply the factors, which lie one behind the other."""
+    """Product, (n_points, n_times), of factors that lie one behind the other."""
     space = both[: points * rank]
     time = both[points * rank :]
     return np.asarray(space.reshape(-1, rank) @ time.reshape(-1, rank).T)
 
 
 def fitted(field: Traction, rank: int, start: Array) -> Array:
-    """Seek an argument of a rank from the singular vectors of a start."""
+    """Argument of a rank, sought from a start, (n_points, n_times) both."""
     left, values, right = np.linalg.svd(start, full_matrices=False)
     root = np.sqrt(values[:rank])
     both = np.concatenate(
@@ -110,7 +109,7 @@ def fitted(field: Traction, rank: int, start: Array) -> Array:
 
 
 def best_products(field: Array) -> Array:
-    """Error of the best approximation of every rank from 0 on."""
+    """Error of the best approximation of every rank from 0 on, (n_ranks + 1,)."""
     squares = np.linalg.svd(field, compute_uv=False) ** 2
     left = np.append(np.cumsum(squares[::-1])[::-1], 0.0)
     return np.sqrt(left / left[0])

@@ -88,7 +88,7 @@ class AtInstants:
 
 
 def settings_of(name: str, cycles: int) -> Settings:
-    """Settings of a problem with so many cycles of a second each."""
+    """Settings of a problem with a number of cycles of a second each."""
     scene, changes, _ = PROBLEMS[name]
     path = [[0.0, 0.0]]
     for cycle in range(cycles):
@@ -114,12 +114,15 @@ def settings_of(name: str, cycles: int) -> Settings:
 
 
 def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Lines of so many cycles, and the ways that came there."""
+    """Lines of a number of cycles, and the ways that came there."""
     settings = settings_of(name, cycles)
     problem = discretise(settings)
     reference = reference_of(problem)
-    courses = {way: _course(problem, settings, way, reference) for way in ways}
-    counts = {way: course for way, course in courses.items() if course}
+    counts = {}
+    for way in ways:
+        course = _course(problem, settings, way, reference)
+        if course:
+            counts[way] = course
     seconds: dict[str, list[float]] = {"": [], **{way: [] for way in counts}}
     words = {}
     while len(seconds[""]) < REPEATS and sum(map(sum, seconds.values())) <= SHORT:
@@ -131,10 +134,8 @@ def measure(name: str, cycles: int, ways: Sequence[str]) -> tuple[list[str], lis
     medians = {way: statistics.median(own) for way, own in seconds.items()}
     lines = [f"{cycles:>6}  {'incremental solver':<18}  {medians['']:.2g} s"]
     for way in counts:
-        ratios = (
-            medians.get(other, math.nan) / medians[way] for other in ("", "LATIN")
-        )
-        ups = ", ".join(f"{ratio:.2g}" for ratio in ratios)
+        others = (medians[""], medians.get("LATIN", math.nan))
+        ups = ", ".join(f"{other / medians[way]:.2g}" for other in others)
         lines.append(
             f"{cycles:>6}  {way:<18}  {medians[way]:.2g} s, {words[way]}; S {ups}"
         )
@@ -186,7 +187,7 @@ def _course(
 def _run(
     problem: Problem, settings: Settings, way: str, counts: Sequence[int]
 ) -> tuple[float, str]:
-    """Seconds of so many iterations of every slab, and of what they consist."""
+    """Seconds of a number of iterations of every slab, and their parts."""
     local = 0.0
     iterate = None
 

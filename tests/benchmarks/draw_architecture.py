@@ -168,16 +168,58 @@ def arrows_of(boxes: list[list[Box]], graph: Graph) -> list[tuple[Box, Box]]:
     return arrows
 
 
-def drawn(boxes: list[list[Box]], arrows: list[tuple[Box, Box]]) -> str:
-    """Boxes and arrows as SVG."""
-    height = FLOOR * len(boxes) + GAP
+def places_of(boxes: list[list[Box]]) -> dict[Box, tuple[float, int]]:
+    """Upper left corner of every box, the highest floor first."""
     places = {}
     for number, floor in enumerate(reversed(boxes)):
         free = WIDTH - sum(box.width for box in floor)
-        x = gap = free / (len(floor) + 1)
+        gap = free / (len(floor) + 1)
+        x = gap
         for box in floor:
             places[box] = (x, GAP + FLOOR * number)
             x += box.width + gap
+    return places
+
+
+def drawn_arrow(places: dict[Box, tuple[float, int]], above: Box, below: Box) -> str:
+    """Arrow from the foot of a box to the head of another as SVG."""
+    x, y = places[above]
+    to_x, to_y = places[below]
+    x += 0.5 * above.width
+    to_x += 0.5 * below.width
+    y += HEIGHT
+    bend = 0.5 * (to_y - y)
+    path = f"M{x:.0f} {y}C{x:.0f} {y + bend:.0f} {to_x:.0f} {to_y - bend:.0f}"
+    return (
+        f'<path d="{path} {to_x:.0f} {to_y}" fill="none" stroke="#777" '
+        'marker-end="url(#end)"/>'
+    )
+
+
+def drawn_box(box: Box, x: float, y: int) -> list[str]:
+    """Box with its title and words as SVG."""
+    middle = x + 0.5 * box.width
+    title_y = y + 28
+    if box.words:
+        title_y = y + 20
+    lines = [
+        f'<rect x="{x:.0f}" y="{y}" width="{box.width:.0f}" height="{HEIGHT}" '
+        f'rx="6" fill="{COLORS[box.package]}" stroke="#555"/>',
+        f'<text x="{middle:.0f}" y="{title_y}" '
+        f'font-size="14">{escape(box.title)}</text>',
+    ]
+    if box.words:
+        lines.append(
+            f'<text x="{middle:.0f}" y="{y + 37}" font-size="10">'
+            f"{escape(box.words)}</text>"
+        )
+    return lines
+
+
+def drawn(boxes: list[list[Box]], arrows: list[tuple[Box, Box]]) -> str:
+    """Boxes and arrows as SVG."""
+    height = FLOOR * len(boxes) + GAP
+    places = places_of(boxes)
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" '
         'font-family="sans-serif" text-anchor="middle">',
@@ -188,30 +230,9 @@ def drawn(boxes: list[list[Box]], arrows: list[tuple[Box, Box]]) -> str:
         f'<rect width="{WIDTH}" height="{height}" fill="white"/>',
     ]
     for above, below in arrows:
-        x, y = places[above]
-        to_x, to_y = places[below]
-        x += 0.5 * above.width
-        to_x += 0.5 * below.width
-        y += HEIGHT
-        bend = 0.5 * (to_y - y)
-        path = f"M{x:.0f} {y}C{x:.0f} {y + bend:.0f} {to_x:.0f} {to_y - bend:.0f}"
-        lines.append(
-            f'<path d="{path} {to_x:.0f} {to_y}" fill="none" stroke="#777" '
-            'marker-end="url(#end)"/>'
-        )
+        lines.append(drawn_arrow(places, above, below))
     for box, (x, y) in places.items():
-        middle = x + 0.5 * box.width
-        lines += [
-            f'<rect x="{x:.0f}" y="{y}" width="{box.width:.0f}" height="{HEIGHT}" '
-            f'rx="6" fill="{COLORS[box.package]}" stroke="#555"/>',
-            f'<text x="{middle:.0f}" y="{y + (20 if box.words else 28)}" '
-            f'font-size="14">{escape(box.title)}</text>',
-        ]
-        if box.words:
-            lines.append(
-                f'<text x="{middle:.0f}" y="{y + 37}" font-size="10">'
-                f"{escape(box.words)}</text>"
-            )
+        lines += drawn_box(box, x, y)
     return "\n".join([*lines, "</svg>", ""])
 
 

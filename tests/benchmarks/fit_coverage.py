@@ -51,9 +51,7 @@ HEAD = "fitted", "loops", "known", "within", "products", "within", "runs", "s"
 
 @dataclass(frozen=True, eq=False)
 class MadeLoop:
-    """A made loop: the settings from which a fit begins,
-    and the values by name that made it.
-    """
+    """A made loop: settings from which a fit begins, and the values that made it."""
 
     start: Settings
     true: dict[str, float]
@@ -61,9 +59,7 @@ class MadeLoop:
 
 
 def loop_of(settings: Settings, noise: float, rng: np.random.Generator) -> MeasuredLoop:
-    """Loop of a run as if it were measured,
-    with noise as a share of the displacement's range.
-    """
+    """Loop of a run as measured, with noise as a share of the displacement's range."""
     run = finished_run(settings, errors=False, indicators=False)
     loop = settings.structure().loop(run.problem)
     size = noise * np.ptp(run.displacement)
@@ -114,7 +110,7 @@ def judge(found: Fit, true: dict[str, float]) -> tuple[list[bool], list[bool]]:
 
 
 def measure(names: tuple[str, ...], seeds: range) -> list[str]:
-    """Row of the table: what a fit says of so many loops."""
+    """Row of the table: results of a number of fits."""
     settings: list[bool] = []
     products: list[bool] = []
     runs = 0

@@ -1,5 +1,4 @@
-"""A block on a rough support, solved by GetFEM: a program for whichever Python has
-that.
+"""A block on a rough support, solved by GetFEM, for any Python that has it.
 
 It reads JSON and writes JSON, and imports nothing of this project. The elements are
 those of `solver.discrete.elements`, told in GetFEM's own language: bilinear, with the

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
-from reduction_cost import medians_of, samples_of
+from reduction_cost import medians_of, samples_of, step_of
 
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
@@ -69,34 +69,31 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     settings = BarSettings.checked(
         {"method": "paper", "elements": nodes - 1, "instants": instants}
     )
+    parts = _parts_of(settings)
+    number = max(3, int(2e6 / (nodes * instants)))
+    of_local, of_mono, of_multi, of_floor = medians_of(parts, repeats, number)
+    coarse = max(of_multi - of_mono, 0.0)
+    return Cost(nodes, instants, of_local, coarse, of_mono, of_floor)
+
+
+def _parts_of(settings: Settings) -> list[Callable[[], object]]:
+    """Local stage; linear stage without and with a coarse problem; the floor."""
     problem = discretise(settings)
     k = method_of(settings).direction.of(problem)
     blocks = Blocks(problem.n_rows, problem.n_instants)
     local = LocalStage(problem, k, blocks)
     multi = LinearStage(problem, k, Full(), blocks, multiscale=True)
     mono = LinearStage(problem, k, Full(), blocks, multiscale=False)
-    for stage in (multi, mono):
-        stage.go_to(None)
+    multi.go_to(None)
+    mono.go_to(None)
     incoming = space_time(problem.n_rows, problem.n_instants)
     target = local(incoming)
-
-    def linear_stage(stage: LinearStage) -> Callable[[], None]:
-        def step() -> None:
-            stage.read(target)
-            stage.advance(settings.relaxation)
-            stage.incoming()
-
-        return step
-
-    parts: list[Callable[[], object]] = [
+    return [
         lambda: local(incoming),
-        linear_stage(mono),
-        linear_stage(multi),
+        step_of(mono, target),
+        step_of(multi, target),
         _floor(problem, multi),
     ]
-    number = max(3, int(2e6 / (nodes * instants)))
-    local_s, mono_s, multi_s, floor_s = medians_of(parts, repeats, number)
-    return Cost(nodes, instants, local_s, max(multi_s - mono_s, 0.0), mono_s, floor_s)
 
 
 def _floor(problem: Problem, stage: LinearStage) -> Callable[[], None]:
@@ -183,9 +180,7 @@ class _Unproven(ErrorEstimate):
 
 
 def overhead(settings: Settings, repeats: int) -> Overhead:
-    """Measure a run up to its accuracy in three ways,
-    interleaved: bare, with iterates, judged.
-    """
+    """Measure a run up to its accuracy three ways in turns: bare, iterates, judged."""
     settings = settings.replace(finish="none")
     problem = discretise(settings)
     method = method_of(settings)

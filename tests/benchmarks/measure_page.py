@@ -115,9 +115,7 @@ def slider_to_picture(page: Page) -> list[float]:
 
 
 def key_to_picture(page: Page) -> list[float]:
-    """Milliseconds from each key on the friction's
-    slider to the picture of the run of it.
-    """
+    """Milliseconds from each key on the friction's slider to the picture of its run."""
     slider = _friction(page)
     taken = []
     for move in range(MOVES):

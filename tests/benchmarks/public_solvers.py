@@ -103,12 +103,37 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
     PeerError
         Where the solver gives up, or takes longer than `TIME_LIMIT`.
     """
-    start = time.perf_counter()
     bound = _bound_of(problem)
-    fixed, prescribed = problem.prescribed
-    free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
+    fixed, _ = problem.prescribed
     stiffness = assembled_stiffness(problem)
     force = external_force(problem)
+    displacement = _marched(public, problem, stiffness, force, bound, tolerance)
+    pull = force - stiffness @ displacement
+    # At held points the support hides from the balance what rubs there.
+    slip = np.diff(displacement[fixed], axis=1, prepend=0.0)
+    pull[fixed] = bound[fixed] * np.sign(slip)
+    return PublicFields(
+        displacement * problem.scales.displacement,
+        -pull[points_dofs(problem)] * problem.scales.force,
+    )
+
+
+def _marched(
+    public: Public,
+    problem: Problem,
+    stiffness: sparse.csr_array,
+    force: Array,
+    bound: Array,
+    tolerance: float,
+) -> Array:
+    """Displacement, (n_dofs, n_instants), scaled, instant by instant.
+
+    `force` and `bound` are the load and the friction bound of all degrees of freedom,
+    (n_dofs, n_instants), scaled.
+    """
+    start = time.perf_counter()
+    fixed, prescribed = problem.prescribed
+    free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
     unit = float(bound[free].max(initial=0.0)) or float(np.abs(force).max()) or 1.0
     largest = bound[free] / unit
     solve = public.prepare(
@@ -117,7 +142,6 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
         tolerance,
     )
     displacement = space_time(problem.n_dofs, problem.n_instants)
-    pull = space_time(problem.n_dofs, problem.n_instants)
     before = np.zeros(problem.n_dofs)
     for instant, after in enumerate(displacement.T):
         after[free] = before[free]
@@ -128,17 +152,10 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
             after[free] += solve(left - friction, left + friction) * unit
         except PeerError as trouble:
             raise PeerError(f"gave up at instant {instant + 1}: {trouble}") from None
-        pull[:, instant] = force[:, instant] - stiffness @ after
-        pull[fixed, instant] = bound[fixed, instant] * np.sign(
-            after[fixed] - before[fixed]
-        )
         before = after
         if time.perf_counter() - start > TIME_LIMIT:
             raise PeerError(f"stopped after {TIME_LIMIT:g} s, at instant {instant + 1}")
-    return PublicFields(
-        displacement * problem.scales.displacement,
-        -pull[points_dofs(problem)] * problem.scales.force,
-    )
+    return displacement
 
 
 def _bound_of(problem: Problem) -> Array:

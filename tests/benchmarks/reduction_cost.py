@@ -61,9 +61,7 @@ class ReductionCost:
 
     @property
     def pays_up_to(self) -> int:
-        """Most of the measured modes with which projecting
-        is cheaper than the full stage.
-        """
+        """Largest measured number of modes with which projecting is cheaper."""
         return max(
             (n for n, seconds in self.reduced.items() if seconds < self.full), default=0
         )
@@ -93,8 +91,7 @@ def medians_of(
 
 
 def half_plane(points: int, instants: int) -> Problem:
-    """Make a body whose boundary response is dense: the surface of an elastic half
-    plane.
+    """Make a body whose boundary response is dense: an elastic half plane.
 
     Its surface stiffness is the root of the negative second derivative (Johnson,
     Contact Mechanics, 1985, chapter 2), here with a spring to rest so that it cannot
@@ -145,35 +142,13 @@ def reduction_cost(
     repeats
         Measurements of each, whose median is taken.
     """
-    k = Paper().of(problem)
-    generator = np.random.default_rng(0)
     shape = (problem.n_rows, problem.n_instants)
-    start = Checkpoint(0, 0.0, np.asfortranarray(generator.normal(size=shape)))
-    target = np.asfortranarray(generator.normal(size=shape))
+    fields = np.random.default_rng(0).normal(size=(2, *shape))
     smallest = min(len(part.rows) for part in problem.substructures)
     sizes = [size for size in modes if size <= min(smallest - 1, problem.n_instants)]
-    blocks = Blocks(problem.n_rows, problem.n_instants)
-    whole = LinearStage(problem, k, Full(), blocks, multiscale=True)
-    loose, tight = (
-        [
-            LinearStage(
-                problem,
-                k,
-                PGD(size, tolerance, pairs=1, sharing=0.0),
-                blocks,
-                multiscale=True,
-            )
-            for size in sizes
-        ]
-        for tolerance in (1.0, TIGHT)
-    )
-    for stage in (whole, *tight):
-        stage.go_to(start)
-    # All begin from bases that are full, also where no residual is enough for another
-    # mode.
-    for stage, full_bases in zip(loose, tight, strict=True):
-        stage.go_to(replace(start, bases=full_bases.bases()))
-    steps = [_step(stage, target) for stage in (whole, *loose, *tight)]
+    start = Checkpoint(0, 0.0, np.asfortranarray(fields[0]))
+    target = np.asfortranarray(fields[1])
+    steps = [step_of(stage, target) for stage in _stages(problem, sizes, start)]
     full, *rest = medians_of(steps, repeats, max(3, int(2e6 / np.prod(shape))))
     return ReductionCost(
         operator,
@@ -183,14 +158,39 @@ def reduction_cost(
         dict(zip(sizes, rest[: len(sizes)], strict=True)),
         dict(zip(sizes, rest[len(sizes) :], strict=True)),
         int(np.prod(shape)),
-        {
-            size: sum(
-                size * (len(part.rows) + problem.n_instants)
-                for part in problem.substructures
-            )
-            for size in sizes
-        },
+        {size: size * _lengths(problem) for size in sizes},
     )
+
+
+def _stages(
+    problem: Problem, sizes: Sequence[int], start: Checkpoint
+) -> list[LinearStage]:
+    """Linear stages: in full; for each size on bases that stay; on bases that change.
+
+    All begin from bases that are full, also where no residual is enough for another
+    mode.
+    """
+    k = Paper().of(problem)
+    blocks = Blocks(problem.n_rows, problem.n_instants)
+
+    def stage_of(size: int, tolerance: float) -> LinearStage:
+        form = PGD(size, tolerance, pairs=1, sharing=0.0)
+        return LinearStage(problem, k, form, blocks, multiscale=True)
+
+    whole = LinearStage(problem, k, Full(), blocks, multiscale=True)
+    loose = [stage_of(size, 1.0) for size in sizes]
+    tight = [stage_of(size, TIGHT) for size in sizes]
+    for stage in (whole, *tight):
+        stage.go_to(start)
+    for stage, full_bases in zip(loose, tight, strict=True):
+        stage.go_to(replace(start, bases=full_bases.bases()))
+    return [whole, *loose, *tight]
+
+
+def _lengths(problem: Problem) -> int:
+    """Count of numbers of one mode of every substructure."""
+    n_instants = problem.n_instants
+    return sum(len(part.rows) + n_instants for part in problem.substructures)
 
 
 WHOLE = ((51, 101), (201, 101), (1001, 101), (1001, 1001), (4001, 401))
@@ -207,8 +207,7 @@ TIGHT = 1e-14
 def whole_iterations(
     nodes: int, instants: int, repeats: int
 ) -> dict[str, tuple[float, float]]:
-    """Measure whole iterations of the bar with 5 substructures, in full and in reduced
-    forms.
+    """Measure whole iterations of a bar of 5 substructures, in full and reduced.
 
     Returns
     -------
@@ -247,7 +246,9 @@ def whole_iterations(
     }
 
 
-def _step(stage: LinearStage, target: Array) -> Callable[[], None]:
+def step_of(stage: LinearStage, target: Array) -> Callable[[], None]:
+    """Step of a linear stage towards a target, (n_rows, n_instants), relaxed by 0.8."""
+
     def step() -> None:
         stage.read(target)
         stage.advance(0.8)

@@ -111,7 +111,8 @@ class SparseNewton:
     def _instant(
         self, instant: int, states: States, before: Array
     ) -> tuple[States, Array, Array] | None:
-        """States, displacements of what is free and forces;
+        """States, displacements of what is free, (n_free,), and forces, (n_jumps,).
+
         None where the states cycle.
         """
         rules = self._rules
@@ -137,8 +138,9 @@ class SparseNewton:
     def _solve(
         self, states: States, load: Array, held: Array, instant: int
     ) -> tuple[Array, Array]:
-        """Solve the linear system of some states:
-        it is factored anew where they have changed.
+        """Displacements, (n_free,), and forces, (n_jumps,), in some states.
+
+        The linear system is factored anew where the states have changed.
         """
         rules = self._rules
         touching = np.flatnonzero(states == HELD)

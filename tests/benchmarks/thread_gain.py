@@ -19,8 +19,7 @@ INSTANTS = 51
 
 
 def thread_gain(elements: int, threads: int, repeats: int) -> tuple[float, float]:
-    """Measure the median seconds of an iteration by one thread and by several,
-    interleaved.
+    """Measure median seconds of an iteration by one thread and by several, in turns.
 
     Parameters
     ----------

@@ -18,9 +18,7 @@ WEIGHT = 1e-4
 
 
 def lintel_on_two_piers() -> Problem:
-    """Two piers that are held below,
-    each below two elements of a lintel from one to the other.
-    """
+    """Two piers that are held below, with a lintel from one to the other."""
     still = Given(True, 0.0 * TIMES)
     pressed = Given(False, -WEIGHT / (10 * SIZE) * TIMES)
     lintel = Stack(

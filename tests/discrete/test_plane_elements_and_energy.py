@@ -1,6 +1,4 @@
-"""Rectangular elements are right,
-and on cycles work is what bodies store and friction takes.
-"""
+"""Rectangular elements are right; on cycles, work is stored or taken by friction."""
 
 from __future__ import annotations
 

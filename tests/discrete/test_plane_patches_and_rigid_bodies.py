@@ -1,6 +1,4 @@
-"""Uniform states, resultants, sliding everywhere,
-and any decomposition: exact on every mesh.
-"""
+"""Uniform states, resultants and sliding, in any decomposition, on every mesh."""
 
 from __future__ import annotations
 
@@ -254,7 +252,7 @@ HINGE = {
 
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_hinge_is_refused_where_its_load_turns_it_off_the_support(side):
-    """Its top holds x and one side y: all that is left is to turn about that corner."""
+    """The top holds x and one side y: the body may only turn about that corner."""
     hinge = {**HINGE, side: "dragged", "friction": 0.0}
     pressed = BlockSettings.checked({**hinge, "top_normal_traction": -1e4})
     problem = discretise(pressed)

@@ -24,9 +24,7 @@ def problem_of(scene, **values):
 
 
 def layers_of(ratio, **values):
-    """Layers so many times as long as thick,
-    pressed so that they slide a part of the time.
-    """
+    """Slender layers, pressed so that they slide a part of the time."""
     own = {
         "thickness": 0.5 / ratio,
         "pressure": 2e6 * (50 / ratio) ** 2,
@@ -36,7 +34,7 @@ def layers_of(ratio, **values):
 
 
 def error_after(most, settings, problem):
-    """Largest error of the contact force in the last three of so many iterations."""
+    """Largest error of the contact force in the last three of some iterations."""
     reference = reference_of(problem)
     found = islice(iterations(problem, method_of(settings)), most - 3, most)
     return max(whole_force_error(reference, one) for one in found)
@@ -150,9 +148,7 @@ def bent(layers, friction, elements=48, elements_up=2, pressure=1e6):
 
 
 def stiffness(iterate):
-    """End force that bending adds to that of pressing,
-    for a unit of deflection, N/m.
-    """
+    """End force that bending adds, for a unit of deflection, N/m."""
     force = reaction(iterate, "right")[1]
     return (force[-1] - force[-2]) / DEFLECTION
 

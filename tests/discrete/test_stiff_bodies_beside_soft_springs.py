@@ -1,5 +1,4 @@
-"""A stiff body beside a soft spring, and the other way round: rigid motion hides no
-deformation.
+"""A stiff body beside a soft spring: rigid motion hides no deformation.
 
 Balance and closed forms: MATHEMATICS.md, 9.
 """

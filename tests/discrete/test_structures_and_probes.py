@@ -63,9 +63,7 @@ def whole(problem: Problem, iterate: Iterate) -> tuple[np.ndarray, np.ndarray]:
 def test_mean_displacement_of_a_side_is_that_of_the_recovered_nodes(
     side: str, component: int
 ) -> None:
-    """Also where nothing is prescribed,
-    and loads inside move the side beside the skeleton.
-    """
+    """Loads inside move the side beside the skeleton, too."""
     _, iterate = iterate_of("block", SMALL | PULLED | HEAVY, 4)
     nodes, found = whole(iterate.problem, iterate)
     axis = 1 if side == "top" else 0

@@ -1,6 +1,4 @@
-"""Each script in `solver/examples` runs,
-and what it prints is physics that is known.
-"""
+"""Scripts in `solver/examples` run, and what they print is known physics."""
 
 from __future__ import annotations
 

@@ -15,20 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.files.columns import (
-    SPELLINGS,
-    are_units,
-    column_of,
-    examples_of,
-    parse_unit,
-    quantities_of,
-    size_in,
-    unit_doubt,
-)
+from solver.files.columns import are_units, column_of, quantities_of
 from solver.files.disk import LARGEST, check_place, read_bytes, whole_file, write
 from solver.files.numerals import decimal_signs, is_gap, is_numeral, number
 from solver.files.table_blocks import block_of, fitted, headed
 from solver.files.table_lines import lines_of_text, text_of
+from solver.files.units import SPELLINGS, examples_of, parse_unit, size_in, unit_doubt
 from solver.files.workbooks import UNPACKED, is_archive, lines_of_workbook
 from solver.settings.definitions import SettingError
 

@@ -1,6 +1,4 @@
-"""Whatever a table looks like,
-the solver gets the numbers that were given, or says why not.
-"""
+"""Tables of any look give the solver their numbers, or say why not."""
 
 from __future__ import annotations
 

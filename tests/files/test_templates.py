@@ -79,7 +79,7 @@ PARTS = {
         "is_running": True,
     },
     "figures.html": {"figures": {MARKUP: MARKUP}, "hints": {MARKUP: MARKUP}},
-    "classroom.html": {"code": MARKUP, "link": MARKUP, "picture": "", "port": 1},
+    "class_dialog.html": {"code": MARKUP, "link": MARKUP, "picture": "", "port": 1},
     "keys.html": {"curves": [{"label": MARKUP, "dash": MARKUP, "color": MARKUP}]},
     "charts.html": {"heading": MARKUP, "keys": "", "panels": []},
     "experiments/reports.html": {"title": MARKUP, "page": MARKUP},

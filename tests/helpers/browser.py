@@ -1,6 +1,4 @@
-"""A served page and a browser to look at it,
-for the tests and measurements of the page.
-"""
+"""A served page and a browser, for tests and measurements of the page."""
 
 from __future__ import annotations
 
@@ -43,9 +41,7 @@ def free_port() -> int:
 
 
 def chromium() -> str:
-    """The system's Chromium; without it the test is skipped,
-    where nobody promised one (CI).
-    """
+    """The system's Chromium; without it the test is skipped, but not on CI."""
     for name in ("chromium", "chromium-browser", "google-chrome"):
         if path := shutil.which(name):
             return path
@@ -82,9 +78,7 @@ class Chrome:
         return page
 
     def leave(self, page: Page) -> None:
-        """Close a page: what it has stored is forgotten,
-        and its window is free for another.
-        """
+        """Close a page: its store is forgotten, and its window is free for another."""
         page.evaluate("localStorage.clear(), sessionStorage.clear()")
         page.context.clear_cookies()
         page.mouse.move(0.0, 0.0)
@@ -97,9 +91,7 @@ class Chrome:
 
 
 class Server:
-    """`panel serve app` in a process group of its own,
-    or another command that serves the page.
-    """
+    """`panel serve app`, or another command, in a process group of its own."""
 
     def __init__(
         self,

@@ -89,9 +89,7 @@ def contact(normal, tangent, below, gap, friction):
 
 
 def rubbing_points(seed, *, opens, two):
-    """Random numbers, sliders,
-    and what else a contact of them needs: a normal law or none.
-    """
+    """Random numbers, sliders, and the rest of a contact: a normal law or none."""
     random = np.random.default_rng(seed)
     pairs = 4
     rows = random.permutation(4 * pairs).reshape(4, pairs)
@@ -112,9 +110,7 @@ def rubbing_points(seed, *, opens, two):
 
 
 def local_stage(law, random, *, rows=16, times=20):
-    """Displacements and forces that a law finds along
-    random search directions, and these.
-    """
+    """Displacements and forces by a law along random search directions, and these."""
     k = 10.0 ** random.uniform(-1.0, 1.0, rows)
     incoming = random.normal(size=(rows, times))
     moved = incoming.copy()
@@ -192,8 +188,7 @@ def block(
     slope=0.0,
     **given,
 ):
-    """A block that is pressed on a rough support, then sheared back and forth on its
-    top.
+    """A block pressed on a rough support, then sheared back and forth on its top.
 
     Shear and its change along the top are shares of the pressure, 1e-3 E.
     """

@@ -108,9 +108,7 @@ def is_solved(page: Page) -> None:
 
 
 def holds(page: Page, expression: str, arg: Any = None) -> None:
-    """Wait until an expression holds, of `model`,
-    the way to the page's models by their names.
-    """
+    """Wait until an expression of `model`, which finds models by name, holds."""
     page.wait_for_function(
         f"(arg) => {{ const model = {MODEL}; return ({expression}) }}",
         arg=arg,
@@ -119,7 +117,7 @@ def holds(page: Page, expression: str, arg: Any = None) -> None:
 
 
 def painted(page: Page, more: int = 1) -> None:
-    """Wait until so many more pictures are on the screen."""
+    """Wait until a number of further pictures are on the screen."""
     now = page.evaluate(f"({MODEL})('pulse').painted")
     holds(page, "model('pulse').painted >= arg", now + more)
 
@@ -153,18 +151,14 @@ def button(page: Page, name: str) -> Locator:
 
 
 def figure(page: Page, number: int) -> Locator:
-    """A figure of the page: 0 is the scene,
-    1 the time line, others are those of the cards.
-    """
+    """A figure of the page: 0 is the scene, 1 the time line, then those of cards."""
     return page.locator(".bk-Figure").nth(number)
 
 
 def drag(
     page: Page, place: Locator, start: float, end: float, height: float = 0.5
 ) -> None:
-    """Press on a place, at a share of its width,
-    and move to another; the button stays down.
-    """
+    """Press on a place, at a share of its width, and drag to another."""
     box = place.bounding_box()
     assert box is not None
     y = box["y"] + height * box["height"]

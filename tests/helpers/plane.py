@@ -33,9 +33,7 @@ def lengths(iterate, name="support"):
 
 
 def reaction(iterate, side):
-    """Resultant of the forces on a held side,
-    along x and y, shape (2, n_instants), N.
-    """
+    """Resultant of the forces on a held side, along x and y, (2, n_instants), N."""
     problem = iterate.problem
     rows = problem.interfaces[side].rows
     force = iterate.boundary_force[rows] * problem.scales.force
@@ -44,9 +42,7 @@ def reaction(iterate, side):
 
 
 def stress(iterate, instant=-1):
-    """Stresses (xx, yy, xy) of all elements at an instant,
-    shape (n_elements, 3), Pa.
-    """
+    """Stresses (xx, yy, xy) of all elements at an instant, (n_elements, 3), Pa."""
     inside = iterate.problem.inside
     found = inside.displacement(iterate.displacement, [instant])
     return inside.stress(found[:, :, 0])

@@ -45,7 +45,7 @@ def sample(settings: Settings, number: int) -> Iterate:
 
 
 def errors(settings: Settings, number: int) -> Array:
-    """Error of the contact force after each of the first iterations."""
+    """Error of the contact force after each of the first iterations, (number,)."""
     problem = discretise(settings)
     distance = distance_of(problem)
     found = islice(iterations(problem, method_of(settings)), number)

@@ -14,7 +14,6 @@ Numbers = NDArray[np.intp]
 
 def grid(x: Any, y: Any) -> Mesh:
     """Quadrilaterals between lines along x and y; corners row by row from below."""
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     numbers = np.arange(len(corners)).reshape(len(y), len(x))
     ends = numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]
@@ -42,7 +41,8 @@ def in_triangles(mesh: Mesh) -> Mesh:
 
 def distorted(mesh: Mesh, size: float) -> Mesh:
     """A mesh whose inner corners are moved by up to a size."""
-    low, high = mesh.corners.min(axis=0), mesh.corners.max(axis=0)
+    low = mesh.corners.min(axis=0)
+    high = mesh.corners.max(axis=0)
     is_inner = np.all((mesh.corners > low) & (mesh.corners < high), axis=1)
     moved = np.random.default_rng(1).uniform(-size, size, mesh.corners.shape)
     return Mesh(mesh.corners + moved * is_inner[:, None], mesh.elements)
@@ -60,15 +60,18 @@ def radial_joints(
     voussoirs: int,
     friction: float,
     of_stone: dict[str, Numbers],
-    of_left: Numbers,
-    of_right: Numbers,
+    of_block: Numbers,
 ) -> list[Joint]:
     """Joints of an arch from left to right, and with both abutments."""
     joints = []
     for number in range(voussoirs + 1):
         angle = np.pi * (1.0 - number / voussoirs)
-        above = of_left if number == 0 else of_stone["bottom"]
-        below = of_right if number == voussoirs else of_stone["top"]
+        above = of_stone["bottom"]
+        below = of_stone["top"]
+        if number == 0:
+            above = of_block[::-1]
+        if number == voussoirs:
+            below = of_block
         normals = np.tile([-np.sin(angle), np.cos(angle)], (len(above), 1))
         joint = Joint(
             f"joint {number}",
@@ -100,8 +103,6 @@ def arch(
     stone = voussoir(radii, 0.5 * np.pi / voussoirs)
     block = grid(radii, np.linspace(-0.15, 0.0, 4))
     left_block = grid(-radii[::-1], np.linspace(-0.15, 0.0, 4))
-    of_stone, of_block = sides(stone, across, 3), sides(block, across, 3)
-    of_left = sides(left_block, across, 3)["top"][::-1]
     weight = density * np.outer([0.0, -1.0], np.minimum(t / 0.3, 1.0))
     # From left to right; of two neighbours the one on the right is below.
     bodies = [Body("left abutment", left_block, young, 0.2)]
@@ -110,10 +111,11 @@ def arch(
         name = f"voussoir {number + 1}"
         bodies.append(Body(name, stone, young, 0.2, angle=turn, weight=weight))
     bodies.append(Body("right abutment", block, young, 0.2))
-    joints = radial_joints(voussoirs, friction, of_stone, of_left, of_block["top"])
+    top = sides(block, across, 3)["top"]
+    joints = radial_joints(voussoirs, friction, sides(stone, across, 3), top)
     move = np.clip((t - 0.3) / 0.7, 0.0, 1.0) * spread
-    still = np.zeros(instants)
-    foot = of_block["bottom"]
+    still = 0.0 * t
+    foot = sides(block, across, 3)["bottom"]
     held = [
         Held("left x", 0, foot, 0, still),
         Held("left y", 0, foot, 1, still),
@@ -153,6 +155,13 @@ def belt(
     return Bodies([Body("belt", shape, 1e11)], [drum], [], loads, t, 1.0)
 
 
+def rotation(angle: float) -> NDArray[np.float64]:
+    """Matrix that turns vectors by an angle, rad."""
+    c = np.cos(angle)
+    s = np.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
 def block_on_ground(
     mesh: Mesh, chains: dict[str, Numbers], *, angle: float = 0.0, cuts: int = 1
 ) -> Bodies:
@@ -161,13 +170,53 @@ def block_on_ground(
     The top is pressed and sheared by tractions, so that nothing holds an axis.
     """
     t = np.linspace(0.0, 1.0, 11)
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.array([[c, -s], [s, c]])
+    turn = rotation(angle)
     press = -1e6 * np.minimum(3.0 * t, 1.0)
     shear = 2.2e5 * np.sin(2.0 * np.pi * np.clip(1.5 * t - 0.5, 0.0, 1.0))
     body = Body("block", mesh, 2e10, 0.3, angle=angle, substructures=cuts)
-    top, foot = chains["top"], chains["bottom"]
+    foot = chains["bottom"]
+    top = chains["top"]
     load = Load.of_traction("top", 0, body, top, turn @ np.stack([shear, press]))
     normals = np.tile(turn @ [0.0, 1.0], (len(foot), 1))
     ground = Joint("ground", 0, foot, None, None, normals, friction=0.3)
     return Bodies([body], [ground], [], [load], t, 1.0)
+
+
+def half_ring(angles: NDArray[np.float64], radii: NDArray[np.float64]) -> Mesh:
+    """A mesh between radii and angles, which both ascend; circle by circle outward."""
+    flat = grid(angles, radii)
+    a, r = flat.corners.T
+    polar = np.stack([r * np.cos(a), r * np.sin(a)], axis=1)
+    return Mesh(polar, flat.elements[:, ::-1].copy())
+
+
+def pressed_wire(wire: Mesh, n_angles: int, force: float, foot: Numbers) -> Bodies:
+    """Lower half of a round wire of radius 0.01 m on a flat, pressed by a force.
+
+    Without friction, which would keep the wire from widening under the contact.
+    """
+    t = np.linspace(0.0, 1.0, 4)
+    up = np.tile([0.0, 1.0], (len(foot), 1))
+    gap = wire.nodes[foot, 1] + 0.01
+    ground = Joint("ground", 0, foot, None, None, up, gap)
+    left = wire.along(np.arange(0, wire.n_corners, n_angles))
+    right = wire.along(np.arange(n_angles - 1, wire.n_corners, n_angles))
+    faces = np.concatenate([left, right])
+    shares = np.tile(wire.shares(left), 2)
+    down = np.outer(shares / shares.sum(), [0.0, -force])
+    held = Held("faces", 0, faces, 0, 0.0 * t)
+    load = Load("press", 0, faces, np.multiply.outer(down, t))
+    wires = [Body("wire", wire, 1e11, 0.3)]
+    return Bodies(wires, [ground], [held], [load], t, 1.0, shown="press")
+
+
+def half_wire(fine: int, force: float) -> Bodies:
+    """Half of a round wire with a bore, with `fine` elements on 0.08 rad each side."""
+    beyond = np.geomspace(0.08, 0.5 * np.pi, 2 * fine + 1)
+    outer = np.append(np.linspace(0.0, 0.08, fine + 1), beyond[1:])
+    angles = -0.5 * np.pi + np.append(-outer[:0:-1], outer)
+    steps = np.cumsum(1.3 ** np.arange(14))
+    wire = half_ring(angles, 0.01 - 0.007 * np.append(0.0, steps)[::-1] / steps[-1])
+    below = wire.n_corners - len(outer)
+    foot = wire.along(np.arange(below - fine, below + fine + 1))
+    return pressed_wire(wire, len(angles), force, foot)

@@ -1,6 +1,4 @@
-"""The page on a phone, on a projector,
-in the dark, and for whoever sees or moves otherwise.
-"""
+"""The page on a phone, on a projector, in the dark, and without sight or mouse."""
 
 from __future__ import annotations
 

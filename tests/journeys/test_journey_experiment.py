@@ -1,6 +1,4 @@
-"""A person finds a case like theirs,
-brings a measured loop, and leaves with its parameters.
-"""
+"""A person finds a case like theirs, brings a loop, and leaves with parameters."""
 
 from __future__ import annotations
 

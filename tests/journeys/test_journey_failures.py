@@ -1,6 +1,4 @@
-"""A person loses the network or the worker,
-reloads, goes back, or comes by a foolish address.
-"""
+"""A person loses network or worker, reloads, or comes by a foolish address."""
 
 from __future__ import annotations
 
@@ -71,6 +69,14 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
     enter(page, "Peak load", "1100", over="1000")
     expect(figures(page)).to_contain_text("Force −1.1 kN")
     is_solved(page)
+
+
+def test_while_a_slow_page_loads_a_word_says_so(server: Server) -> None:
+    with urllib.request.urlopen(server.address) as answer:
+        text = answer.read().decode()
+    # It is there before any script has come.
+    assert "Slipfront is loading" in text.partition("<body")[0]
+    assert 'id="loader"' in text
 
 
 def test_a_reload_keeps_the_settings_and_back_undoes_them(visit: Visit) -> None:

@@ -1,6 +1,4 @@
-"""Driven on, the iteration reaches the incremental reference,
-whatever path it takes there.
-"""
+"""Driven on, the iteration reaches the reference by whatever path it takes."""
 
 from __future__ import annotations
 
@@ -31,9 +29,7 @@ def balanced(substructures, **values):
 
 
 def driven(chosen):
-    """Iterate until the LATIN indicator,
-    looked at now and then, is below the tolerance.
-    """
+    """Iterate until the LATIN indicator, looked at now and then, is small enough."""
     problem = discretise(chosen)
     for iterate in islice(
         iterations(problem, method_of(chosen)), LOOK - 1, chosen.max_iterations, LOOK

@@ -1,6 +1,4 @@
-"""Automatic k and its update, Anderson,
-nested meshes: a shorter path to the same limit.
-"""
+"""Automatic k, Anderson, nested meshes: a shorter path to the same limit."""
 
 from __future__ import annotations
 
@@ -41,9 +39,7 @@ def test_all_together_reach_one_percent_of_friction_force_early(changes):
 
 
 def test_a_run_starts_from_no_mesh_that_has_other_instants():
-    """The points of a table are all instants where a mesh is coarse,
-    and few where it is fine.
-    """
+    """Tables have all instants where a mesh is coarse, and few where it is fine."""
     times = np.linspace(0.0, 1.0, 2000)
     wave = 300.0 * np.sin(20.0 * np.pi * times)
     fine = options(elements=1200, load=np.stack([times, wave], axis=1).tolist())

@@ -1,6 +1,4 @@
-"""Mixtures, separated bases, indicators,
-starts and ends: each by what it must not change.
-"""
+"""Mixtures, bases, indicators, starts and ends, by what they must not change."""
 
 from __future__ import annotations
 
@@ -99,7 +97,7 @@ class Mixed:
         return self.group.state.copy()
 
     def step(self, image: Array) -> Array:
-        """State that an iteration leads to whose image is given."""
+        """State that an iteration leads to whose image is given, of the same shape."""
         self.state.start()
         self.group.state[:] = image
         self.state.mix()
@@ -176,7 +174,7 @@ def test_a_motion_that_the_local_stage_chooses_anew_has_no_weight() -> None:
 
 
 def stages(of: Problem, pgd: PGD) -> tuple[LinearStage, LinearStage, Array]:
-    """The linear stage in full and on bases."""
+    """The linear stage in full and on bases, and their k, (n_rows,)."""
     k = np.random.default_rng(0).uniform(0.5, 2.0) * of.direction
     both = [
         LinearStage(of, k, form, Blocks(of.n_rows, of.n_instants), multiscale=True)

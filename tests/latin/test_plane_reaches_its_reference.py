@@ -1,6 +1,4 @@
-"""LATIN in the plane comes to the incremental reference,
-soon, and whatever the decomposition.
-"""
+"""LATIN in the plane comes soon to the reference, in any decomposition."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""A run starts, ends and resumes as it should,
-alike by threads, and refuses what it cannot do.
-"""
+"""Runs start, end and resume as they should, and refuse what they cannot do."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Slabs of time have the solution of the whole interval,
-and settle where a load repeats itself.
-"""
+"""Slabs of time have the solution of the whole, and settle under periodic loads."""
 
 from __future__ import annotations
 

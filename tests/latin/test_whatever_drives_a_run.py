@@ -1,5 +1,4 @@
-"""Runs without loads: overlaps and prescribed displacements drive as loads do, whatever
-their size.
+"""Overlaps and prescribed displacements of any size drive runs as loads do.
 
 The smallest and the largest sizes are far from any that is physical: what is rounding
 is so beside what drives, and not beside one newton or one metre.
@@ -32,9 +31,7 @@ def gap(left: float, right: float) -> list[list[float]]:
 
 
 def driven(size: float) -> dict[str, tuple[str, dict[str, Any]]]:
-    """Scenes that something of a size, in m,
-    drives, and no load but a tiny one in one of them.
-    """
+    """Scenes driven by a length, m, and no load but a tiny one in one of them."""
     clamped = {**PLANE, "top": "clamped"}
     moved = {**PLANE, "top": "displacement", "top_normal_displacement": 0.0}
     overlap = gap(-size, -size)

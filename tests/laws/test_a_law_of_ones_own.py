@@ -1,5 +1,4 @@
-"""A law that no incremental solver knows: LATIN solves it, and nobody claims a proof of
-it.
+"""A law without an incremental form: LATIN solves it, and claims no proof.
 
 References here are dense time stepping that reads nothing of the engine but the
 stiffness.
@@ -125,8 +124,7 @@ def damped(law: type[Interface], damping: float = 2.0, **rest: Any) -> Problem:
 
 
 def stepped(of: Problem, load: Array, damping: Array, bound: Array) -> Array:
-    """Dense time stepping, node by node until nothing changes, (n_dofs, n_instants),
-    scaled.
+    """Dense time stepping, node by node to rest, (n_dofs, n_instants), scaled.
 
     The increment minimises an energy with a term |v| at each node, held at the first of
     them.

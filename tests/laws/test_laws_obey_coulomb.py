@@ -1,6 +1,4 @@
-"""The interface laws hold pointwise on any input,
-bit by bit where no arithmetic is involved.
-"""
+"""Interface laws hold pointwise on any input, to the bit without arithmetic."""
 
 from __future__ import annotations
 
@@ -26,9 +24,7 @@ REACH = st.floats(0.0, 1e6)
 
 @st.composite
 def targets_and_reaches(draw, varying=True):
-    """Targets, and reaches that vary over points,
-    and over instants too where wanted.
-    """
+    """Targets, and reaches that vary over points, and over instants where wanted."""
     shape = draw(SHAPES)
     if varying and draw(st.booleans()):
         each = shape
@@ -47,9 +43,7 @@ def dominating(target):
 @ANY
 @given(targets_and_reaches())
 def test_play_is_coulombs_law(case):
-    """A force within the bound, all of it against slip,
-    and none where the point may stick.
-    """
+    """A force in the bound, all of it against slip, none where the point may stick."""
     target, slack = case
     bound = np.broadcast_to(slack.T, target.T.shape).T
     position = play(target, slack)

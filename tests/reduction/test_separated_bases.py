@@ -1,6 +1,4 @@
-"""Separated bases follow the full stage as far as their modes reach,
-and may end certified.
-"""
+"""Separated bases follow the full stage as their modes reach, also to the end."""
 
 from __future__ import annotations
 
@@ -64,9 +62,7 @@ def test_the_force_follows_the_number_of_modes(scene, size):
 
 
 def test_every_mode_is_admissible():
-    """The force of a mode is what its displacement needs
-    inside the substructure (eq. 3).
-    """
+    """The force of a mode is that of its displacement in the substructure (eq. 3)."""
     chosen = options(substructures=5)
     problem = discretise(chosen)
     iterate = sample(chosen, 30)

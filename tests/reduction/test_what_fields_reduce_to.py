@@ -174,7 +174,7 @@ def test_where_the_theory_ends_the_error_is_seen_and_modes_of_the_rest_remove_it
 
 
 def play_of(load: Array, bound: Array) -> Array:
-    """Friction on a clamped rod, whose axial force follows the load with play."""
+    """Friction on a clamped rod, (n_points, n_instants), whose axial force has play."""
     reach = np.cumsum(bound[::-1])[::-1]
     axial = np.zeros((len(bound) + 1, len(load)))
     now = np.zeros(len(bound))

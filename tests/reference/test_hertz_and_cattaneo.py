@@ -1,6 +1,4 @@
-"""A parabola on a large block: Hertz,
-partial slip of Cattaneo and Mindlin, and its energy.
-"""
+"""A parabola on a large block: Hertz; Cattaneo and Mindlin, and their energy."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Balance and the laws of contact alone tell a solution
-from an answer that is nearly one.
-"""
+"""Balance and laws alone tell a solution from an answer that is nearly one."""
 
 from __future__ import annotations
 
@@ -93,9 +91,7 @@ def spoiled(answer, *, displacement=None, force=None):
 
 
 def largest_work(problem, answer):
-    """Place of the friction force that takes most,
-    at which instant, and the sliding node.
-    """
+    """Place of the largest friction force, its instant, and the sliding node."""
     along = ~rules_of(problem).normal
     all_jumps = jumps(problem)
     slip = np.diff(all_jumps @ answer.displacement, axis=1, prepend=0.0)

@@ -1,6 +1,4 @@
-"""Masing's rule answers as springs in series with sliders do,
-whatever loads they see.
-"""
+"""Masing's rule answers any load as springs in series with sliders do."""
 
 from __future__ import annotations
 

@@ -82,9 +82,7 @@ SMALL = 1e-4
 def test_two_equal_layers_cease_to_slip_below_the_limit_from_any_start_and_not_above(
     first: float,
 ) -> None:
-    """The friction between them is mirrored,
-    and so presses nothing: Melan's theorem holds.
-    """
+    """Friction between them is mirrored and presses nothing: Melan's theorem holds."""
     swing = SMALL * factor(ran("layers", TWINS, SMALL))
     for share, expected in ((0.995, False), (1.005, True)):
         run = ran("layers", TWINS, share * swing, first * swing)

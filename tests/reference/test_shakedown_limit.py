@@ -1,6 +1,4 @@
-"""The limit by Melan's theorem is where the simulation's slip ceases,
-and what closed forms say.
-"""
+"""The limit by Melan's theorem is where simulated slip ceases, as closed forms say."""
 
 from __future__ import annotations
 
@@ -59,9 +57,7 @@ def test_just_below_the_limit_slip_ceases_and_just_above_it_goes_on(
 
 
 def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:
-    """Uniform body force b over uniform friction mu p,
-    which is on any mesh b = 2 mu p in swing.
-    """
+    """Uniform body force b over friction mu p: on any mesh b = 2 mu p in swing."""
     for elements in (10, 40):
         changes = {**SMALL, "elements": elements, "load": "hold", "peak": 0.0}
         swings = {"body_force": 100.0, "body_load": "cycles"}
@@ -71,9 +67,7 @@ def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:
 
 
 def test_the_limit_of_a_contact_that_gives_way_converges_to_that_of_shear_lag() -> None:
-    """Held at the far end, friction at the pulled end is F / l tanh(L / l),
-    with l^2 = ES / k_t.
-    """
+    """Friction at the pulled end is F / l tanh(L / l), with l^2 = ES / k_t."""
     soft = {"friction_law": "compliant", "contact_stiffness": 2.0}
     lag = LENGTH / np.sqrt(soft["contact_stiffness"])
     exact = BOUND * lag / np.tanh(LENGTH / lag) / 300.0

@@ -71,9 +71,7 @@ RISES_AGAIN = STEEL | {
 
 
 def assert_solved_where_equilibria_exist(settings):
-    """Compare what is solved with the equilibria there are,
-    up to the first instant without.
-    """
+    """Compare a solution with the equilibria up to the first instant without."""
     found = reference_of(discretise(settings))
     numbers = numbers_of_equilibria(found)
     lost = np.flatnonzero(~found.converged)

@@ -67,9 +67,7 @@ def _no_status_step(monkeypatch):
 
 
 def without_status_step(finish, iterations):
-    """Run the block up to a number of iterations,
-    to a tolerance that nothing reaches.
-    """
+    """Run the block for a number of iterations, to a tolerance out of reach."""
     settings = settings_of("block", **BLOCK, finish=finish)
     stop = Stop(tolerance=1e-300, iterations=iterations)
     return solve(discretise(settings), replace(method_of(settings), stop=stop))

@@ -40,9 +40,7 @@ SEEDS = range(6)
 
 
 def random_jumps(seed: int, *, rings: bool) -> sparse.csr_array:
-    """Jumps between 12 points and the ground,
-    in random order; as a forest, or with rings.
-    """
+    """Jumps between 12 points and the ground, shuffled; a forest, or with rings."""
     random = np.random.default_rng(seed)
     n_points = 12
     edges = [
@@ -196,7 +194,7 @@ def known_sides(condensed: Condensation, random: np.random.Generator) -> Sides:
 
 
 def enumerated(matrix: Array, sides: Sides) -> list[tuple[States, Array]]:
-    """All states, and their jumps, that obey Coulomb's law under a known bound."""
+    """All states, and jumps, (n,) each, that obey Coulomb's law of known bound."""
     found = []
     for choice in product((-1, 0, 1), repeat=len(matrix)):
         states = np.array(choice, dtype=np.int8)
@@ -211,12 +209,18 @@ def enumerated(matrix: Array, sides: Sides) -> list[tuple[States, Array]]:
     return found
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_newton_finds_the_one_solution_among_all_states(seed: int) -> None:
+def of_two_strands(
+    seed: int,
+) -> tuple[np.random.Generator, Condensation, Newton, Sides]:
+    """Random numbers, and an instant of two strands whose bound is known."""
     random = np.random.default_rng(seed)
     condensed = Condensation(rubbing_strands(random, 2, 5))
-    newton = Newton(condensed)
-    sides = known_sides(condensed, random)
+    return random, condensed, Newton(condensed), known_sides(condensed, random)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_newton_finds_the_one_solution_among_all_states(seed: int) -> None:
+    random, condensed, newton, sides = of_two_strands(seed)
     (only,) = enumerated(condensed.stiffness, sides)
     reached = 0
     for _ in range(10):
@@ -250,10 +254,7 @@ def test_a_solution_is_found_again_from_itself_in_one_step(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_springs_that_soften_lead_to_the_solution_from_any_states(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    condensed = Condensation(rubbing_strands(random, 2, 5))
-    newton = Newton(condensed)
-    sides = known_sides(condensed, random)
+    _, condensed, newton, sides = of_two_strands(seed)
     (only,) = enumerated(condensed.stiffness, sides)
     wrong = begin(condensed, np.where(only[0] == 1, -1, 1).astype(np.int8))
     found = newton.follow(wrong, sides, newton.approach(wrong, sides))

@@ -1,6 +1,4 @@
-"""A fluid along a fault drives a slip front,
-as published; what cannot be is refused.
-"""
+"""A fluid along a fault drives a slip front as published."""
 
 from __future__ import annotations
 
@@ -44,7 +42,7 @@ def solved(**changes: Any) -> tuple[FaultSettings, Problem, Reference]:
 
 
 def reached(problem: Problem, found: Reference) -> Array:
-    """Farthest place that slips at every instant, m."""
+    """Farthest place that slips at every instant, (n_instants,), m."""
     slips = found.contact("support").status == 1
     return np.where(slips, problem.rubbing["support"].positions[:, None], 0.0).max(
         axis=0
@@ -52,9 +50,7 @@ def reached(problem: Problem, found: Reference) -> Array:
 
 
 def test_pressure_spreads_as_diffusion_has_it_whatever_is_given_at_the_well() -> None:
-    """Crank and Nicolson's steps on a fine line,
-    for a pressure that jumps, rises and falls.
-    """
+    """Crank and Nicolson's steps on a fine line, for a pressure up and down."""
     length = 12.0
     parts = 600
     step = 0.05
@@ -302,9 +298,7 @@ def test_the_front_of_a_fluid_runs_with_the_factor_of_its_stress(stress, factor)
 
 @pytest.mark.parametrize("place", [0.0, 0.3, 0.9])
 def test_slip_under_growing_strength_is_that_of_the_drop_of_stress(place):
-    """The slip at a place is an integral over the drop,
-    with the logarithm of a point force.
-    """
+    """Slip at a place is an integral of the drop, with a point force's logarithm."""
     half = 2.0
     drop = 1e5
     stiffness = 5e8
@@ -322,9 +316,7 @@ def test_slip_under_growing_strength_is_that_of_the_drop_of_stress(place):
 
 
 def loosened(substructures):
-    """Shear a body over an interface whose strength falls
-    from its middle, then comes back.
-    """
+    """Shear a body to and fro on a strength that falls from the middle."""
     x = np.linspace(0.0, 1.0, 21)
     time = np.linspace(0.0, 1.0, 9)
     strength = 1e6 - 8e5 * np.sin(np.pi * time) * np.exp(-8.0 * x[:, None])

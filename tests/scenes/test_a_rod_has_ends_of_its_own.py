@@ -23,9 +23,7 @@ def bar(**changes):
 
 
 def answer(settings):
-    """The incremental solution,
-    its displacement beside the support, and the axial force.
-    """
+    """The solution, its displacement beside the support, and the axial force."""
     problem = discretise(settings)
     fields = reference_of(problem)
     assert fields.converged.all()
@@ -37,9 +35,7 @@ def answer(settings):
 
 
 def test_a_long_rail_breathes_at_its_ends_and_comes_back_by_half():
-    """theory: N = -ES e in the middle,
-    u = ES e^2/(2 q) at an end; cooled down, half of that.
-    """
+    """theory: N = -ES e in the middle, u = ES e^2/(2 q) at an end; cooled, half."""
     e = 1.2e-5 * 40.0
     bound = 0.5 * 2e4
     rail = bar(
@@ -197,9 +193,7 @@ def test_the_method_meets_the_incremental_solver_whatever_holds_the_ends(
 
 
 def test_points_that_stood_still_while_slipping_do_not_end_the_search():
-    """The incremental solver once ended here out of balance,
-    as such a point went back at once.
-    """
+    """Points that went back at once ended the incremental solver out of balance."""
     section = [[0.2, 4.0], [0.33, 3.6], [0.34, 0.216], [0.74, 0.34], [0.85, 0.17]]
     settled = [[0.205, 0.37], [0.511, 5.06], [0.578, 1.7], [0.595, 3.1]]
     pressed = [[0.178, 0.167], [0.486, 0.172], [0.66, 5.52], [0.752, 0.0]]

@@ -1,6 +1,4 @@
-"""A strand of helical wires is rods on supports of their own,
-held to the closed form.
-"""
+"""A strand of helical wires is rods on supports of their own, as closed forms say."""
 
 from __future__ import annotations
 
@@ -93,9 +91,7 @@ def test_a_strand_that_is_turned_by_a_wire_is_the_same_strand() -> None:
 
 
 def test_outer_layers_press_on_what_is_below_them() -> None:
-    """All that is laid presses on the core,
-    metre by metre of strand, and nothing on it.
-    """
+    """All wires press on the core, metre by metre of strand, and nothing on it."""
     section = CONSTRUCTIONS["mooring"](4)
     tension = np.array([2e5])
     below, above = section.line_pressures(tension)
@@ -196,24 +192,18 @@ def test_under_a_uniform_curvature_the_wires_of_a_section_carry_the_moment() -> 
     """Any section has about the moment that a wire has on average along it."""
     settings = settings_of(elements=160, layers=3)
     scene, found = solved(settings)
-    instant = 30
-    cut, stress = section_of(scene, found.displacement, instant, 0.013)
+    cut, stress = section_of(scene, found.displacement, 30, 0.013)
     section = settings.section
     assert len(stress) == section.wires - 1 == 36
-    made = [scene.wires[number].layer_data for number in cut.wire]
-    areas, lay = (
-        np.array([getattr(one, name) for one in made]) for name in ("area", "lay")
-    )
-    share = stress * areas * np.cos(lay)
-    moment = float(np.sum(share * cut.centres[:, 1]))
-    own = section.slipping_bending * scene.curvature[instant]
-    whole = float(scene.moment()(found.displacement)[instant])
+    layers = [scene.wires[number].layer_data for number in cut.wire]
+    share = stress * [layer.area * np.cos(layer.lay) for layer in layers]
+    across, moment = share @ cut.centres
+    own = section.slipping_bending * scene.curvature[30]
+    whole = float(scene.moment()(found.displacement)[30])
     assert moment + own == pytest.approx(whole, rel=0.02)
-    core = settings.tension * section.core.stiffness / section.stiffness
-    assert float(np.sum(share)) + core == pytest.approx(settings.tension, rel=1e-6)
-    assert float(np.sum(share * cut.centres[:, 0])) == pytest.approx(
-        0.0, abs=0.02 * abs(whole)
-    )
+    of_wires = 1.0 - section.core.stiffness / section.stiffness
+    assert share.sum() == pytest.approx(settings.tension * of_wires, rel=1e-6)
+    assert across == pytest.approx(0.0, abs=0.02 * abs(whole))
 
 
 def test_while_all_sticks_the_stress_range_is_that_of_a_bar() -> None:

@@ -68,9 +68,7 @@ def test_on_the_way_back_nothing_moves_until_the_spring_overcomes_friction(run):
 def test_the_spring_pulls_the_block_back_only_from_twice_the_angle_of_friction(
     slope, returns
 ):
-    """At the end it pulls W (sin - mu cos) of the steepest
-    slope against mu W: tan half > mu.
-    """
+    """At the end W (sin - mu cos) of the steepest slope pulls against mu W."""
     found = Run(slope=slope)
     assert (np.tan(np.radians(slope) / 2.0) > 0.3) == returns
     assert (found.force[-1] == pytest.approx(300.0, rel=1e-6)) == returns

@@ -1,6 +1,4 @@
-"""A broken wire regains its force from its neighbours
-as friction allows, and no faster.
-"""
+"""A broken wire regains force from its neighbours no faster than friction lets it."""
 
 from __future__ import annotations
 

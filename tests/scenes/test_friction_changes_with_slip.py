@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from runs import solved
 
 from solver import Stack, discrete
+from solver.arrays import Array
 from solver.discrete import Given, Side, Support
 from solver.discrete.rods.rods import End, Rods
 from solver.latin import Ending, Latin, solve
@@ -61,6 +62,28 @@ STRENGTHS = [
 ]
 
 
+def bound_of(law: Contact, moved: Array, force: Array, slip: Array) -> Array:
+    """Bound on friction by the words of the law, (n_points, n_instants).
+
+    `moved` and `force` are fields of all rows; contact obeys Signorini's law.
+    """
+    along = law.tangential
+    bound = np.broadcast_to(along.bound, slip.shape)
+    if law.normal is not None:
+        opening = law.normal.opening(moved, force)
+        pressing = force[law.normal.component.above]
+        assert np.all(pressing >= 0.0)
+        assert np.all(opening >= -1e-11)
+        assert np.all(np.minimum(opening, pressing) <= 1e-11)
+        bound = bound * ~np.logical_or.accumulate(opening > 1e-8, axis=1)
+        bound = bound + along.friction[:, None] * pressing
+        if along.cap is not None:
+            bound = np.minimum(bound, along.cap[:, None])
+    if along.slip_factor is not None:
+        bound = bound * along.slip_factor(np.cumsum(np.abs(slip), axis=1))
+    return bound
+
+
 @settings(max_examples=300)
 @given(
     st.integers(0, 2**31),
@@ -77,8 +100,8 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
     seed, opens, two, compliance, slip_factor, cohesion, cap, gap, mu
 ):
     """Signorini's law across, and Coulomb's along with what may be added to it."""
-    random, plain, common = rubbing_points(seed, opens=opens, two=two)
-    along = replace(plain, slip_factor=slip_factor, bound=plain.bound + cohesion)
+    random, along, common = rubbing_points(seed, opens=opens, two=two)
+    along = replace(along, slip_factor=slip_factor, bound=along.bound + cohesion)
     if opens:
         common["normal"] = replace(common["normal"], gap=gap * random.normal(size=4))
         along = replace(along, friction=np.full(4, mu))
@@ -91,17 +114,7 @@ def test_the_local_stage_obeys_the_law_with_all_that_may_be_of_it(
     friction = force[law.tangent.above]
     slider = along.slider(moved, force)
     slip = np.diff(slider, axis=1, prepend=0.0)
-    bound = np.broadcast_to(along.bound, slip.shape)
-    if opens:
-        opening = law.normal.opening(moved, force)
-        pressing = force[law.normal.component.above]
-        assert np.all(pressing >= 0.0)
-        assert np.all(opening >= -1e-11)
-        assert np.all(np.minimum(opening, pressing) <= 1e-11)
-        bound = bound * ~np.logical_or.accumulate(opening > 1e-8, axis=1)
-        bound = np.minimum(bound + mu * pressing, np.inf if cap is None else cap)
-    if slip_factor is not None:
-        bound = bound * slip_factor(np.cumsum(np.abs(slip), axis=1))
+    bound = bound_of(law, moved, force, slip)
     assert np.all(np.abs(friction) <= bound + 1e-9)
     slips = np.abs(slip) > 1e-8
     np.testing.assert_allclose(

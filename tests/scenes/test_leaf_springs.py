@@ -52,7 +52,7 @@ def settings_of(**values: Any) -> Any:
 
 
 def deflection(settings: Any) -> Array:
-    """Deflection of the end over time."""
+    """Deflection of the end over time, (n_instants,), m."""
     problem = discretise(settings)
     loop = settings.structure().loop(problem)
     return np.asarray(loop.displacement(reference_of(problem).displacement))
@@ -84,9 +84,7 @@ def test_bent_the_other_way_the_longest_leaf_bends_alone() -> None:
 
 
 def test_many_leaves_tend_to_a_spring_of_uniform_strength() -> None:
-    """A triangle of n widths bends by F L^3 / (2 n E I),
-    a leaf alone by F L^3 / (3 E I).
-    """
+    """A triangle of n widths bends by F L^3 / (2 n E I), a leaf by F L^3 / (3 E I)."""
     off = []
     for count in (4, 16, 64):
         factor = leaf_spring(np.arange(count, 0, -1.0))

@@ -1,6 +1,4 @@
-"""A wall of bricks that only touch: equilibrium,
-symmetry, rigid limits, and who needs what.
-"""
+"""A wall of bricks that only touch: equilibrium, symmetry, rigid limits."""
 
 from __future__ import annotations
 
@@ -32,9 +30,7 @@ PUSH = np.where(TIMES < 0.25, 0.0, np.sin(2.0 * np.pi * (TIMES - 0.25) / 0.75))
 
 
 def wall(columns=4, courses=4, *, bond="running", size=(4, 2), moved=5e-5, **others):
-    """A wall that is pressed by a quarter of the interval,
-    and then moved to and fro.
-    """
+    """A wall pressed by a quarter of the interval, then moved to and fro."""
     return Stack(
         length=0.24,
         height=0.12,
@@ -71,9 +67,7 @@ def door():
 
 
 def test_the_weight_over_an_opening_goes_round_it():
-    """The lintel lies on half a brick at each end,
-    and the ground beside it carries all.
-    """
+    """The lintel lies on half a brick at each end; the ground beside carries all."""
     built = door()
     lintel = max(built.rectangles, key=lambda brick: brick.columns)
     assert (lintel.x, lintel.y, lintel.columns) == (6, 4, 12)
@@ -166,9 +160,7 @@ def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
 
 
 def column(shear, courses, *, friction, **law):
-    """A pile of single bricks under a pressure,
-    with a traction along its top that grows.
-    """
+    """A pile of single bricks under a pressure, and a growing traction on top."""
     made = wall(1, courses, bond="stack", size=(8, 4), **law)
     grown = Given(False, shear * np.clip((TIMES - 0.25) / 0.75, 0.0, 1.0))
     return replace(
@@ -247,9 +239,7 @@ def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(
 
 
 def test_loads_of_which_no_share_is_carried_are_told_as_they_are():
-    """At its one instant the top is pulled by more than
-    any share of what presses holds.
-    """
+    """At the one instant the top is pulled by more than any pressed share holds."""
     at_once = {"pressure_load": ((0.0, 1e6),), "top_load": ((0.0, 5e5),), "instants": 1}
     problem = discretise(CATALOGUE["wall"].checked(PILE | at_once))
     words = known_reference(problem).doubt

@@ -1,6 +1,4 @@
-"""Kinds of values: what is allowed passes,
-and of the rest the message names value and remedy.
-"""
+"""Kinds of values: a message on a refused one names value and remedy."""
 
 from __future__ import annotations
 

@@ -30,9 +30,7 @@ for scene_name, scene_kind in CATALOGUE.items():
 
 
 def drawn(scene: str, name: str, seed: int) -> Any:
-    """Settings with a table of wide and narrow swings,
-    of which the instants know nothing.
-    """
+    """Settings with a table of wide and narrow swings, of other times than instants."""
     random = np.random.default_rng([seed, *name.encode()])
     if scene == "strand":
         grip = {"grip": "displacement"}

@@ -1,6 +1,4 @@
-"""Settings of the plane scenes say what is meant,
-refuse what cannot be, and reach the files.
-"""
+"""Settings of plane scenes say what is meant, are refused, and reach the files."""
 
 from __future__ import annotations
 

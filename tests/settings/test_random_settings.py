@@ -1,5 +1,4 @@
-"""Whatever the settings, a run ends right, or says that it does not, or is refused in
-words.
+"""Runs of random settings end right, say that they do not, or are refused.
 
 Here some go over all of the range that they may have, far beyond those that are drawn
 by `python -m solver stability --random`. SLIPFRONT_RANDOM_RUNS=500 makes that many runs
@@ -39,9 +38,7 @@ CUTS = {"substructures": "elements", "substructures_up": "elements_up"}
 
 
 def values_of(scene: str, row: int) -> dict[str, Any]:
-    """Values of a small run that is drawn at random,
-    some of them anywhere in their range.
-    """
+    """Random values of a small run, some of them anywhere in their range."""
     generator = np.random.default_rng([row, *scene.encode()])
     settings = draw(scene, 1, row)
     values = settings.changed()

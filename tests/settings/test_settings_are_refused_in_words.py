@@ -49,9 +49,7 @@ NO_CHOICES = ["nothing", 3, 0.0, None, [], ["none"], {"a": 1}]
 
 @st.composite
 def wrong(draw):
-    """Any setting with a value that it cannot have,
-    what is allowed, and a remedy or none.
-    """
+    """Any setting with a refused value, what is allowed, and a remedy or none."""
     name = draw(st.sampled_from(sorted(DEFINITIONS)))
     definition = DEFINITIONS[name]
     remedy = ""

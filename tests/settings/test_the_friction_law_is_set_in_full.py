@@ -1,6 +1,4 @@
-"""The general friction law by its settings,
-and mu by place (MATHEMATICS.md, 8 and 14).
-"""
+"""The general friction law, and mu by place (MATHEMATICS.md, 8 and 14)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Cases of the trade are runs whose known number comes out,
-and files that anybody may write.
-"""
+"""Cases of the trade are runs with a known number, and files anybody may write."""
 
 from __future__ import annotations
 

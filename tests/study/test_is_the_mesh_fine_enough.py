@@ -1,6 +1,4 @@
-"""Three meshes, or numbers of instants,
-tell how far a quantity is from what it tends to.
-"""
+"""Three meshes, or numbers of instants, tell how far a quantity is from its limit."""
 
 from __future__ import annotations
 

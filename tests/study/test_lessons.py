@@ -1,6 +1,4 @@
-"""Lesson files are read as they are meant,
-or refused in one line, and say what the engine does.
-"""
+"""Lesson files are read as meant, or refused in a line; the engine agrees with them."""
 
 from __future__ import annotations
 

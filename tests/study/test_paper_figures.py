@@ -1,5 +1,4 @@
-"""The paper's figures: `python -m solver figures` writes them, and they show what the
-paper says.
+"""The paper's figures, written by `python -m solver figures`, say what it says.
 
 The paper prints curves without numbers. The gains of Figs. 3 and 4 are those of another
 code for the same equations, within 20 %; the limits of Figs. 5 to 8 are set around what

@@ -95,9 +95,7 @@ def test_the_bar_slips_as_far_as_its_load_reaches() -> None:
 def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
     scene: str, changes: dict[str, Any], exact: float
 ) -> None:
-    """F / (p L) where the slip has not come to the clamp,
-    and the tangent of a slope.
-    """
+    """F / (p L) where slip has not come to the clamp, and the tangent of a slope."""
     if scene == "bar":
         sizes = SMALL
     else:
@@ -191,9 +189,7 @@ def test_a_block_pressed_without_friction_has_one_pressure_stress_and_width() ->
 
 
 def test_the_largest_stress_below_a_contact_is_where_hertz_has_it() -> None:
-    """Johnson, Contact Mechanics, 4.2: below the middle,
-    at 0.70 of the half-width for nu = 0.3.
-    """
+    """Johnson, Contact Mechanics, 4.2: at a depth of 0.70 half-widths for nu = 0.3."""
     total = 2e7
     pressed = {
         "gap": "parabola",
@@ -370,9 +366,7 @@ def test_the_lesson_on_shakedown_shows_slip_that_dies_and_slip_that_does_not() -
 
 
 def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
-    """Below its friction at every instant,
-    and yet farther in each cycle, at all points alike.
-    """
+    """Below its friction at every instant, and farther in each cycle, at all points."""
     moved = []
     for shear in (2e6, -2e6):
         run = ran(

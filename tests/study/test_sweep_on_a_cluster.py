@@ -1,6 +1,4 @@
-"""On a Dask cluster a sweep is what it is here,
-whatever becomes of workers and clients.
-"""
+"""Sweeps on a Dask cluster are as here, whatever becomes of workers and clients."""
 
 from __future__ import annotations
 

@@ -15,16 +15,16 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.inside import Inside, RectangularSubstructure
+from solver.discrete.inside import Inside, substructure_of
 from solver.discrete.loose import is_loose
 from solver.discrete.plane.bricks import BrickJoint
 from solver.discrete.plane.cut_stack import CutStack, Span
+from solver.discrete.plane.rectangular_parts import RectangularSubstructure
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.scales import Scales
-from solver.discrete.substructure import Substructure
 from solver.laws import (
     BodyStiffness,
     Component,
@@ -63,7 +63,7 @@ def problem_of(stack: Stack) -> Problem:
     )
     problem = Problem(
         substructures=tuple(
-            _substructure(part, dofs)
+            substructure_of(part, dofs)
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
         ),
         interfaces=dict(_interfaces(cut, contacts)),
@@ -91,19 +91,6 @@ def problem_of(stack: Stack) -> Problem:
 def _is_moved(side: Side) -> bool:
     """Check whether a displacement of a side is prescribed."""
     return any(component.prescribed for component in side)
-
-
-def _substructure(part: RectangularSubstructure, dofs: Indices) -> Substructure:
-    """Substructure of a rectangular part, with its degrees of freedom, (n_kept,)."""
-    body_force = None
-    if part.force is not None:
-        body_force = part.condensed.condense(part.force)
-    return Substructure(
-        elasticity=part.elasticity,
-        dofs=dofs,
-        rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
-        body_force=body_force,
-    )
 
 
 def _rest(stack: Stack, inside: Inside) -> Array | None:

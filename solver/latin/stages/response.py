@@ -39,7 +39,6 @@ class Response:
     """
 
     def __init__(self, elasticity: Elasticity, k: Array) -> None:
-        self._elasticity = elasticity
         self._trace = elasticity.trace
         self._k = k
         self._solve = _solver(elasticity, k)

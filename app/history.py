@@ -1,0 +1,57 @@
+"""Frames of a run that were shown, in the page's memory."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+
+from app.frame import Frame
+
+LIMIT = 24_000_000
+"""Largest memory of the frames of a run, bytes; beyond, every other frame is
+dropped."""
+
+
+class History:
+    """Frames of a run that were shown, by iteration, thinned under a memory limit.
+
+    The frame of an iteration that is missing comes from the worker (`Show`).
+    """
+
+    def __init__(self) -> None:
+        self._frames: list[Frame] = []
+
+    @property
+    def newest(self) -> Frame | None:
+        """The last frame; of a run that has ended, its answer."""
+        if self._frames:
+            return self._frames[-1]
+        return None
+
+    def add(self, frame: Frame) -> None:
+        """Keep a frame in its order, in place of one of the same iterate."""
+        order = [_order(kept) for kept in self._frames]
+        index = bisect_left(order, _order(frame))
+        if index < len(order) and order[index] == _order(frame):
+            self._frames[index] = frame
+        else:
+            self._frames.insert(index, frame)
+        while len(self._frames) > 2 and self._nbytes() > LIMIT:
+            # Every other frame goes, but neither the first nor the last one, which is
+            # seen.
+            self._frames = [*self._frames[:-1:2], self._frames[-1]]
+
+    def at(self, iteration: int) -> Frame:
+        """The last kept frame of the search up to an iteration, or the first frame."""
+        return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
+
+    def _search(self) -> list[int]:
+        """Numbers of the kept iterates but for the answer, ascending."""
+        return [kept.iteration for kept in self._frames if not kept.is_answer]
+
+    def _nbytes(self) -> int:
+        return sum(kept.nbytes for kept in self._frames)
+
+
+def _order(frame: Frame) -> tuple[int, bool]:
+    """Place of a frame in its run: the answer follows the last iterate."""
+    return frame.iteration, frame.is_answer

@@ -1,0 +1,79 @@
+"""Parts of figures: bare figures, colour bars, tips, and the looks of glyphs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from bokeh.models import (
+    ColorBar,
+    Glyph,
+    GlyphRenderer,
+    HoverTool,
+    LinearColorMapper,
+    Range1d,
+)
+from bokeh.plotting import figure
+
+
+def bare(
+    min_height: int,
+    across: tuple[float, float],
+    up: tuple[float, float],
+    **more: Any,
+) -> figure:
+    """A figure without tools, frame and grid, with a least height, px, and limits."""
+    plot = figure(
+        sizing_mode="stretch_both",
+        min_height=min_height,
+        tools="",
+        toolbar_location=None,
+        title=None,
+        x_range=Range1d(*across),
+        y_range=Range1d(*up),
+        min_border=0,
+        y_axis_type=None,
+        **more,
+    )
+    plot.center = []
+    plot.outline_line_color = None
+    plot.background_fill_alpha = 0.0
+    plot.border_fill_alpha = 0.0
+    return plot
+
+
+def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
+    """A bar at the right of a figure that explains its colours."""
+    bar = ColorBar(
+        color_mapper=colors,
+        width=9,
+        padding=2,
+        margin=0,
+        title_standoff=4,
+        title_text_font_style="normal",
+        background_fill_alpha=0.0,
+        **look,
+    )
+    plot.add_layout(bar, "right")
+    return bar
+
+
+def hover(
+    plot: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]
+) -> None:
+    """Show values at the pointer: titles, and columns of the renderers' sources."""
+    plot.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
+
+
+def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
+    """Properties of a kind of glyph; `color`, `width` etc. are of its line and fill."""
+    names = kind.properties()
+    properties = {}
+    for trait, given in look.items():
+        if trait in names:
+            properties[trait] = given
+            continue
+        for name in (f"line_{trait}", f"fill_{trait}"):
+            if name in names:
+                properties[name] = given
+    return properties
