@@ -220,7 +220,7 @@ class ArchSettings(PlaneSettings):
     @property
     def jumps(self) -> int:
         """Number of components of all contacts."""
-        return 2 * self.n_interfaces * (2 * self.elements + 1)
+        return int(2 * self.n_interfaces * (2 * self.elements + 1))
 
     def structure(self) -> Arch:
         """Make the arch; one metre thick."""

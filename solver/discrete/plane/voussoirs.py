@@ -259,7 +259,7 @@ class Arch(Bodies):
     def downwards(self) -> Array:
         """Weight of all, with the loads on the outer side, shape (n_instants,), N."""
         loads = [load.force[:, 1].sum(axis=0) for load in self.loads]
-        return -np.sum([self.weights[1], *loads], axis=0)
+        return np.asarray(-np.sum([self.weights[1], *loads], axis=0))
 
     @property
     def _movement(self) -> tuple[str, int]:

@@ -57,7 +57,7 @@ def hinges(run: FinishedRun, at: float | None) -> float:
         touching = np.add.reduceat(touches.astype(np.intp), firsts)
         is_at_edge = touches[firsts] | touches[lasts]
         is_hinge = (touching == 1) & is_at_edge & (law.sizes > 1)
-        count += np.count_nonzero(is_hinge)
+        count += int(np.count_nonzero(is_hinge))
     return float(count)
 
 
