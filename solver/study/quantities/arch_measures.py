@@ -7,10 +7,9 @@ import math
 import numpy as np
 
 from solver.discrete import discretise
-from solver.discrete.plane.voussoirs import Arch
+from solver.discrete.plane.voussoirs import LIVE, Arch
 from solver.laws import OPEN
 from solver.reference.limit_analysis import load_factors
-from solver.scenes.arch import ArchSettings
 from solver.settings.scene import Settings
 from solver.study.quantities.contact_measures import AT, instant_at
 from solver.study.quantities.finished import FinishedRun
@@ -70,6 +69,7 @@ def live_factor(run: FinishedRun) -> float:
 
     At the worst place of its way, by limit analysis.
     """
-    assert isinstance(run.settings, ArchSettings)
-    unloaded = discretise(run.settings.unloaded())
+    structure = run.settings.structure()
+    assert isinstance(structure, Arch)
+    unloaded = discretise(structure.without(LIVE))
     return float(load_factors(run.problem, unloaded).min())
