@@ -207,16 +207,9 @@ class Ring:
         return np.asarray(shares * (top - points[:, :, 1]))
 
     def under_load(self, places: Array) -> Array:
-        """Shares of nodes of the outer side in a load at places over time.
+        """Shares of nodes of the outer side in a load, (voussoirs, n_nodes, n_instants).
 
-        Parameters
-        ----------
-        places
-            Places as shares of the ring from its left end, shape (n_instants,).
-
-        Returns
-        -------
-        Shares of both neighbours, shape (voussoirs, n_nodes, n_instants).
+        `places` over time are shares of the ring from its left end, (n_instants,).
         """
         passed = self.voussoirs * np.clip(places, 0.0, 1.0)
         below = np.minimum(passed.astype(np.intp), self.voussoirs - 1)
