@@ -207,7 +207,7 @@ class Ring:
         return np.asarray(shares * (top - points[:, :, 1]))
 
     def under_load(self, places: Array) -> Array:
-        """Shares of nodes of the outer side in a load, (voussoirs, n_nodes, n_instants).
+        """Shares of outer nodes in a load, (voussoirs, n_nodes, n_instants).
 
         `places` over time are shares of the ring from its left end, (n_instants,).
         """
