@@ -19,7 +19,7 @@ from solver.discrete.plane.bricks import (
 )
 from solver.discrete.plane.sides import Given, Side, Support
 from solver.discrete.plane.stack import Stack
-from solver.scenes.plane import PlaneSettings
+from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
     BODY,
     CONTACT,
@@ -45,7 +45,7 @@ MOST_BRICKS = 1500
 """Largest number of bricks: with their joints they take some 2 GB."""
 
 
-class WallSettings(PlaneSettings):
+class WallSettings(RectangleSettings):
     """Settings of the wall; by default it is pressed, and its top moves to and fro."""
 
     scene = "wall"
@@ -208,7 +208,7 @@ class WallSettings(PlaneSettings):
         unit="N/m^3",
         places=("body",),
     )
-    friction = redefined(PlaneSettings.param["friction"], 0.6)
+    friction = redefined(RectangleSettings.param["friction"], 0.6)
     head_friction = CONTACT.quantity(
         1.0,
         (0.0, 1e3),
@@ -223,22 +223,22 @@ class WallSettings(PlaneSettings):
         "Factor on μ between the wall and the ground.",
         title="μ of the ground over μ",
     )
-    plane = redefined(PlaneSettings.param["plane"], "stress")
-    young = redefined(PlaneSettings.param["young"], 1e10)
-    poisson = redefined(PlaneSettings.param["poisson"], 0.2)
-    instants = redefined(PlaneSettings.param["instants"], 41)
+    plane = redefined(RectangleSettings.param["plane"], "stress")
+    young = redefined(RectangleSettings.param["young"], 1e10)
+    poisson = redefined(RectangleSettings.param["poisson"], 0.2)
+    instants = redefined(RectangleSettings.param["instants"], 41)
     elements = redefined(
-        PlaneSettings.param["elements"], 6, title="Elements of a brick along"
+        RectangleSettings.param["elements"], 6, title="Elements of a brick along"
     )
     elements_up = redefined(
-        PlaneSettings.param["elements_up"], 3, title="Elements of a brick up"
+        RectangleSettings.param["elements_up"], 3, title="Elements of a brick up"
     )
-    macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
+    macro_degree = redefined(RectangleSettings.param["macro_degree"], 2)
     substructures = redefined(
-        PlaneSettings.param["substructures"], 1, applies=lambda _: False
+        RectangleSettings.param["substructures"], 1, applies=lambda _: False
     )
     substructures_up = redefined(
-        PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
+        RectangleSettings.param["substructures_up"], 1, applies=lambda _: False
     )
     brick_groups = DECOMPOSITION.count(
         MOST_BRICKS,
@@ -251,7 +251,7 @@ class WallSettings(PlaneSettings):
         applies=lambda settings: settings.multiscale,
     )
     friction_profile = redefined(
-        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
+        RectangleSettings.param["friction_profile"], "uniform", applies=lambda _: False
     )
 
     @property

@@ -90,7 +90,7 @@ def test_ground_that_settles_as_a_whole_moves_the_wall_and_changes_no_force():
     further = deeper.displacement - answer.displacement
     inside = problem.inside
     assert inside is not None
-    moved = np.outer(inside.components == 1, -0.9 * settings.path("settlement_load"))
+    moved = np.outer(inside.directions[:, 1], -0.9 * settings.path("settlement_load"))
     np.testing.assert_allclose(further, moved, atol=1e-12)
 
 
@@ -170,7 +170,7 @@ def test_a_cap_on_ground_that_settles_carries_the_wall_over_it():
 
 
 def test_a_guided_cap_is_refused_where_the_top_is_pulled():
-    with pytest.raises(SettingError, match='^cap = "guided"'):
+    with pytest.raises(SettingError, match=r'^cap = "guided"'):
         CATALOGUE["wall"].checked(SMALL | {"cap": "guided", "top": "pulled"})
 
 
