@@ -9,14 +9,14 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.arrays import Flags, Indices
+from solver.arrays import Indices
 from solver.discrete.plane.bricks import (
     Brick,
     bonded,
     grouped,
-    strips_below,
     with_opening,
 )
+from solver.discrete.plane.cap_and_ground import on_strips, with_cap
 from solver.discrete.plane.sides import Given, Side, Support
 from solver.discrete.plane.stack import Stack
 from solver.scenes.plane import RectangleSettings
@@ -39,8 +39,6 @@ SETTLEMENTS = {
     **PRESETS,
 }
 """Presets of the settlement: by the first one the wall stands before it begins."""
-CAP_STIFFNESS = 1e5
-"""Young's modulus of the cap over that of the bricks."""
 MOST_BRICKS = 1500
 """Largest number of bricks: with their joints they take some 2 GB."""
 
@@ -337,13 +335,6 @@ class WallSettings(RectangleSettings):
                 "lower it, or build a larger wall",
             )
 
-    @cached_property
-    def _is_settled(self) -> Flags:
-        """Whether each strip of ground below the wall settles, (n_strips,)."""
-        middles = [strip.x + 0.5 * strip.columns for strip in self._strips]
-        first, last = self._settled
-        return (np.array(middles) > first) & (np.array(middles) < last)
-
     @property
     def _settled(self) -> tuple[int, int]:
         """Ends of the ground that settles, in elements from the left end."""
@@ -351,67 +342,15 @@ class WallSettings(RectangleSettings):
         end = self.settled_from + self.settled_length
         return round(self.settled_from / element), round(end / element)
 
-    @cached_property
-    def _strips(self) -> list[Brick]:
-        """Strips of ground below the wall, from the left."""
-        return strips_below(self._bricks, self._settled)
-
     @property
     def _settles(self) -> bool:
-        """Whether ground below the wall settles: it is rigid otherwise."""
-        return self.acts("settlement_load") and bool(self._is_settled.any())
-
-    @property
-    def _overhang(self) -> int:
-        """Elements by which a guided cap stands out at each end."""
-        return 1 if self.cap == "guided" else 0
-
-    def _with_cap(self, stack: Stack) -> Stack:
-        """Put the cap, which is the last body, on the wall."""
-        if self.cap == "none":
-            return stack
-        bricks = list(stack.rectangles)
-        columns, rows = stack.grid
-        sides = dict(stack.sides)
-        out = self._overhang
-        bricks = [brick._replace(x=brick.x + out) for brick in bricks]
-        if out:
-            free = Given(False, np.zeros_like(stack.instants))
-            sides["left"] = Side(sides["top"].x, free)
-            sides["right"] = sides["left"]
-        bricks.append(Brick(0, rows, columns + 2 * out, self.elements_up))
-        stiffness = np.ones(len(bricks))
-        stiffness[-1] = CAP_STIFFNESS
-        groups = stack.groups
-        if groups is not None:
-            groups = np.append(groups, groups.max() + 1)
-        return replace(
-            stack, bricks=bricks, stiffness=stiffness, groups=groups, sides=sides
-        )
-
-    def _on_strips(self, stack: Stack) -> Stack:
-        """Put the wall on strips of ground, of which some settle."""
-        strips = [strip._replace(x=strip.x + self._overhang) for strip in self._strips]
-        above = [brick._replace(y=brick.y + 1) for brick in stack.rectangles]
-        moved = -np.outer(self._is_settled, self.path("settlement_load"))
-        still = Given(True, np.zeros_like(stack.instants))
-        stiffness = stack.stiffness
-        if stiffness is not None:
-            stiffness = np.concatenate([np.ones(len(strips)), stiffness])
-        groups = stack.groups
-        if groups is not None:
-            numbers = groups.max() + 1 + np.arange(len(strips))
-            groups = np.concatenate([numbers, groups])
-        return replace(
-            stack,
-            bricks=[*strips, *above],
-            stiffness=stiffness,
-            groups=groups,
-            support=Support(
-                np.zeros(stack.grid[0] + 1), self._on_ground, strips=len(strips)
-            ),
-            sides={**stack.sides, "bottom": Side(still, Given(True, moved))},
-        )
+        """Check whether ground below the wall settles: it is rigid otherwise."""
+        first, last = self._settled
+        is_above = [
+            brick.y == 0 and brick.x < last and brick.x + brick.columns > first
+            for brick in self._bricks
+        ]
+        return self.acts("settlement_load") and any(is_above)
 
     @property
     def _on_ground(self) -> float:
@@ -435,9 +374,11 @@ class WallSettings(RectangleSettings):
             sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
             tilt=angle if np.any(angle) else None,
         )
-        stack = self._with_cap(stack)
+        if self.cap != "none":
+            stack = with_cap(stack, self.elements_up, is_guided=self.cap == "guided")
         if self._settles:
-            return self._on_strips(stack)
+            settlement = self.path("settlement_load")
+            return on_strips(stack, self._settled, settlement, self._on_ground)
         gap = np.zeros(stack.grid[0] + 1)
         return replace(stack, support=Support(gap, self._on_ground))
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solver.discrete.plane.bricks import Brick, strips_below
+from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.cap_and_ground import strips_below
 from solver.latin import solve
 from solver.laws import OPEN
 from solver.reference.distance import distance_to, kkt_residual

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -108,24 +107,6 @@ def with_opening(
         else:
             around.append(brick)
     return sorted(around, key=lambda brick: (brick.y, brick.x))
-
-
-def strips_below(bricks: Sequence[Brick], ends: tuple[int, int]) -> list[Brick]:
-    """Strips of ground below the lowest bricks, from the left, which begin at y = 0.
-
-    Each is below a single brick, and ends where that does or at the `ends`, in
-    elements. They have one row of elements: neighbours then have no pair of nodes.
-    """
-    strips = []
-    for brick in bricks:
-        if brick.y:
-            continue
-        last = brick.x + brick.columns
-        cuts = [end for end in sorted(ends) if brick.x < end < last]
-        for left, right in pairwise([brick.x, *cuts, last]):
-            if right > left:
-                strips.append(Brick(left, 0, right - left, 1))
-    return strips
 
 
 def _beside(brick: Brick, left: int, right: int) -> list[Brick]:

@@ -236,7 +236,9 @@ class Stack:
     @property
     def strips(self) -> int:
         """Number of the first bodies that are strips of ground."""
-        return 0 if self.support is None else self.support.strips
+        if self.support is None:
+            return 0
+        return self.support.strips
 
     @cached_property
     def is_pile(self) -> bool:
