@@ -50,18 +50,27 @@ def check(part: object, **kinds: Kind) -> None:
     owner = type(part)
     for name, kind in kinds.items():
         value = getattr(part, name)
-        if value is not None or getattr(owner, name, kind) is not None:
-            check_value(f"{owner.__name__}.{name}", value, kind)
+        if value is None and getattr(owner, name, kind) is None:
+            continue
+        flaw = kind.flaw(value)
+        # The name is written where it is needed: most parts have no flaw.
+        if flaw is not None:
+            raise _refusal(f"{owner.__name__}.{name}", value, flaw)
 
 
 def check_value(name: str, value: object, kind: Kind) -> None:
     """Refuse a value that is not of a kind; the message has its name."""
     flaw = kind.flaw(value)
     if flaw is not None:
-        shown: object = Words(value)
-        if flaw.shown is not None:
-            shown = flaw.shown
-        raise RefusedError(name, shown, flaw.allowed, flaw.remedy)
+        raise _refusal(name, value, flaw)
+
+
+def _refusal(name: str, value: object, flaw: Flaw) -> RefusedError:
+    """Refusal of a value with a flaw."""
+    shown: object = Words(value)
+    if flaw.shown is not None:
+        shown = flaw.shown
+    return RefusedError(name, shown, flaw.allowed, flaw.remedy)
 
 
 @dataclass(slots=True)
@@ -170,9 +179,12 @@ class Numbers:
             return Flaw(shown, self.allowed, "space comes first, then time")
         if not value.size:
             return None
-        # Both are NaN if any number is.
+        # Both are NaN if any number is; whole numbers are finite.
         minimum = float(value.min())
-        maximum = float(value.max())
+        if self.whole and self.high == math.inf:
+            maximum = minimum
+        else:
+            maximum = float(value.max())
         if self.above:
             is_above = minimum > self.low
         else:
@@ -402,9 +414,10 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
     """Return whether a shape is a wanted one, in which None is any size."""
     if len(shape) != len(wanted):
         return False
-    return all(
-        allowed in (None, size) for size, allowed in zip(shape, wanted, strict=True)
-    )
+    for size, allowed in zip(shape, wanted, strict=True):
+        if allowed is not None and allowed != size:
+            return False
+    return True
 
 
 def _described(value: object) -> object:

@@ -20,6 +20,7 @@ LAYERS = [
     "arrays",
     "refusal",
     "checks",
+    "kept",
     "laws",
     "discrete",
     "reference",

@@ -276,6 +276,18 @@ class SchurComplement:
             condensed -= coupling.T @ self._response
         self.stiffness: Array = 0.5 * (condensed + condensed.T)
 
+    @property
+    def nbytes(self) -> int:
+        """Memory of all dense matrices, also of the condensation before, B."""
+        nbytes = self.stiffness.nbytes
+        if len(self._rest):
+            nbytes += self._response.nbytes
+        if self._before is not None:
+            # The inside of what was condensed before is factored as a dense matrix.
+            nbytes += len(self._rest) ** 2 * self.stiffness.itemsize
+            nbytes += self._before.nbytes
+        return nbytes
+
     def condense(self, force: Array) -> Array:
         """Condense forces, shape (n, n_columns), to shape (n_kept, n_columns)."""
         if self._before is not None:

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, read_only
 from solver.discrete.elements import SchurComplement
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure
@@ -16,8 +16,8 @@ from solver.discrete.substructure import Elasticity, Substructure
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
 that of a translation."""
-
-
+MOVES = 1e-6
+"""Smallest share in a free motion, over its size, of a body that moves."""
 N_AXES = 3
 """Ways in which a node may move: along x, along y, and turning."""
 
@@ -233,12 +233,14 @@ class Inside:
             of_body[dofs] = modes @ combinations[hindered:].T
             motions.append(of_body)
         together = np.concatenate(motions, axis=1)
-        return together if together.size else None
+        if not together.size:
+            return None
+        return read_only(together)
 
-    def hold_still(
+    def free_groups(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
-    ) -> bool:
-        """Check whether groups of bodies cannot move where some displacements vanish.
+    ) -> Indices:
+        """Numbers of the groups of bodies that can move, (n,).
 
         Parameters
         ----------
@@ -257,10 +259,16 @@ class Inside:
         for number, group in enumerate(moving):
             dofs = np.flatnonzero(groups == group)
             motions[dofs, 3 * number : 3 * number + 3] = self.rigid_modes(dofs)
-        hindered = [motions[fixed]]
-        hindered += [motions[above] - motions[below] for above, below in jumps]
-        sizes = np.linalg.svd(np.concatenate(hindered), compute_uv=False)
-        return int(np.count_nonzero(sizes > HELD)) == motions.shape[1]
+        rows = [motions[fixed]]
+        rows += [motions[above] - motions[below] for above, below in jumps]
+        hindered = np.concatenate(rows)
+        sizes = np.linalg.svd(hindered, compute_uv=False)
+        count = int(np.count_nonzero(sizes > HELD))
+        if count == motions.shape[1]:
+            return moving[:0]
+        free = np.linalg.svd(hindered, full_matrices=True)[2][count:]
+        largest = np.abs(free).reshape(-1, len(moving), 3).max(axis=(0, 2))
+        return np.asarray(moving[largest > MOVES], dtype=np.intp)
 
     def rigid_modes(self, dofs: Indices) -> Array:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""

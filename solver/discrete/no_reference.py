@@ -6,7 +6,7 @@ and the mean of the pairs of a point: they would leave out anything else.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,8 +16,9 @@ from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Indices
 from solver.discrete.contacts import Contacts
+from solver.kept import KEPT, content_of
 from solver.laws import Contact, Interface, SlipFactor
-from solver.laws.interface import Glued, IncrementalForm
+from solver.laws.interface import IncrementalForm
 from solver.laws.play import PLAIN
 
 _BY_ESTIMATE = "judge the run by its estimate alone"
@@ -56,7 +57,9 @@ def reason_against_reference(
             f"instant by instant: add a contact, or {_BY_ESTIMATE}."
         )
     cuts = [form.glued for form in forms if form.glued is not None]
-    if not _are_glued_as_numbered(cuts, numbering):
+    sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *cuts], axis=1)
+    key = "numbering", content_of(*numbering, sides)
+    if not KEPT.of(key, lambda: _are_glued_as_numbered(sides, numbering)):
         return (
             "Rows of one degree of freedom are not glued, or glued rows have two, "
             "so that no matrix of the whole structure says what holds: number them "
@@ -77,13 +80,15 @@ def reason_against_reference(
     return ""
 
 
-def _are_glued_as_numbered(cuts: Sequence[Glued], numbering: Numbering) -> bool:
-    """Check whether just those rows share a degree of freedom that laws glue."""
+def _are_glued_as_numbered(sides: Indices, numbering: Numbering) -> bool:
+    """Check whether just those rows share a degree of freedom that laws glue.
+
+    `sides` are the glued rows of both sides, (2, n_glued).
+    """
     n_dofs = int(numbering.dofs.max(initial=0)) + 1
     # All rows of one substructure at one degree of freedom are one node.
     keys = numbering.parts * n_dofs + numbering.dofs
     nodes, node_of_row = np.unique(keys, return_inverse=True)
-    sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *cuts], axis=1)
     first, second = node_of_row[sides]
     ones = np.ones(len(first))
     links = sparse.coo_array((ones, (first, second)), shape=(len(nodes),) * 2)

@@ -10,6 +10,7 @@ time.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -40,6 +41,7 @@ from solver.discrete.inside import Inside
 from solver.discrete.no_reference import Numbering, reason_against_reference
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
+from solver.kept import KEPT, content_of
 from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 
@@ -116,6 +118,12 @@ class Problem:
         check_names(self.rubbing)
         check_instants(self.n_instants, self.interfaces, self.substructures)
         check_prescribed(self.given_displacements, self.row_dofs)
+
+    def driven_by(self, drives: tuple[Drive, ...]) -> Problem:
+        """The same problem with drives; what was checked and found stays."""
+        driven = copy(self)
+        object.__setattr__(driven, "drives", drives)
+        return driven
 
     def absolute(self, displacement: Array) -> Array:
         """Absolute displacements: relative ones plus the motion of the support.
@@ -355,14 +363,13 @@ class Problem:
     @cached_property
     def is_chain(self) -> bool:
         """Check whether the stiffness is tridiagonal in the degrees of freedom."""
-        operators = {
-            id(part.elasticity): part.elasticity for part in self.substructures
-        }
-        for operator in operators.values():
-            rows, columns = sparse.coo_array(operator.stiffness).coords
-            if np.abs(rows - columns).max(initial=0) > 1:
-                return False
-        return all(np.all(np.diff(part.dofs) == 1) for part in self.substructures)
+        if not all(part.elasticity.is_tridiagonal for part in self.substructures):
+            return False
+        dofs = [part.dofs for part in self.substructures]
+        steps = np.diff(np.concatenate(dofs))
+        # From one substructure to the next any step will do.
+        steps[np.cumsum([len(of_part) for of_part in dofs])[:-1] - 1] = 1
+        return bool(np.all(steps == 1))
 
     @cached_property
     def motions(self) -> Array | None:
@@ -370,9 +377,35 @@ class Problem:
 
         None without such motions, and along rods, where they cost no digits.
         """
-        if self.inside is None:
+        inside = self.inside
+        if inside is None:
             return None
-        return self.inside.rigid_motions(self.prescribed[0])
+        fixed = self.prescribed[0]
+        key = "motions", self.place_of_bodies, content_of(fixed)
+        return KEPT.of(key, lambda: inside.rigid_motions(fixed))
+
+    @cached_property
+    def content_of_stiffness(self) -> bytes:
+        """Digest of the parts of which the stiffness of the structure is assembled."""
+        operators = {
+            id(part.elasticity): part.elasticity for part in self.substructures
+        }
+        numbers = {identity: number for number, identity in enumerate(operators)}
+        of_parts = [numbers[id(part.elasticity)] for part in self.substructures]
+        matrices = [operator.stiffness for operator in operators.values()]
+        dofs = [part.dofs for part in self.substructures]
+        return content_of(*matrices, np.array(of_parts), *dofs)
+
+    @cached_property
+    def place_of_bodies(self) -> bytes:
+        """Digest of where the degrees of freedom of each body are; b"" of rods."""
+        inside = self.inside
+        if inside is None:
+            return b""
+        # Turns of beams are not over the unit of length as positions are.
+        unit = np.array([self.scales.displacement])
+        bodies = inside.body_of_dofs
+        return content_of(inside.positions, inside.directions, bodies, unit)
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:

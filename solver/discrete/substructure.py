@@ -63,6 +63,12 @@ class Elasticity:
         )
 
     @property
+    def nbytes(self) -> int:
+        """Memory of the operator, B, without the places of sparse entries."""
+        fields = (self.stiffness, self.trace, self.direction)
+        return sum(field.size * field.dtype.itemsize for field in fields)
+
+    @property
     def _is_symmetric(self) -> bool:
         """Check whether the stiffness is symmetric, in two products.
 
@@ -77,6 +83,12 @@ class Elasticity:
         force = self.stiffness @ second
         difference = float(first @ force - second @ (self.stiffness @ first))
         return abs(difference) <= ALIKE * float(np.abs(first) @ np.abs(force))
+
+    @cached_property
+    def is_tridiagonal(self) -> bool:
+        """Check whether degrees of freedom are tied to their neighbours alone."""
+        rows, columns = sparse.coo_array(self.stiffness).coords
+        return bool(np.abs(rows - columns).max(initial=0) <= 1)
 
     @cached_property
     def boundary(self) -> tuple[Indices, Indices, sparse.csr_array | Array]:

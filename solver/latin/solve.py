@@ -81,11 +81,8 @@ def record(
     distance
         Distance to a reference, if there is one.
     watch
-        Whether indicators and estimate are wanted of every iteration, and not only of
-        the last.
+        Whether indicators and estimate are wanted though no stop rule needed them.
     """
-    # The last record is that of the result, and is always complete.
-    watch = watch or verdict.status is not None
     estimated = verdict.estimated_error
     if watch and math.isnan(estimated) and verdict.certificate is not None:
         estimated = verdict.certificate.distance.of_friction_force(iterate)
@@ -185,7 +182,9 @@ def solve(
             # A diverged iterate is no result: the one before is.
             if status is not None and status.ending is Ending.DIVERGED:
                 return Solution(last or iterate, records, status)
-            records.append(record(iterate, verdict, distance, watch=watch))
+            # The last record is that of the result, and is always complete.
+            is_complete = watch or verdict.status is not None
+            records.append(record(iterate, verdict, distance, watch=is_complete))
             last = iterate
             # A run that ends by itself in the same iteration has its own status.
             if status is None and cancelled():

@@ -30,8 +30,9 @@ from scipy import sparse
 from scipy.linalg import solve_triangular
 from scipy.sparse.linalg import SuperLU
 
-from solver.arrays import ROUNDING, Array, Indices, sparse_factor
+from solver.arrays import ROUNDING, Array, Flags, Indices, read_only, sparse_factor
 from solver.discrete.problem import Problem
+from solver.kept import KEPT, content_of
 from solver.reference.assembly import (
     Interrupted,
     NoReferenceError,
@@ -60,8 +61,144 @@ elements of slender bodies are 1e7 times those of contact."""
 TIE = 1e3
 """Stiffness that ties jumps which depend on each other, in springs at a pair."""
 
+OF_ENTRY = 12
+"""Memory of an entry of a sparse matrix, with its place, B."""
+
 BLOCK = 500
 """Columns of a dense matrix that are taken at a time: more would fill the memory."""
+
+
+class GluedStructure:
+    """The structure glued at its contacts: what no friction and no load changes.
+
+    It is kept between runs (`solver.kept`).
+
+    Parameters
+    ----------
+    problem
+        The problem: its degrees of freedom that are free, and its rigid motions.
+    stiffness
+        Stiffness of the whole structure, shape (n_dofs, n_dofs), scaled.
+    jumps
+        J of the unknown jumps, shape (n_moving, n_dofs).
+    rigid
+        Whether a jump has nothing in series, shape (n_moving,).
+    given
+        Jumps that prescribed displacements make, shape (n_moving, n_instants), scaled.
+    stop
+        Asked now and then whether to give up.
+
+    Attributes
+    ----------
+    base, ties, stiffness, springs, motions, gauge, stresses, tie
+        As of `Condensation`.
+    jumped, glued
+        Displacements by jumps of the base, T, and of the glued structure, Z, of the
+        free degrees of freedom (`solver.reference.glued`).
+    pulled
+        Forces on the glued structure by jumps, shape (n_glued, n_base), scaled.
+    given
+        Jumps of the base that prescribed displacements make, (n_base, n_instants).
+    given_force
+        S times these jumps, same shape, scaled.
+    pulls_of_gauge
+        As of `Condensation`.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        stiffness: sparse.csr_array,
+        jumps: sparse.csr_array,
+        rigid: Flags,
+        given: Array,
+        stop: Callable[[], bool] | None,
+    ) -> None:
+        free = _free_dofs(problem)
+        free_jumps = jumps[:, free]
+        self.base, self.ties = base_of(free_jumps, rigid)
+        free_jumps = free_jumps[self.base]
+        self.motions, self.gauge = _gauged(problem, jumps[self.base])
+        self.stresses: Array = self_stresses(free_jumps, rigid[self.base])
+        self._rings = np.flatnonzero(self.stresses.any(axis=1))
+        stiffness = stiffness[free][:, free]
+        diagonal = stiffness.diagonal()
+        # A bare degree of freedom would make a pair infinitely soft.
+        diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
+        self.springs: Array = 1.0 / (abs(free_jumps) @ (1.0 / diagonal))
+        self.tie = TIE * float(self.springs.max(initial=0.0))
+        self.jumped, self.glued = from_jumps(free_jumps)
+        strained = sparse.csr_array(stiffness @ self.jumped)
+        self.pulled = sparse.csr_array(self.glued.T @ strained)
+        self._factor = factored(sparse.csc_array(self.glued.T @ stiffness @ self.glued))
+        # The difference of two matrices that are nearly equal: rounding makes it
+        # unsymmetric, and moves jumps that depend on each other.
+        condensed = (self.jumped.T @ strained).toarray(order="C")
+        self._subtract_glued(condensed, stop)
+        _symmetrise(condensed)
+        self._tie(condensed)
+        self.stiffness: Array = condensed
+        self.given: Array = np.asarray(given[self.base])
+        self.given_force: Array = condensed @ self.given
+        if self.gauge.size:
+            self._set_motions_apart()
+        read_only(self.stiffness)
+        self.pulls_of_gauge = read_only(self.stiffness @ self.gauge)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the structure takes, B, without what is sparse and small."""
+        dense = [self.stiffness, self.motions, self.gauge, self.stresses]
+        dense += [self.given, self.given_force, self.pulls_of_gauge]
+        entries: int = self._factor.nnz + self.pulled.nnz
+        return sum(field.nbytes for field in dense) + OF_ENTRY * entries
+
+    def _subtract_glued(
+        self, condensed: Array, stop: Callable[[], bool] | None
+    ) -> None:
+        """Subtract the reaction of the glued structure, in place, (n_base, n_base)."""
+        for columns in _blocks(len(condensed)):
+            if stop is not None and stop():
+                raise Interrupted
+            pulled = self.pulled[:, columns].toarray()
+            condensed[:, columns] -= self.pulled.T @ self.solved(pulled)
+
+    def solved(self, forces: Array) -> Array:
+        """Displacement of the glued structure under forces on it, (n_glued, n) each."""
+        if len(forces):
+            return np.asarray(self._factor.solve(forces))
+        return forces
+
+    def balanced(self, forces: Array) -> Array:
+        """Forces or jumps of the base less their part in forces that move nothing.
+
+        Both have the shape (n_base, n_instants).
+        """
+        rings = self._rings
+        stresses = self.stresses[self._rings]
+        balanced = forces.copy()
+        balanced[rings] -= stresses @ (stresses.T @ forces[rings])
+        return balanced
+
+    def _tie(self, stiffness: Array) -> None:
+        """Tie jumps of the base that depend on others, in S (n_base, n_base)."""
+        rings = self._rings
+        stresses = self.stresses[self._rings]
+        stiffness[rings] -= stresses @ (stresses.T @ stiffness[rings])
+        stiffness[:, rings] -= (stiffness[:, rings] @ stresses) @ stresses.T
+        stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
+
+    def _set_motions_apart(self) -> None:
+        """Remove the rounding of rigid motions from S, and add s Q Q' to it."""
+        gauge = self.gauge
+        stiffness = self.stiffness
+        costs = stiffness @ gauge
+        # Half of Q Q' S Q Q' each time, as rows and columns both subtract it.
+        costs -= 0.5 * gauge @ (gauge.T @ costs)
+        size = float(np.diagonal(stiffness).mean())
+        for rows in _blocks(len(stiffness)):
+            excess = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
+            stiffness[rows] -= excess
 
 
 class Condensation:
@@ -85,6 +222,8 @@ class Condensation:
     motions, gauge
         Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q
         of the base that they make, shape (n_base, n_motions).
+    pulls_of_gauge
+        (S + s Q Q') Q, shape (n_base, n_motions), scaled.
     stresses, tie
         Forces that move nothing, where jumps of the base depend on each other, shape
         (n_base, n_stresses); and the stiffness in S that keeps the jumps from coming
@@ -109,7 +248,7 @@ class Condensation:
             If the structure can move with all contacts closed and stuck.
         """
         self._fixed, self._prescribed = problem.prescribed
-        self._free: Indices = np.setdiff1d(np.arange(problem.n_dofs), self._fixed)
+        self._free = _free_dofs(problem)
         self._whole = assembled_stiffness(problem)
         self._force = external_force(problem)
         self._jumps = jumps(problem)
@@ -118,101 +257,50 @@ class Condensation:
         free_jumps = self._jumps[:, self._free]
         self.moving: Indices = np.flatnonzero(np.diff(free_jumps.indptr))
         self.rules = self.all_rules.kept(self.moving)
-        free_jumps = free_jumps[self.moving]
+        self._glued = self._glued_structure(problem, stop)
+        self.base = self._glued.base
+        self.ties = self._glued.ties
+        self.stiffness = self._glued.stiffness
+        self.springs = self._glued.springs
+        self.motions = self._glued.motions
+        self.gauge = self._glued.gauge
+        self.pulls_of_gauge = self._glued.pulls_of_gauge
+        self.stresses = self._glued.stresses
+        self.tie = self._glued.tie
+        self._condense_load()
+
+    def _glued_structure(
+        self, problem: Problem, stop: Callable[[], bool] | None
+    ) -> GluedStructure:
+        """Structure glued at its contacts, from an earlier run if nothing changed."""
+        moving = self._jumps[self.moving]
         rigid = self.rules.compliance == 0.0
-        self.base, self.ties = base_of(free_jumps, rigid)
-        free_jumps = free_jumps[self.base]
-        rigid = rigid[self.base]
-        self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
-        self.stresses: Array = self_stresses(free_jumps, rigid)
-        self._rings = np.flatnonzero(self.stresses.any(axis=1))
-        self._condense(free_jumps, stop)
-
-    def _condense(
-        self, free_jumps: sparse.csr_array, stop: Callable[[], bool] | None
-    ) -> None:
-        """Eliminate the glued structure from stiffness and load, factored once.
-
-        `free_jumps` are the jumps of the base by the degrees of freedom that are not
-        prescribed, shape (n_base, n_free).
-        """
-        stiffness = self._whole[self._free]
-        load = self._force[self._free] - stiffness[:, self._fixed] @ self._prescribed
-        stiffness = stiffness[:, self._free]
-        diagonal = stiffness.diagonal()
-        # A bare degree of freedom would make a pair infinitely soft.
-        diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
-        self.springs: Array = 1.0 / (abs(free_jumps) @ (1.0 / diagonal))
-        self.tie = TIE * float(self.springs.max(initial=0.0))
-        self._jumped, self._glued = from_jumps(free_jumps)
-        strained = sparse.csr_array(stiffness @ self._jumped)
-        self._pulled = sparse.csr_array(self._glued.T @ strained)
-        self._factor = factored(
-            sparse.csc_array(self._glued.T @ stiffness @ self._glued)
+        given = self.given[self.moving]
+        key = (
+            "glued",
+            problem.place_of_bodies,
+            problem.content_of_stiffness,
+            content_of(self._fixed, moving, rigid, given),
         )
+        return KEPT.of(
+            key,
+            lambda: GluedStructure(problem, self._whole, moving, rigid, given, stop),
+        )
+
+    def _condense_load(self) -> None:
+        """Condense the load of the free degrees of freedom to the base."""
+        glued = self._glued
+        pushed = self._whole[self._free][:, self._fixed] @ self._prescribed
+        load = self._force[self._free] - pushed
         # The few patterns of the load are solved for, not its many instants.
         patterns, courses = separated(load)
-        self._alone = self._solved(self._glued.T @ patterns) @ courses
-        load = self._jumped.T @ load - self._pulled.T @ self._alone
-        # The difference of two matrices that are nearly equal: rounding makes it
-        # unsymmetric, and moves jumps that depend on each other.
-        condensed = (self._jumped.T @ strained).toarray(order="C")
-        self._subtract_glued(condensed, stop)
-        _symmetrise(condensed)
-        self._tie(condensed)
-        self.stiffness: Array = condensed
-        self.load: Array = self._balanced(load) + condensed @ self._given_of_base
+        self._alone = glued.solved(glued.glued.T @ patterns) @ courses
+        load = glued.jumped.T @ load - glued.pulled.T @ self._alone
+        self.load: Array = glued.balanced(load) + glued.given_force
         if self.gauge.size:
-            self._set_motions_apart()
-
-    def _subtract_glued(
-        self, condensed: Array, stop: Callable[[], bool] | None
-    ) -> None:
-        """Subtract the reaction of the glued structure, in place, (n_base, n_base)."""
-        for columns in _blocks(len(condensed)):
-            if stop is not None and stop():
-                raise Interrupted
-            pulled = self._pulled[:, columns].toarray()
-            condensed[:, columns] -= self._pulled.T @ self._solved(pulled)
-
-    def _solved(self, forces: Array) -> Array:
-        """Displacement of the glued structure under forces on it, (n_glued, n) each."""
-        if len(forces):
-            return np.asarray(self._factor.solve(forces))
-        return forces
-
-    def _balanced(self, forces: Array) -> Array:
-        """Forces or jumps of the base less their part in forces that move nothing.
-
-        Both have the shape (n_base, n_instants).
-        """
-        rings = self._rings
-        stresses = self.stresses[self._rings]
-        balanced = forces.copy()
-        balanced[rings] -= stresses @ (stresses.T @ forces[rings])
-        return balanced
-
-    def _tie(self, stiffness: Array) -> None:
-        """Tie jumps of the base that depend on others, in S (n_base, n_base)."""
-        rings = self._rings
-        stresses = self.stresses[self._rings]
-        stiffness[rings] -= stresses @ (stresses.T @ stiffness[rings])
-        stiffness[:, rings] -= (stiffness[:, rings] @ stresses) @ stresses.T
-        stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
-
-    def _set_motions_apart(self) -> None:
-        """Remove the rounding of rigid motions from S and q, and add s Q Q' to S."""
-        gauge = self.gauge
-        stiffness = self.stiffness
-        costs = stiffness @ gauge
-        # Half of Q Q' S Q Q' each time, as rows and columns both subtract it.
-        costs -= 0.5 * gauge @ (gauge.T @ costs)
-        size = float(np.diagonal(stiffness).mean())
-        for rows in _blocks(len(stiffness)):
-            excess = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
-            stiffness[rows] -= excess
-        # The resultant of the loads is known exactly, without condensation.
-        self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
+            # The resultant of the loads is known exactly, without condensation.
+            resultant = self.motions.T @ self._force
+            self.load += self.gauge @ (resultant - self.gauge.T @ self.load)
 
     @cached_property
     def elastic(self) -> Array:
@@ -225,18 +313,13 @@ class Condensation:
         held = gauge * (gauge * (stiffness @ gauge)).sum(axis=0)
         return np.asarray(stiffness - held @ gauge.T)
 
-    @property
-    def _given_of_base(self) -> Array:
-        """Jumps of the base by prescribed displacements, (n_base, n_instants)."""
-        return np.asarray(self.given[self.moving[self.base]])
-
     @cached_property
     def shift(self) -> Array:
         """Jumps by prescribed displacements that do not follow from those of the base.
 
         Shape (n_moving, n_instants), scaled.
         """
-        return np.asarray(self.given[self.moving] - self.ties @ self._given_of_base)
+        return np.asarray(self.given[self.moving] - self.ties @ self._glued.given)
 
     def deformation(self, strained: Array) -> Array:
         """Displacements without rigid motions by jumps y of the base.
@@ -245,9 +328,11 @@ class Condensation:
         """
         displacement = np.empty_like(self._force)
         displacement[self._fixed] = self._prescribed
-        jumped = self._balanced(strained - self._given_of_base)
-        glued = self._alone - self._solved(self._pulled @ jumped)
-        displacement[self._free] = self._jumped @ jumped + self._glued @ glued
+        jumped = self._glued.balanced(strained - self._glued.given)
+        glued = self._alone - self._glued.solved(self._glued.pulled @ jumped)
+        displacement[self._free] = (
+            self._glued.jumped @ jumped + self._glued.glued @ glued
+        )
         return displacement
 
     def jump(self, displacement: Array) -> Array:
@@ -313,6 +398,12 @@ class Condensation:
         )
         overlap = np.maximum(-self.all_rules.gap, 0.0)
         return float(largest or (self.unit * overlap).max(initial=0.0))
+
+
+def _free_dofs(problem: Problem) -> Indices:
+    """Degrees of freedom without prescribed displacement, ascending, (n_free,)."""
+    fixed, _ = problem.prescribed
+    return np.setdiff1d(np.arange(problem.n_dofs), fixed)
 
 
 def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:

@@ -80,7 +80,7 @@ class LinearSystem:
         self._alone = np.diagonal(self._stiffness)
         alone = abs(condensed.ties) @ self._alone
         self.unit: Array = alone / (1.0 + alone * rules.compliance)
-        self._pulls_of_gauge = self._of_unknowns[:, : len(self._base)] @ self._gauge
+        self._pulls_of_gauge = self._forces_of_motions(condensed)
         self._gauge_square = self._gauge.T @ self._gauge
         self._is_plain = not self._compliance.any() and not self._gauge.size
         self._states: States | None = None
@@ -100,6 +100,12 @@ class LinearSystem:
         forces[self._base, n_base:] = -self._ties[self._others].T
         forces[self._others, np.arange(n_base, size)] = 1.0
         return forces
+
+    def _forces_of_motions(self, condensed: Condensation) -> Array:
+        """Forces of all jumps by y as of each motion, (n, n_motions)."""
+        if self._ties is None and self._gauge is condensed.gauge:
+            return condensed.pulls_of_gauge
+        return np.asarray(self._of_unknowns[:, : len(self._base)] @ self._gauge)
 
     def set_friction(self, friction: Array, growth: Array) -> None:
         """Change coefficients of friction and growths of bounds per slip, (n,) each."""

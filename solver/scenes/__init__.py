@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from solver import discrete
 from solver.discrete.problem import Problem
 from solver.scenes.bar import BarSettings
@@ -36,4 +34,4 @@ CATALOGUE: dict[str, type[Settings]] = {
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem of checked settings, with their loads and motions."""
     problem = discrete.discretise(settings.structure())
-    return replace(problem, drives=settings.drives())
+    return problem.driven_by(settings.drives())

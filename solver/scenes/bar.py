@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -318,8 +319,9 @@ class BarSettings(Settings):
             self.check_digits(f"{side}_spring", stiffness, remedy)
         self._check_equilibrium()
 
-    def structure(self) -> Rods:
-        """Make the friction bar (paper, section 3 and Table 1).
+    @cached_property
+    def bodies(self) -> Rods:
+        """The friction bar (paper, section 3 and Table 1).
 
         The bar is at rest and free of stress before the first instant.
         """
@@ -366,7 +368,7 @@ class BarSettings(Settings):
 
     def sentence(self) -> str:
         """Describe the bar in a sentence."""
-        rods = self.structure()
+        rods = self.bodies
         strength = self.law.without_slip(rods.strength)
         table = "smooth"
         if strength.all():
@@ -402,7 +404,7 @@ class BarSettings(Settings):
         """Refuse forces that friction cannot balance where it alone holds the bar."""
         if {self.left_end, self.right_end} & set(HOLDING):
             return
-        rods = self.structure()
+        rods = self.bodies
         strength = self.law.without_slip(rods.strengths) * self.law.strongest
         shares = tributary(self.elements) * (self.length / self.elements)
         largest = np.broadcast_to(shares @ strength, (self.n_instants,))
@@ -425,7 +427,7 @@ class BarSettings(Settings):
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
         """Friction along the bar and the loop of its end, by closed forms."""
-        return exact_bar(self.structure(), problem)
+        return exact_bar(self.bodies, problem)
 
     def _uneven_section(self) -> tuple[float, Array | None]:
         """Harmonic mean of the section's factors, and every element's factor over it.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -178,7 +179,7 @@ class BlockSettings(SideSettings):
     def check_together(self) -> None:
         """Refuse loads under which contact alone cannot hold the body."""
         super().check_together()
-        loss = loss_of_equilibrium(self.structure())
+        loss = loss_of_equilibrium(self.bodies)
         if loss is not None:
             time, reason = loss
             loads = loads_at(self.drives(), int(np.searchsorted(self.times(), time)))
@@ -193,8 +194,9 @@ class BlockSettings(SideSettings):
                 "body where it tips, or hold a side",
             )
 
-    def structure(self) -> Stack:
-        """Make the block; one metre thick."""
+    @cached_property
+    def bodies(self) -> Stack:
+        """The block; one metre thick."""
         sides = {side: self.side(side) for side in LOADED_SIDES}
         if isinstance(self.gap, str):
             gap = self.gap_at(self.places)
@@ -238,7 +240,7 @@ class BlockSettings(SideSettings):
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterable[ExactCurve]:
         """Tractions on a parabola, by a solution's forces, or the slide on a spring."""
-        body = self.structure()
+        body = self.bodies
         if self.gap != "parabola":
             return exact_on_spring(body)
         if solution is None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -310,8 +311,9 @@ class FaultSettings(RectangleSettings):
                 "more",
             )
 
-    def structure(self) -> Fault:
-        """Make the quarter of the body; one metre thick.
+    @cached_property
+    def bodies(self) -> Fault:
+        """The quarter of the body; one metre thick.
 
         The displacement of its top is prescribed, as under the shear stress without
         slip; so there is equilibrium even where the whole fault slips.

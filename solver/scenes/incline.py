@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -97,7 +98,7 @@ class InclineSettings(RectangleSettings):
     def check_together(self) -> None:
         """Refuse slopes on which nothing holds the block."""
         super().check_together()
-        loss = loss_of_equilibrium(self.structure())
+        loss = loss_of_equilibrium(self.bodies)
         if loss is None:
             return
         instant, reason = loss
@@ -109,8 +110,9 @@ class InclineSettings(RectangleSettings):
             "lower the slope, or take a longer base or a lower block",
         )
 
-    def structure(self) -> Stack:
-        """Make the block on its slope; one metre thick."""
+    @cached_property
+    def bodies(self) -> Stack:
+        """The block on its slope; one metre thick."""
         angle = np.radians(self.path("slope_load"))
         density = self.weight / (self.length * self.height)
         body_force = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -211,8 +212,9 @@ class LayersSettings(RectangleSettings):
                 "% of the length from where they should; more elements come nearer"
             )
 
-    def structure(self) -> Stack:
-        """Make the stack; its left end is clamped; one metre thick."""
+    @cached_property
+    def bodies(self) -> Stack:
+        """The stack; its left end is clamped; one metre thick."""
         up = self.elements_up
         bricks = [
             Brick(0, layer * up, span, up) for layer, span in enumerate(self.spans)
@@ -252,7 +254,7 @@ class LayersSettings(RectangleSettings):
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
         """Force that bends the layers, if they act apart or as one."""
-        return exact_layers(self.structure(), problem, solution)
+        return exact_layers(self.bodies, problem, solution)
 
     def sentence(self) -> str:
         """Describe the stack in a sentence."""

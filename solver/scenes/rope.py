@@ -233,8 +233,9 @@ class RopeSettings(Settings):
         tension = self.path("tension_load").max()
         return float(np.sqrt(self.section.stuck_bending / tension))
 
-    def structure(self) -> Rope:
-        """Make the strand.
+    @cached_property
+    def bodies(self) -> Rope:
+        """The strand.
 
         Under a uniform curvature all wires of a layer are alike, and each passes every
         fibre: half a turn of one wire is enough, from the outermost fibre to the

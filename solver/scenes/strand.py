@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -130,8 +131,9 @@ class StrandSettings(Settings):
         shared.factors_of(self)
         self._check_equilibrium(self.path("load"))
 
-    def structure(self) -> Rods:
-        """Make the strand.
+    @cached_property
+    def bodies(self) -> Rods:
+        """The strand.
 
         The wires are at rest and free of stress before the first instant.
         """
@@ -164,7 +166,7 @@ class StrandSettings(Settings):
         self, problem: Problem, solution: LoopFields | None = None
     ) -> Iterator[ExactCurve]:
         """Forces of the broken wire and of each neighbour, by a closed form."""
-        strand = self.structure()
+        strand = self.bodies
         exact = broken_wire(strand)
         if exact is not None:
             for force in (exact.force, exact.neighbour_force):

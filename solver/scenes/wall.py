@@ -255,8 +255,9 @@ class WallSettings(RectangleSettings):
                 "lower it, or build a larger wall",
             )
 
-    def structure(self) -> Stack:
-        """Make the wall; one metre thick."""
+    @cached_property
+    def bodies(self) -> Stack:
+        """The wall; one metre thick."""
         angle = np.radians(self.path("slope_load"))
         hold = PRESETS["hold"].value(self.times() / self.duration, 1)
         weight = self.unit_weight * hold

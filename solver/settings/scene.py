@@ -7,6 +7,7 @@ gives a new one.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 from typing import ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
@@ -70,9 +71,14 @@ class Settings(LoadSettings):
     has_joints: ClassVar[bool] = False
     """Bodies touch each other at joints, and not along the whole of the next one."""
 
-    def structure(self) -> Structure:
-        """Make the bodies, with all loads and supports."""
+    @cached_property
+    def bodies(self) -> Structure:
+        """The bodies, with all loads and supports; made once, as settings stay."""
         raise NotImplementedError
+
+    def structure(self) -> Structure:
+        """Bodies with all loads and supports."""
+        return self.bodies
 
     def sentence(self) -> str:
         """Describe bodies, loads and friction in a sentence for a newcomer."""

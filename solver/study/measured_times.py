@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
+from solver.kept import KEPT
 from solver.latin import Ending, Solution, judged, solve
 from solver.latin.end.cost import run_cost
 from solver.reference.assembly import NoReferenceError
@@ -207,6 +208,7 @@ def _errors(settings: Settings, distance: Distance) -> Array:
 
 def _append_times(passes: list[list[float]], settings: Settings, number: int) -> None:
     """Append the times from the start to every iteration, with discretisation, s."""
+    KEPT.clear()
     start = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - start
@@ -217,7 +219,11 @@ def _append_times(passes: list[list[float]], settings: Settings, number: int) ->
 def seconds_of(
     work: Callable[[], object], clock: Callable[[], float] = time.process_time
 ) -> float:
-    """Time of some work, s: of the processor unless another clock is given."""
+    """Time of some work, s: of the processor unless another clock is given.
+
+    Nothing is kept from what was done before.
+    """
+    KEPT.clear()
     return timeit(work, timer=clock, number=1)
 
 

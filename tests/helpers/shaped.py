@@ -14,7 +14,6 @@ Numbers = NDArray[np.intp]
 
 def grid(x: Any, y: Any) -> Mesh:
     """Quadrilaterals between lines along x and y; corners row by row from below."""
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     numbers = np.arange(len(corners)).reshape(len(y), len(x))
     ends = numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, 1:], numbers[1:, :-1]
@@ -42,7 +41,8 @@ def in_triangles(mesh: Mesh) -> Mesh:
 
 def distorted(mesh: Mesh, size: float) -> Mesh:
     """A mesh whose inner corners are moved by up to a size."""
-    low, high = mesh.corners.min(axis=0), mesh.corners.max(axis=0)
+    low = mesh.corners.min(axis=0)
+    high = mesh.corners.max(axis=0)
     is_inner = np.all((mesh.corners > low) & (mesh.corners < high), axis=1)
     moved = np.random.default_rng(1).uniform(-size, size, mesh.corners.shape)
     return Mesh(mesh.corners + moved * is_inner[:, None], mesh.elements)
@@ -66,8 +66,12 @@ def radial_joints(
     joints = []
     for number in range(voussoirs + 1):
         angle = np.pi * (1.0 - number / voussoirs)
-        above = of_block[::-1] if number == 0 else of_stone["bottom"]
-        below = of_block if number == voussoirs else of_stone["top"]
+        above = of_stone["bottom"]
+        below = of_stone["top"]
+        if number == 0:
+            above = of_block[::-1]
+        if number == voussoirs:
+            below = of_block
         normals = np.tile([-np.sin(angle), np.cos(angle)], (len(above), 1))
         joint = Joint(
             f"joint {number}",
@@ -151,6 +155,13 @@ def belt(
     return Bodies([Body("belt", shape, 1e11)], [drum], [], loads, t, 1.0)
 
 
+def rotation(angle: float) -> NDArray[np.float64]:
+    """Matrix that turns vectors by an angle, rad."""
+    c = np.cos(angle)
+    s = np.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
 def block_on_ground(
     mesh: Mesh, chains: dict[str, Numbers], *, angle: float = 0.0, cuts: int = 1
 ) -> Bodies:
@@ -159,12 +170,12 @@ def block_on_ground(
     The top is pressed and sheared by tractions, so that nothing holds an axis.
     """
     t = np.linspace(0.0, 1.0, 11)
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.array([[c, -s], [s, c]])
+    turn = rotation(angle)
     press = -1e6 * np.minimum(3.0 * t, 1.0)
     shear = 2.2e5 * np.sin(2.0 * np.pi * np.clip(1.5 * t - 0.5, 0.0, 1.0))
     body = Body("block", mesh, 2e10, 0.3, angle=angle, substructures=cuts)
-    top, foot = chains["top"], chains["bottom"]
+    foot = chains["bottom"]
+    top = chains["top"]
     load = Load.of_traction("top", 0, body, top, turn @ np.stack([shear, press]))
     normals = np.tile(turn @ [0.0, 1.0], (len(foot), 1))
     ground = Joint("ground", 0, foot, None, None, normals, friction=0.3)
@@ -180,11 +191,14 @@ def half_ring(angles: NDArray[np.float64], radii: NDArray[np.float64]) -> Mesh:
 
 
 def pressed_wire(wire: Mesh, n_angles: int, force: float, foot: Numbers) -> Bodies:
-    """Lower half of a round wire of radius 0.01 m on a flat, pressed by a force."""
+    """Lower half of a round wire of radius 0.01 m on a flat, pressed by a force.
+
+    Without friction, which would keep the wire from widening under the contact.
+    """
     t = np.linspace(0.0, 1.0, 4)
     up = np.tile([0.0, 1.0], (len(foot), 1))
     gap = wire.nodes[foot, 1] + 0.01
-    ground = Joint("ground", 0, foot, None, None, up, gap, 0.3)
+    ground = Joint("ground", 0, foot, None, None, up, gap)
     left = wire.along(np.arange(0, wire.n_corners, n_angles))
     right = wire.along(np.arange(n_angles - 1, wire.n_corners, n_angles))
     faces = np.concatenate([left, right])

@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.inside import Inside, substructure_of
-from solver.discrete.loose import is_loose
+from solver.discrete.loose import loose_bodies
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
@@ -50,10 +50,12 @@ def problem_of(structure: Bodies) -> Problem:
         has_short_joints=n_pairs < n_steps,
         order=tuple(joint.name for joint in structure.joints),
     )
-    if is_loose(problem):
+    loose = loose_bodies(problem)
+    if len(loose):
+        names = ", ".join(structure.bodies[number].name for number in loose)
         raise RefusedError(
             "Bodies.held",
-            Words(f"of {len(structure.held)} displacements"),
+            Words(f"displacements that leave free: {names}"),
             "holds and joints that leave no body free to move or to turn, where all "
             "contacts are closed and stick",
             "hold one more node or axis, or add a joint",

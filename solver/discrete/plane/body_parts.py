@@ -107,6 +107,21 @@ class ShapePart:
             return mesh_volumes(shape, self.chosen)[self.nodes]
         return shape.volumes(self.chosen)[self.nodes]
 
+    def force(self, weight: Array | None, load: Array | None) -> Array | None:
+        """Forces of weight and loads, (n_nodes, 2, n_instants), N; None without any.
+
+        The weight is per volume along x and y, (2, n_instants), N/m^3; loads are on its
+        nodes, of the shape of the forces, N.
+        """
+        force = load
+        if weight is not None:
+            force = np.multiply.outer(self.volumes, weight)
+            if load is not None:
+                force = force + load
+        if force is None or not force.any():
+            return None
+        return force
+
     @cached_property
     def elements(self) -> Indices:
         """Corners of its elements among its own nodes, shape (n_elements, 4)."""

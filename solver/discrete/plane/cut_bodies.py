@@ -17,6 +17,7 @@ from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.substructure import Elasticity
+from solver.refusal import RefusedError, Words
 
 DIGITS = 9
 """Decimal digits to which parts agree that share an operator."""
@@ -77,7 +78,8 @@ class CutBodies:
         self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
         self.frames = NodeFrames(bodies, structure.joints, structure.held)
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
-        self.first_parts = np.cumsum([0, *[body.substructures for body in bodies]])
+        counts = [body.substructures for body in bodies]
+        self.first_parts = np.cumsum([0, *counts])
         self._shape_parts = self._of_shapes()
         self._traces: list[dict[Hashable, NodalTrace]] = [{} for _ in self._shape_parts]
         self._trace_pieces()
@@ -190,13 +192,19 @@ class CutBodies:
             first_node = self.structure.first_nodes[body]
             for part in range(of_body.substructures):
                 owner = self.owner(body, part)
+                if not self._traces[owner]:
+                    raise RefusedError(
+                        f"Bodies.bodies[{body}]",
+                        Words(f"{of_body} without a joint or hold"),
+                        "bodies that something holds",
+                        "join it to another body, or hold some of its nodes",
+                    )
                 own = self._shape_parts[owner]
                 frames = self._global_frames(body, own)
-                force = self._force(of_body, own, loads.get(owner))
+                force = own.force(of_body.weight, loads.get(owner))
                 if force is not None:
-                    force = (frames[:, :, :2] @ force).reshape(
-                        -1, len(self.structure.instants)
-                    )
+                    turned = frames[:, :, :2] @ force / (self.young * self.length)
+                    force = turned.reshape(-1, force.shape[-1])
                 condensed, operator = self._operator(body, owner, force is not None)
                 rows = dict[Hashable, Indices]()
                 for name, trace in self._traces[owner].items():
@@ -273,16 +281,6 @@ class CutBodies:
                         is_own
                     ]
         return found
-
-    def _force(self, body: Body, part: ShapePart, load: Array | None) -> Array | None:
-        """Nodal forces of weight and loads, (n_nodes, 2, n_instants), scaled."""
-        force = load
-        if body.weight is not None:
-            weight = np.multiply.outer(part.volumes, body.weight)
-            force = weight if load is None else weight + load
-        if force is None or not force.any():
-            return None
-        return force / (self.young * self.length)
 
 
 def _modulus(body: Body) -> float:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Flags, Indices, read_only
 from solver.discrete.elements import (
     EDGE_MASS,
     Rectangle,
@@ -26,6 +26,7 @@ from solver.discrete.plane.rectangular_parts import RectangularSubstructure
 from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import Stack
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
+from solver.kept import KEPT
 
 SIDES = "left", "right", "bottom", "top"
 
@@ -137,6 +138,45 @@ def _node_numbers(grids: Sequence[Array]) -> list[Indices]:
     return numbers
 
 
+class Operator:
+    """Stiffness of a rectangular part, condensed onto its boundary rows.
+
+    No load and no friction changes it: it is kept between runs (`solver.kept`).
+
+    Parameters
+    ----------
+    mesh
+        Mesh of the part.
+    modulus
+        Its E, scaled.
+    traces
+        Its boundary rows.
+
+    Attributes
+    ----------
+    condensed, elasticity
+        As of `RectangularSubstructure`.
+    """
+
+    def __init__(
+        self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace]
+    ) -> None:
+        dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
+        density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
+        weights = np.concatenate([trace.weights(mesh) for trace in traces])
+        self.condensed = SchurComplement(mesh.outline, np.unique(dofs))
+        self.elasticity = Elasticity(
+            stiffness=read_only(self.condensed.stiffness),
+            trace=np.searchsorted(self.condensed.kept, dofs),
+            direction=density * weights,
+        )
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the operator takes, B."""
+        return self.condensed.nbytes
+
+
 class CutStack:
     """A stack cut into rectangular substructures.
 
@@ -231,13 +271,13 @@ class CutStack:
             # macro forces.
             kinds = tuple(traces.values())
             has_force = force is not None
-            condensed, operator = self._operator(mesh, modulus, kinds, has_force)
+            operator = self._operator(mesh, modulus, kinds, has_force)
             rows = _numbered(traces, mesh, n_rows)
             n_rows += sum(each.size for each in rows.values())
             yield RectangularSubstructure(
                 rectangle=mesh,
-                condensed=condensed,
-                elasticity=operator,
+                condensed=operator.condensed,
+                elasticity=operator.elasticity,
                 nodes=self._own_nodes(number, nodes[body]),
                 body=body,
                 rows=rows,
@@ -257,18 +297,20 @@ class CutStack:
         return Rectangle(columns, rows, *self._element, elastic)
 
     def _operator_of(
-        self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace], has_force: bool
-    ) -> tuple[SchurComplement, Elasticity]:
-        """Condensed stiffness and elasticity; `has_force` tells operators apart."""
-        dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
-        condensed = SchurComplement(mesh.outline, np.unique(dofs))
-        density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
-        weights = np.concatenate([trace.weights(mesh) for trace in traces])
-        return condensed, Elasticity(
-            stiffness=condensed.stiffness,
-            trace=np.searchsorted(condensed.kept, dofs),
-            direction=density * weights,
-        )
+        self,
+        mesh: Rectangle,
+        modulus: float,
+        traces: tuple[_Trace, ...],
+        has_force: bool,
+    ) -> Operator:
+        """Operator of a part, from an earlier structure if it has the same.
+
+        `has_force` tells operators apart.
+        """
+        shape = mesh.columns, mesh.rows, *self._element
+        material = modulus, self.stack.poisson, self.stack.state
+        key = "operator", shape, material, traces, has_force
+        return KEPT.of(key, lambda: Operator(mesh, modulus, traces))
 
     def _outer(self, number: int) -> Iterator[Span]:
         """Outer sides of a substructure: free, loaded or prescribed.

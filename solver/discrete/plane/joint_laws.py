@@ -149,9 +149,9 @@ def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Compo
                 rows.append(cut.parts[owner].rows[name, number])
         if rows:
             sides.append(np.concatenate(rows))
-    tangent = Component(*[rows[:, 0] for rows in sides])
-    normal = Component(*[rows[:, 1] for rows in sides])
-    return tangent, normal
+    along = [rows[:, 0] for rows in sides]
+    across = [rows[:, 1] for rows in sides]
+    return Component(*along), Component(*across)
 
 
 def _stiffness_beside(cut: CutBodies, pairs: _Pairs) -> BodyStiffness:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from solver.discrete.substructure import (
     substructure_sizes,
     tributary,
 )
+from solver.kept import KEPT
 from solver.laws import (
     Component,
     Contact,
@@ -120,7 +122,8 @@ class CutRods:
 
     Each rod rubs on a support of its own, or on the rods before and behind it; `names`
     are the names of these interfaces, `positions` those of the nodes of each rod,
-    (n_nodes,), m, and `rub_at_ends` says whether the first and the last node rub.
+    (n_nodes,), m, and `rub_at_ends` says whether the first and the last node rub. Each
+    interface stands for a number of `copies`, by default for itself alone.
 
     Degrees of freedom run along rod after rod; a broken rod has two at its break, and
     no boundary row there. Rows of one law follow each other: the lower sides of all
@@ -141,8 +144,10 @@ class CutRods:
         positions: Sequence[Array],
         names: Sequence[str],
         rub_at_ends: tuple[bool, bool],
+        copies: Sequence[float] = (),
     ) -> None:
         self._rods = rods
+        self._copies = copies or [1.0] * len(names)
         self._positions = positions
         self._names = names
         length = max(each.length for each in rods)
@@ -215,17 +220,21 @@ class CutRods:
         first = 0
         for number, size in enumerate(self._sizes):
             piece = _Piece(number, first, size)
-            rows, nodes = self._boundary(rod, piece)
+            rows = self._rows(rod, piece)
+            springs = piece.springs(rods)
             # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
+            unit = self._scales.force / self._scales.displacement
             key = (
+                "rod",
                 is_row.tobytes(),
                 stiffness[piece.elements].tobytes(),
-                rods.length,
-                tuple(piece.springs(rods)),
+                (rods.length / self._scales.displacement, rods.elements),
+                tuple((node, end.spring / unit) for node, end in springs.items()),
             )
             if key not in shared:
-                shared[key] = self._operator(rods, piece, stiffness, nodes, is_row)
+                make = partial(self._operator, rods, piece, stiffness, springs, is_row)
+                shared[key] = KEPT.of(key, make)
             first_of_piece = first_dof + first + int(self._beyond[rod, number])
             pushing = None
             if free_force is not None:
@@ -234,22 +243,15 @@ class CutRods:
                 elasticity=shared[key],
                 dofs=np.arange(first_of_piece, first_of_piece + size + 1),
                 rows=rows[is_row],
-                body_force=self._body_force(rods, piece, inner_force),
+                body_force=self._body_force(rods, piece, springs, inner_force),
                 free_force=pushing,
             )
             first += size
 
-    def _boundary(self, rod: int, piece: _Piece) -> tuple[Indices, Indices]:
-        """Boundary rows of a piece, or NO_ROW, and the node of each in it, (n,) both.
-
-        Those of the contacts come first, then those of both ends.
-        """
-        sides = self._sides[self._sides_of(rod)]
-        at_sides = sides[:, piece.nodes]
-        at_ends = self._ends[:, piece.number, rod]
-        along = np.tile(np.arange(piece.size + 1), len(sides))
-        rows = np.concatenate([at_sides.ravel(), at_ends])
-        return rows, np.concatenate([along, [0, piece.size]])
+    def _rows(self, rod: int, piece: _Piece) -> Indices:
+        """Boundary rows of a piece, or NO_ROW, (n,): of contacts, then of both ends."""
+        at_sides = self._sides[self._sides_of(rod), piece.nodes]
+        return np.concatenate([at_sides.ravel(), self._ends[:, piece.number, rod]])
 
     def _sides_of(self, rod: int) -> list[int]:
         """Sides of contacts on a rod: with its support, or with its neighbours."""
@@ -263,7 +265,11 @@ class CutRods:
         return sides
 
     def _body_force(
-        self, rods: Rods, piece: _Piece, inner_force: Array | None
+        self,
+        rods: Rods,
+        piece: _Piece,
+        springs: Mapping[int, End],
+        inner_force: Array | None,
     ) -> Array | None:
         """Nodal forces of a piece, (n_nodes, n_instants), scaled; None without any.
 
@@ -272,7 +278,7 @@ class CutRods:
         force = None
         if inner_force is not None:
             force = inner_force[piece.nodes]
-        for node, end in piece.springs(rods).items():
+        for node, end in springs.items():
             if force is None:
                 force = np.zeros((piece.size + 1, len(rods.instants)))
             seen = _seen(rods, end, piece.first + node)
@@ -307,14 +313,14 @@ class CutRods:
         rods: Rods,
         piece: _Piece,
         stiffness: Array,
-        nodes: Indices,
+        springs: Mapping[int, End],
         is_row: NDArray[np.bool_],
     ) -> Elasticity:
-        """Operator of a piece.
+        """Operator of a piece, which is kept between runs (`solver.kept`).
 
-        `stiffness` is ES of the elements of the rod, (n_elements,), scaled; `nodes` and
-        `is_row`, (n,), are the nodes of boundary rows, as of `_boundary`, and which of
-        these there are.
+        `stiffness` is ES of the elements of the rod, (n_elements,), scaled; `springs`
+        hold nodes of the piece; `is_row` says which boundary rows there are, (n,), of
+        those of `_rows`.
         """
         units = self._scales
         own_stiffness = stiffness[piece.elements]
@@ -322,6 +328,10 @@ class CutRods:
         element = length / rods.elements
         whole = piece.size * element
         at_ends = 1.0 / whole / float(np.mean(1.0 / own_stiffness))
+        # Each contact has a row at every node, and both ends have one.
+        nodes = np.append(
+            np.arange(len(is_row) - 2) % (piece.size + 1), [0, piece.size]
+        )
         direction = np.full(len(nodes), at_ends)
         # The last two rows are the ends, all others the points that rub.
         direction[:-2] = at_ends * element / whole
@@ -329,7 +339,7 @@ class CutRods:
         at_nodes = np.append(of_springs, 0.0) + np.insert(of_springs, 0, 0.0)
         bands = [-of_springs, at_nodes, -of_springs]
         matrix = sparse.csr_array(sparse.diags_array(bands, offsets=[-1, 0, 1]))
-        for node, end in piece.springs(rods).items():
+        for node, end in springs.items():
             matrix[node, node] += end.spring / (units.force / units.displacement)
         return Elasticity(matrix, nodes[is_row], direction[is_row])
 
@@ -346,7 +356,7 @@ class CutRods:
         rods = self._rods[0]
         first_above = len(self._rods) - len(self._names)
         for number, name in enumerate(self._names):
-            yield name, self._friction(first_above + number)
+            yield name, self._friction(first_above + number, self._copies[number])
         yield SIDES["left"], self._held_or_pulled(rods.left, self._ends[0, 0], 0)
         for piece in range(len(self._sizes) - 1):
             first = self._ends[1, piece]
@@ -373,8 +383,8 @@ class CutRods:
         pulled = np.tile(force / self._scales.force, (len(rows), 1))
         return Neumann(rows, pulled, np.eye(len(rows)))
 
-    def _friction(self, rod: int) -> Contact:
-        """Contact of a rod with its support, or with the rod before it."""
+    def _friction(self, rod: int, copies: float) -> Contact:
+        """Contact of a rod with its support, or the rod before it; it has `copies`."""
         rods = self._rods[rod]
         units = (self._scales.displacement, self._scales.force)
         macro = None
@@ -399,6 +409,7 @@ class CutRods:
             weights=weights,
             stiffness_beside=RodStiffness(self._stiffness_at_nodes(rods)[nodes]),
             macro=macro,
+            copies=copies,
         )
 
     def _macro_basis(self) -> sparse.csr_array:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from solver.discrete.problem import Problem
@@ -18,20 +16,21 @@ def problem_of(rope: Rope) -> Problem:
     Positions are those along the strand. Where a wire represents its layer, over half a
     turn, so does its interface, over the strand that is drawn.
     """
-    problem = CutRods(
+    return CutRods(
         [_rod(rope, wire) for wire in rope.wires],
         [wire.along for wire in rope.wires],
         [wire.name for wire in rope.wires],
         rub_at_ends=(False, False),
+        copies=[_copies(rope, wire) for wire in rope.wires],
     ).problem()
+
+
+def _copies(rope: Rope, wire: RopeWire) -> float:
+    """Number of interfaces of a wire that its own stands for."""
     if rope.is_clamped:
-        return problem
-    interfaces = dict(problem.interfaces)
-    for wire in rope.wires:
-        # The drawn strand has several half turns of each wire, which all count.
-        copies = wire.stands_for * rope.seen_length / float(wire.along[-1])
-        interfaces[wire.name] = replace(problem.rubbing[wire.name], copies=copies)
-    return replace(problem, interfaces=interfaces)
+        return 1.0
+    # The drawn strand has several half turns of each wire, which all count.
+    return wire.stands_for * rope.seen_length / float(wire.along[-1])
 
 
 def _rod(rope: Rope, wire: RopeWire) -> Rods:

@@ -15,6 +15,7 @@ from solver.arrays import Array
 from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
+from solver.kept import KEPT
 from solver.latin import Answer, Decision, Iterate, Solution, record, solve
 from solver.latin.end.certified import certified_answer
 from solver.latin.end.cost import costs_of
@@ -328,13 +329,18 @@ class Known(NamedTuple):
 
 
 def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) -> Known:
-    """Find the reference without a run; `stop` is asked again and again to give up."""
+    """Find the reference without a run; `stop` is asked again and again to give up.
+
+    Nothing that it prepares is kept: a run afterwards prepares its own in its time.
+    """
     try:
         reference = reference_of(problem, stop)
     except Interrupted:
         return Known(doubt="the reference takes longer")
     except NoReferenceError as refusal:
         return Known(doubt=str(refusal))
+    finally:
+        KEPT.clear()
     if not reference.converged.all():
         return _without_solution(problem, reference)
     # A reference past a jump is one of several equilibria.

@@ -1,0 +1,101 @@
+"""Results that are kept between runs: what a slider of load or friction leaves alone.
+
+A run that follows another one often has the same bodies on the same mesh. What depends
+on these alone is found again by its key: by everything that it was made from, so that a
+kept result has the bits of a new one. Kept results are never changed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from threading import Lock
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+LARGEST = 80_000_000
+"""Largest memory of all kept results, B; a wall of 75 bricks takes 30 MB."""
+
+
+Result = TypeVar("Result")
+
+
+class Kept:
+    """Results by key, the last ones that fit into some memory.
+
+    Parameters
+    ----------
+    largest
+        Largest memory of all results together, B; a larger result is not kept.
+    """
+
+    def __init__(self, largest: int) -> None:
+        self._largest = largest
+        self._results: OrderedDict[Hashable, Any] = OrderedDict()
+        self._lock = Lock()
+
+    def of(self, key: Hashable, make: Callable[[], Result]) -> Result:
+        """Result of a key: the one that is kept, or else a new one.
+
+        Parameters
+        ----------
+        key
+            Everything that the result depends on.
+        make
+            Function that makes the result; one with arrays in it has `nbytes`.
+        """
+        with self._lock:
+            if key in self._results:
+                self._results.move_to_end(key)
+                known: Result = self._results[key]
+                return known
+        result = make()
+        if _size_of(result) <= self._largest:
+            self._keep(key, result)
+        return result
+
+    def _keep(self, key: Hashable, result: object) -> None:
+        """Keep a result, and drop the oldest ones that no longer fit."""
+        with self._lock:
+            self._results[key] = result
+            while self.nbytes > self._largest:
+                self._results.popitem(last=False)
+
+    def clear(self) -> None:
+        """Drop all results."""
+        with self._lock:
+            self._results.clear()
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of all results, B."""
+        return sum(_size_of(result) for result in self._results.values())
+
+
+def _size_of(result: object) -> int:
+    """Memory of a result, B: its `nbytes`, as an array has, or that of the object."""
+    return int(getattr(result, "nbytes", sys.getsizeof(result)))
+
+
+KEPT = Kept(LARGEST)
+"""The kept results of this process."""
+
+
+def content_of(*fields: NDArray[Any] | sparse.sparray) -> bytes:
+    """Digest of arrays, dense or sparse, of any shape: equal for equal bits."""
+    digest = hashlib.blake2b(digest_size=16)
+    for field in fields:
+        digest.update(f"{field.shape} {field.dtype}".encode())
+        if isinstance(field, np.ndarray):
+            digest.update(field.tobytes())
+        else:
+            rows = sparse.csr_array(field)
+            digest.update(rows.data)
+            digest.update(rows.indices)
+            digest.update(rows.indptr)
+    return digest.digest()

@@ -1,0 +1,170 @@
+"""Results that loads and friction leave alone are kept, and have the same bits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from small_scenes import SMALL
+
+from solver.arrays import Array
+from solver.kept import KEPT, Kept, content_of
+from solver.reference.condensation import Condensation
+from solver.reference.incremental import reference_of
+from solver.reference.solution import Reference
+from solver.scenes import CATALOGUE, discretise
+from solver.settings.scene import Settings
+
+SCENES = ("block", "layers", "fault", "incline", "wall", "strand")
+"""Scenes whose contacts are condensed."""
+LOADS = {
+    "block": {"top_tangential_displacement": 3e-5},
+    "layers": {"deflection": 0.003},
+    "incline": {"slope": 37.0},
+    "wall": {"displacement": 3e-5},
+    "strand": {"peak": 700.0},
+}
+"""A load of each that differs from that of its small settings."""
+
+
+def small(scene: str, **changes: Any) -> Settings:
+    """Small settings of a scene with some changes."""
+    return CATALOGUE[scene].checked(SMALL[scene] | changes)
+
+
+def with_more_friction(settings: Settings) -> Settings:
+    """The same settings with a little more friction."""
+    return settings.replace(friction=1.05 * settings.friction)
+
+
+def solved(settings: Settings) -> Reference:
+    """Reference of settings."""
+    return reference_of(discretise(settings))
+
+
+def is_same(first: Reference, second: Reference) -> bool:
+    """Check whether two references are equal to the bit."""
+    fields = ("displacement", "deformation", "contact_force", "status")
+    return all(
+        getattr(first, name).tobytes() == getattr(second, name).tobytes()
+        for name in fields
+    )
+
+
+@pytest.fixture(autouse=True)
+def _nothing_kept() -> None:
+    KEPT.clear()
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_more_friction_leaves_the_stiffness_as_it_is(scene: str) -> None:
+    settings = small(scene)
+    before = Condensation(discretise(settings))
+    after = Condensation(discretise(with_more_friction(settings)))
+    assert after.stiffness is before.stiffness
+    assert after.motions is before.motions
+    KEPT.clear()
+    alone = Condensation(discretise(with_more_friction(settings)))
+    assert alone.stiffness is not before.stiffness
+    assert alone.stiffness.tobytes() == after.stiffness.tobytes()
+    assert alone.load.tobytes() == after.load.tobytes()
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_a_run_after_another_is_as_the_first(scene: str) -> None:
+    settings = small(scene)
+    moved = with_more_friction(settings)
+    first = solved(moved)
+    KEPT.clear()
+    solved(settings)
+    assert is_same(solved(moved), first)
+
+
+@pytest.mark.parametrize("scene", LOADS)
+def test_a_load_changes_the_load_alone(scene: str) -> None:
+    settings = small(scene)
+    moved = small(scene, **LOADS[scene])
+    first = solved(moved)
+    KEPT.clear()
+    assert not is_same(solved(settings), first)
+    assert is_same(solved(moved), first)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"poisson": 0.2}, {"elements": 12}, {"layers": 3}],
+)
+def test_another_structure_has_another_stiffness(changes: dict[str, Any]) -> None:
+    before = Condensation(discretise(small("layers")))
+    after = Condensation(discretise(small("layers", **changes)))
+    assert after.stiffness is not before.stiffness
+    KEPT.clear()
+    alone = Condensation(discretise(small("layers", **changes)))
+    assert after.stiffness.tobytes() == alone.stiffness.tobytes()
+
+
+def test_substructures_of_the_next_run_share_the_operators() -> None:
+    settings = small("wall")
+    before = discretise(settings).substructures
+    after = discretise(with_more_friction(settings)).substructures
+    for first, second in zip(before, after, strict=True):
+        assert first.elasticity is second.elasticity
+
+
+def test_what_is_kept_cannot_be_changed() -> None:
+    condensed = Condensation(discretise(small("wall")))
+    with pytest.raises(ValueError, match="read-only"):
+        condensed.stiffness[0, 0] = 0.0
+
+
+@dataclass
+class Block:
+    """A result of a known size."""
+
+    nbytes: int
+
+
+def test_the_oldest_goes_where_memory_ends() -> None:
+    kept = Kept(100)
+    first = kept.of("first", lambda: Block(40))
+    kept.of("second", lambda: Block(40))
+    assert kept.of("first", lambda: Block(40)) is first
+    kept.of("third", lambda: Block(40))
+    assert kept.nbytes == 80
+    assert kept.of("first", lambda: Block(40)) is first
+    second = Block(40)
+    assert kept.of("second", lambda: second) is second
+
+
+def test_what_is_too_large_is_not_kept_and_drops_nothing() -> None:
+    kept = Kept(100)
+    small_one = kept.of("small", lambda: Block(60))
+    kept.of("large", lambda: Block(101))
+    assert kept.nbytes == 60
+    assert kept.of("small", lambda: Block(60)) is small_one
+
+
+def test_what_fails_is_not_kept() -> None:
+    kept = Kept(100)
+
+    def fail() -> Block:
+        raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        kept.of("key", fail)
+    assert kept.nbytes == 0
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        np.arange(6.0).reshape(2, 3),
+        np.arange(6),
+        np.array([0.0, 1.0, 2.0, 3.0, 4.0, np.nextafter(5.0, 6.0)]),
+    ],
+)
+def test_content_differs_by_shape_by_type_and_by_the_last_bit(other: Array) -> None:
+    assert content_of(np.arange(6.0)) == content_of(np.arange(6.0))
+    assert content_of(np.arange(6.0)) != content_of(other)
