@@ -175,10 +175,21 @@ class Capstan:
         if tail is None:
             spans = spans + self.span * tension[0]
         else:
-            low, high = self.bounds(pull, (self.angle - angles)[:, None])
-            changes *= (tension <= low) | (tension >= high)
+            by_pull = self._governs(tension, pull, self.angle - angles)
+            by_tail = self._governs(tension, tail, angles)
+            # Both sides share the point between them.
+            changes *= by_pull * (1.0 - 0.5 * by_tail)
         steps = self.length * np.trapezoid(changes, angles / self.angle, axis=0)
         return np.asarray((np.cumsum(steps) + spans) / self.stiffness)
+
+    def _governs(self, tension: Array, end: Array, angles: Array) -> Array:
+        """Whether a tension is a bound by that of an end: 1 or 0, as `tension`.
+
+        `tension` has shape (n_points, n_instants), N, `end` (n_instants,), N, `angles`
+        from that end (n_points,).
+        """
+        low, high = self.bounds(end, angles[:, None])
+        return np.asarray((tension <= low) | (tension >= high), dtype=float)
 
     def pulled_by(self, displacement: Array, *, both_ends: bool = False) -> Array:
         """Tension at an end that is moved, shape (n_instants,), N.
