@@ -24,6 +24,8 @@ from solver.settings.scene import Icon
 
 STEEPEST = 30.0
 """Largest angle by which the guide may turn over an element, degrees."""
+SLACK = 1e-9
+"""Share by which rounding may exceed a limit."""
 PLACES = 201
 """Points along the guide at which closed forms are drawn."""
 
@@ -91,7 +93,7 @@ class BeltSettings(PlaneSettings):
         title="Angle of the guide",
         unit="°",
     )
-    radius = BODY.quantity(
+    drum_radius = BODY.quantity(
         0.1,
         (1e-6, 1e4),
         (0.01, 1.0),
@@ -241,7 +243,7 @@ class BeltSettings(PlaneSettings):
         if self.is_duct:
             radius = self.length / self.angle
             return Guide(self.angle, radius, self.elements, -0.5 * self.angle)
-        return Guide(self.angle, self.radius, self.elements)
+        return Guide(self.angle, self.drum_radius, self.elements)
 
     @property
     def capstan(self) -> Capstan:
@@ -286,7 +288,7 @@ class BeltSettings(PlaneSettings):
         return np.asarray(jacked - self.path("draw_in_load"))
 
     def check_together(self) -> None:
-        """Refuse elements over which the guide turns too far."""
+        """Refuse elements over which the guide turns too far, and lost equilibrium."""
         fewest = int(np.ceil(np.degrees(self.angle) / STEEPEST))
         if self.elements < fewest:
             raise self.refusal(
@@ -296,6 +298,24 @@ class BeltSettings(PlaneSettings):
                 "raise it, or take fewer turns",
             )
         super().check_together()
+        self._check_equilibrium()
+
+    def _check_equilibrium(self) -> None:
+        """Refuse forces at both ends that are more uneven than friction carries."""
+        pull = self.tension
+        tail = self.tail_tension
+        if self.driven == "moved" or tail is None or self.law != FrictionLaw():
+            return
+        ratio = self.capstan.ratio
+        largest = ratio * (1.0 + SLACK)
+        if np.all(pull <= largest * tail) and np.all(tail <= largest * pull):
+            return
+        raise self.refusal(
+            self.size_or_table("pull_load"),
+            f"tensions of both ends of which none is more than {ratio:.6g} times the "
+            "other, at any instant: more no friction carries",
+            "lower it, take more turns, friction or tail force, or move the end",
+        )
 
     def structure(self) -> Band:
         """Make the band; its width is a metre, over which forces are summed."""
@@ -333,8 +353,6 @@ class BeltSettings(PlaneSettings):
         pull = self.tension
         tail = self.tail_tension
         if self.driven == "pulled":
-            if self._slides(pull, tail):
-                return
             yield ExactCurve("loop", self.capstan.displacement(pull, tail), pull)
         elif self.tail == "pulled":
             # How far a band slides that is pulled at the tail, no closed form says.
@@ -347,13 +365,6 @@ class BeltSettings(PlaneSettings):
             tail = pull if alike else None
             yield ExactCurve("loop", self.moved, pull)
         yield from self._along(pull, tail)
-
-    def _slides(self, pull: Array, tail: Array | None) -> bool:
-        """Return whether ends pull more unevenly than friction carries."""
-        if tail is None:
-            return False
-        largest = self.capstan.ratio
-        return bool(np.any(pull > largest * tail) or np.any(tail > largest * pull))
 
     def _along(self, pull: Array, tail: Array | None) -> Iterator[ExactCurve]:
         """Curves along the guide under tensions of the ends, (n_instants,), N."""
