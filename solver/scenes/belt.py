@@ -206,12 +206,12 @@ class BeltSettings(PlaneSettings):
     instants = redefined(PlaneSettings.param["instants"], 41)
     elements = redefined(
         RectangleSettings.param["elements"],
-        60,
+        40,
         (10, 400),
         doc="Number of elements on the guide, equal in length.",
         title="Elements",
     )
-    substructures = redefined(RectangleSettings.param["substructures"], 6)
+    substructures = redefined(RectangleSettings.param["substructures"], 4)
     start = redefined(RectangleSettings.param["start"], "zero")
 
     @property

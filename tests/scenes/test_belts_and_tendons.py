@@ -100,7 +100,7 @@ def test_a_rope_that_runs_has_the_ratio_of_its_angle_both_ways():
     path = [[0.0, 0.0], [0.25, 0.0], [0.6, 0.003], [1.0, -0.003]]
     settings = settings_of(driven="moved", pull_load=path, elements=120, instants=41)
     run = finished(settings)
-    assert run.solution.status.certified
+    assert run.solution.status.is_certified
     limit = math.exp(0.3 * math.pi)
     ratio = QUANTITIES["tension_ratio"](run)
     assert ratio == pytest.approx(limit, rel=1e-3)
@@ -115,8 +115,8 @@ def test_a_jack_reads_its_force_and_wedges_leave_the_known_one():
     problem, reference, tensions = solved(settings)
     _, force = settings.structure().loop(problem).along(reference)
     jacked = np.argmin(np.abs(settings.times() - 0.5))
-    assert force[jacked] == pytest.approx(2e6, rel=1e-4)
-    assert tensions[0, jacked] == pytest.approx(1768.8e3, rel=1e-4)
+    assert force[jacked] == pytest.approx(2e6, rel=3e-4)
+    assert tensions[0, jacked] == pytest.approx(1768.8e3, rel=5e-4)
     drawn = settings.capstan.drawn_in(2e6, 0.006)
     assert tensions[:, -1].max() == pytest.approx(drawn.largest, rel=1e-3)
     assert force[-1] == pytest.approx(drawn.at_anchor, rel=2e-3)
