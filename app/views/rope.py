@@ -104,7 +104,7 @@ class WireSection(ExtraView):
 
 
 class AxialForces(ExtraView):
-    """Force along a rod, a band or each wire; a broken wire regains it from its break."""
+    """Force along a rod, a band or each wire, which regains it from a break on."""
 
     name = "Axial force"
     needs = frozenset({"axial force"})

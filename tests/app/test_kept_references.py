@@ -49,7 +49,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "top": "pulled",
     },
     "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
-    "belt": {"wrap": 90.0, "drum_radius": 0.2, "pull": 300.0, "tail": "held"},
+    "belt": {"wrap": 200.0, "drum_radius": 0.2, "pull": 1300.0, "tail": "held"},
 }
 
 

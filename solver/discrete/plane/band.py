@@ -21,9 +21,10 @@ GUIDE = "guide"
 PULL = "pull"
 TAIL = "tail"
 """Names of what is given at the last and at the first end."""
-LIMP = 2e-4
-"""Radius of gyration of the section over the length on the guide. Stiffness against
-bending keeps free spans in place, and carries less than 1e-3 of what tension carries.
+LIMP = 1e-3
+"""Radius of gyration of the section over the length of an element. Stiffness against
+bending keeps free spans in place, and carries next to nothing, though a band that
+slides turns on the arc and not on the spans.
 """
 
 
@@ -92,7 +93,7 @@ class Guide:
 
     def body(self, young: float, section: float, substructures: int) -> Body:
         """Band of a modulus, Pa, and a section, m^2, in a number of substructures."""
-        gyration = LIMP * self.length
+        gyration = LIMP * self.span
         shape = Beam(self.line, section, section * gyration**2)
         return Body("band", shape, young, substructures=substructures)
 

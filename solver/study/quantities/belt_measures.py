@@ -20,7 +20,7 @@ def _is_belt(settings: Settings) -> bool:
 
 
 def _is_drum(settings: Settings) -> bool:
-    return _is_belt(settings) and not settings.is_duct
+    return _is_belt(settings) and settings.values()["guide"] == "drum"
 
 
 def _ends(run: FinishedRun) -> tuple[Array, Array]:
@@ -55,5 +55,5 @@ def tension_ratio(run: FinishedRun, at: float | None) -> float:
 def torque(run: FinishedRun, at: float | None) -> float:
     """Torque of the band on the drum that is largest in size, N m: (T2 - T1) R."""
     tail, pulled = _ends(run)
-    radius = run.settings.curve.radius
+    radius = run.settings.values()["drum_radius"]
     return _largest(run, (pulled - tail) * radius, at)
