@@ -382,7 +382,7 @@ class BeltSettings(PlaneSettings):
         if not self.is_duct:
             band = "A rope"
             turns = self.wrap / 360.0
-            where = f"lies on a drum, {turns:.3g} turns round it"
+            where = f"lies {turns:.3g} turns round a drum"
             if turns == 1.0:
                 where = "lies once round a drum"
         path = self.path("pull_load")
