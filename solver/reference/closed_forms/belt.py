@@ -183,7 +183,7 @@ class Capstan:
         return np.asarray((np.cumsum(steps) + spans) / self.stiffness)
 
     def _governs(self, tension: Array, end: Array, angles: Array) -> Array:
-        """Whether a tension is a bound by that of an end: 1 or 0, as `tension`.
+        """Mask of the tension where an end bounds it: 1 there, else 0; as `tension`.
 
         `tension` has shape (n_points, n_instants), N, `end` (n_instants,), N, `angles`
         from that end (n_points,).
