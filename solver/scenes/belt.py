@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -304,9 +305,13 @@ class BeltSettings(PlaneSettings):
         """Refuse forces at both ends that are more uneven than friction carries."""
         pull = self.tension
         tail = self.tail_tension
-        if self.driven == "moved" or tail is None or self.law != FrictionLaw():
+        if self.driven == "moved" or tail is None or self.law.cohesion:
             return
-        ratio = self.capstan.ratio
+        capstan = self.capstan
+        if self.law.slip_factor is not None:
+            strongest = max(self.law.slip_factor.factors)
+            capstan = replace(capstan, friction=self.friction * strongest)
+        ratio = capstan.ratio
         largest = ratio * (1.0 + SLACK)
         if np.all(pull <= largest * tail) and np.all(tail <= largest * pull):
             return

@@ -172,6 +172,13 @@ def test_the_search_needs_few_iterations_whatever_the_mesh(changes, most):
         assert iterate.number < most
 
 
+def test_friction_that_grows_with_slip_carries_by_its_largest():
+    law = {"friction_law": "slip-dependent", "friction_ratio": 1.5}
+    settings_of(**law, **pulled_to(1.2, 0.3, 180.0))
+    with pytest.raises(SettingError, match="more no friction carries"):
+        settings_of(**law, **pulled_to(1.7, 0.3, 180.0))
+
+
 def test_elements_over_which_the_guide_turns_far_are_refused():
     with pytest.raises(SettingError, match="at least 36"):
         settings_of(wrap=1080.0, elements=35)
