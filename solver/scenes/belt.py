@@ -307,11 +307,8 @@ class BeltSettings(PlaneSettings):
         tail = self.tail_tension
         if self.driven == "moved" or tail is None or self.law.cohesion:
             return
-        capstan = self.capstan
-        if self.law.slip_factor is not None:
-            strongest = max(self.law.slip_factor.factors)
-            capstan = replace(capstan, friction=self.friction * strongest)
-        ratio = capstan.ratio
+        strongest = self.friction * self.law.strongest
+        ratio = replace(self.capstan, friction=strongest).ratio
         largest = ratio * (1.0 + SLACK)
         if np.all(pull <= largest * tail) and np.all(tail <= largest * pull):
             return
