@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from solver import discrete
 from solver.discrete.problem import Problem
+from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
 from solver.scenes.belt import BeltSettings
 from solver.scenes.block import BlockSettings
@@ -26,6 +27,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         RopeSettings,
         StrandSettings,
         WallSettings,
+        ArchSettings,
         BeltSettings,
     )
 }

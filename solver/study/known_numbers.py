@@ -326,6 +326,21 @@ def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
     yield "force on the ground", "N/m", 4.0 * (pressing + 4.0 * brick), found
 
 
+def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
+    """Thrust of an arch over its weight, after an abutment has moved far enough.
+
+    The least where it has moved apart, the largest where it has moved inwards.
+    """
+    moved, thrust = answer.loop.along(answer.fields)
+    weight = answer.settings.structure().downwards[-1]
+    bounds = answer.settings.statics.thrusts()
+    assert bounds is not None
+    known, largest = bounds
+    if moved[-1] < 0.0:
+        known = largest
+    yield "thrust over weight", "", known, float(thrust[-1] / weight)
+
+
 def tensions(answer: SolvedCase) -> Iterator[Number]:
     """Tension of a band at its ends, its largest and its least, in the end."""
     curves = answer.settings.exact(answer.problem, answer.fields)
