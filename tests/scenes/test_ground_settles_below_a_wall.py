@@ -14,6 +14,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.definitions import SettingError
+from solver.study.trade_case import all_cases
 
 BRICK = 2e4 * 0.25 * 0.12
 """Weight of a brick, N."""
@@ -184,3 +185,19 @@ def test_the_settlement_is_drawn_below_what_settles():
     assert act.towards == (0.0, -1.0)
     np.testing.assert_allclose(act.values, settings.path("settlement_load"))
     assert settings.behind()["bottom y"] == "settlement"
+
+
+def test_what_the_case_says_to_change_first_is_so():
+    """A twentieth of a millimetre is enough; in stack bond nothing reaches over."""
+    (case,) = [case for case in all_cases() if case.name == "settling-ground"]
+    found = {}
+    for name, changes in {
+        "less": {"settlement": 5e-5},
+        "stack": {"bond": "stack"},
+    }.items():
+        settings, problem, answer = made(**(case.settings.changed() | changes))
+        _, force = settings.bodies.loop(problem).along(answer)
+        found[name] = force[-1], force.max()
+    assert found["less"][0] == pytest.approx(6.0 * BRICK, rel=1e-6)
+    last, largest = found["stack"]
+    assert 0.9 * largest < last < largest
