@@ -70,12 +70,13 @@ class Geometry:
     description: Description
     """Bodies, what holds them and what acts on them."""
     nodes: Floats
-    """Corners of the quadrilaterals, shape (n_nodes, 2), m; rods are drawn with a
-    thickness."""
-    quads: NDArray[np.int32]
-    """Nodes of each quadrilateral, shape (n_quads, 4)."""
+    """Corners of the cells, shape (n_nodes, 2), m, from the lower left corner of all
+    bodies on; rods and bands are drawn with a thickness."""
+    cells: NDArray[np.int32]
+    """Nodes round each cell that is drawn, shape (n_cells, n_corners); the last is
+    repeated where a cell has fewer corners."""
     parts: NDArray[np.intp]
-    """Substructure of each quadrilateral, or its wire in a rope, shape (n_quads,)."""
+    """Substructure of each cell, or its wire in a rope, shape (n_cells,)."""
     points: Floats
     """Contact points, shape (n_points, 2), m; NaN where a line of them is broken."""
     chains: NDArray[np.intp]
@@ -140,9 +141,8 @@ class Run:
         held = {(hold.kind, hold.side) for hold in drawn.holds}
         # An end that is moved is held, too.
         for act in drawn.acts:
-            side = act.where.partition(" ")[0]
-            if act.unit == "m" and side in ("left", "right"):
-                held.add(("clamp", side))
+            if act.unit == "m" and act.side in ("left", "right"):
+                held.add(("clamp", act.side))
         size = drawn.bodies, drawn.length, drawn.height, drawn.broken
         return self.settings.scene, *size, held
 

@@ -29,7 +29,7 @@ from app.views.layout import shape_of
 from app.views.scene import Scene
 from app.views.view import View
 from app.widgets import TEMPLATES, download
-from app.worker.geometry import thinned
+from app.worker.cells import thinned
 from app.worker.references import has_reference
 from solver.files.saved import dump
 from solver.settings.definitions import Parameter, title_of

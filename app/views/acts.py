@@ -12,7 +12,7 @@ from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import BAND, WALL, Layout, beside, is_aside
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
-from solver.discrete.structure import OUTWARD, Act, on_side
+from solver.discrete.structure import OUTWARD, Act, Footing, on_side
 
 SHORTEST = 0.02
 """Value over the largest one below which an arrow is not drawn, nor dragged."""
@@ -31,6 +31,8 @@ SPACING = 11.0
 BEYOND = 7.0
 """Depth of hatching, spacing of its strokes, and length of a clamp beyond a body,
 px."""
+FEWEST = 3
+"""Least number of strokes of a hatching."""
 RADIUS = 4.0
 """Radius of rollers, px."""
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 13)
@@ -60,7 +62,8 @@ class Arrows:
     """Arrows of a load at an instant, px from the middle of the bodies' foot.
 
     There are n of them: none where the value is nearly zero; an arrow of the `peak` has
-    full length. `lines` go from tails to heads, (n, k, 2), at moved `points`, (m, 2).
+    full length. `lines` go from tails to heads, (n, k, 2), at moved `points`, (m, 2),
+    whose `places` are shares of the length and height of all bodies, (m, 2).
     The longest is dragged by one of its ends, which sets the `setting` of the load:
     `base`, (n, 2), is this end at the value 0, `handles`, (n, 2), at the present one.
     """
@@ -81,7 +84,8 @@ class Arrows:
         if towards.ndim > 1:
             towards = towards[:, column]
         away = np.array(act.away)
-        side = act.where.partition(" ")[0]
+        side = act.side
+        self.places = act.points_at(column)
         now = np.broadcast_to(act.values.T[column], len(points))
         share = np.clip(now / peak, -LONGEST, LONGEST)
         is_shown = np.abs(share) >= SHORTEST
@@ -97,7 +101,7 @@ class Arrows:
         tails = np.where(pushes, handles, base)
         heads = np.where(pushes, base, handles)
         self._layout = layout
-        self._places = act.points[is_shown]
+        self._places = self.places[is_shown]
         self._distance = distance
         self.base = base
         self.handles = handles
@@ -187,7 +191,7 @@ def color_of(act: Act) -> str:
 def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
     """Anchor of the words of a load, (2,), px, and the side of the words it is at."""
     act = arrows.act
-    side = act.where.partition(" ")[0]
+    side = act.side
     if side in ("top", "bottom"):
         return _anchor_above(arrows, layout, side)
     if side == "body":
@@ -197,7 +201,13 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
         above = height + layout.arrow + 6.0 + layout.letter
         return np.array([0.0, above]), "center"
-    away = act.away[0]
+    away = OUTWARD.get(side, act.away)[0]
+    align = "left" if side == "right" else "right"
+    if act.outward is not None and len(arrows.handles) and not is_aside(act):
+        # Bodies of any shape may be above and below the arrow.
+        ends = np.array([arrows.handle, arrows.base[0]])
+        outer = ends[(away * ends[:, 0]).argmax()]
+        return outer + np.array([10.0 * away, 0.0]), align
     if is_aside(act):
         shift = [22.0 * away, -16.0]
     elif _has_aside(layout, side):
@@ -205,7 +215,7 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         shift = [22.0 * away, 15.0]
     else:
         shift = [9.0 * away, 15.0]
-    return arrows.points[-1] + shift, "left" if side == "right" else "right"
+    return arrows.points[-1] + shift, align
 
 
 def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str]:
@@ -214,8 +224,8 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     The words stand beside its arrows where there is room, else over them.
     """
     act = arrows.act
-    up = act.away[1]
-    is_left = float(np.mean(act.points[:, 0])) < 0.45
+    up = OUTWARD[side][1]
+    is_left = float(np.mean(arrows.places[:, 0])) < 0.45
     nearest = arrows.points[0 if is_left else -1]
     ends = np.append(arrows.lines[:, :, 0], nearest[0])
     if is_aside(act):
@@ -223,7 +233,7 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
         above = max(beside(layout.description, side), 0.5 * layout.row)
     else:
         above = 0.75 * layout.arrow
-    if not _has_room(act, layout, is_left):
+    if not _has_room(arrows, layout, is_left):
         middle = 0.5 * (ends.min() + ends.max())
         heights = up * arrows.lines[:, :, 1].ravel()
         top = up * max(heights, default=up * nearest[1] + above)
@@ -257,13 +267,14 @@ def _meets_arrows(act: Act, layout: Layout, right: float) -> bool:
 
 def _has_aside(layout: Layout, side: str) -> bool:
     """Check whether a load acts along a side."""
-    acts = [act for act in layout.description.acts if act.where.startswith(side)]
+    acts = [act for act in layout.description.acts if act.side == side]
     return any(is_aside(act) for act in acts)
 
 
-def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
+def _has_room(arrows: Arrows, layout: Layout, is_left: bool) -> bool:
     """Check whether the words of a load on top have room beside its longest arrows."""
-    across = layout.local(act.points * layout.size)[:, 0] + layout.origin[0]
+    act = arrows.act
+    across = layout.local(arrows.places * layout.size)[:, 0] + layout.origin[0]
     if is_left:
         room = across.min()
     else:
@@ -281,6 +292,8 @@ def text_of(act: Act, column: int) -> str:
     now = np.atleast_1d(act.values.T[column])
     peak = float(np.abs(act.values).max())
     ends = now[[0, -1]][: len(now)]
+    if len(now) > 2 and np.isclose(*ends):
+        ends = np.array([now.min(), now.max()])
     # Rounding of a load path leaves a value near zero, as of sin(pi).
     texts = [unit(settled(float(value), peak)) for value in ends]
     return f"{act.symbol} = {' to '.join(texts)}"
@@ -338,14 +351,42 @@ def ground_edge(layout: Layout, factor: float) -> Array:
     return edge + np.outer(np.linspace(-1.0, 1.0, len(edge)), [beyond, 0.0])
 
 
+def footing_strokes(
+    footing: Footing, points: Array, layout: Layout, factor: float
+) -> Array:
+    """Strokes of a footing at moved points, (n, 2), px; NaN behind each line."""
+    outward = footing.outward
+    if footing.gap is not None:
+        # The gap is magnified as displacements are.
+        gap = np.maximum(footing.gap, 0.0) * factor * layout.scale[1]
+        depth = np.minimum(gap, layout.deepest) + 0.5 * BAND + 1.5
+        points = points + depth[:, None] * outward
+    if len(points) == 1:
+        across = BEYOND * outward[:, ::-1] * [-1.0, 1.0]
+        points = np.concatenate([points - across, points + across])
+        outward = np.repeat(outward, 2, axis=0)
+    if footing.kind == "rollers":
+        away = outward.mean(axis=0)
+        return _rollers(points[[0, -1]], away / (np.hypot(*away) or 1.0))
+    return hatched(points, outward)
+
+
 def hatched(edge: Array, away: Array) -> Array:
-    """A line, (n, 2), and strokes behind it, with NaN behind each, px, (n_all, 2)."""
+    """A line, (n, 2), and strokes behind it, with NaN behind each, px, (n_all, 2).
+
+    `away` points behind the line, (2,), or at each of its points, (n, 2).
+    """
     steps = np.hypot(*np.diff(edge, axis=0).T)
     arc = np.concatenate([[0.0], np.cumsum(steps)])
-    starts = np.arange(0.5 * SPACING, arc[-1], SPACING)
+    spacing = min(SPACING, max(arc[-1] / FEWEST, 1.0))
+    starts = np.arange(0.5 * spacing, arc[-1], spacing)
     points = np.stack([np.interp(starts, arc, values) for values in edge.T], axis=1)
-    along = np.array([-away[1], away[0]])
-    ends = points + DEPTH * (0.8 * away - 0.6 * np.abs(along))
+    behind = np.broadcast_to(away, edge.shape)
+    behind = np.stack([np.interp(starts, arc, each) for each in behind.T], axis=1)
+    along = behind[:, ::-1] * [-1.0, 1.0]
+    # All lean to one side, on level and upright lines to the lower left.
+    along *= np.copysign(1.0, along.sum())
+    ends = points + DEPTH * (0.8 * behind - 0.6 * along)
     return np.concatenate(
         [gapped(edge[None]), gapped(np.stack([points, ends], axis=1))]
     )

@@ -13,8 +13,8 @@ from app.views.axis import whole
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
 from app.views.parts import color_bar, hover
 from app.views.view import ExtraView
+from app.worker.cells import thinned
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
-from app.worker.geometry import thinned
 from solver.study.quantities.reduction_measures import can_be_clipped
 
 SMALLEST = 1e-4

@@ -43,8 +43,11 @@ def hints_of(picture: Picture) -> Columns:
             aligns.append("left")
     texts.append(RUBS)
     aligns.append("center")
-    foot = np.nanmin(picture.points[:, 1])
-    anchors.append(np.array([(RUBBING - 0.5) * length, foot - BELOW]))
+    rubbing = np.array([(RUBBING - 0.5) * length, np.nanmin(picture.points[:, 1])])
+    if layout.description.footings is not None:
+        # Bodies of any shape may touch nowhere below.
+        rubbing = picture.points[int(RUBBING * len(picture.points))]
+    anchors.append(rubbing - [0.0, BELOW])
     x, y = picture.page(np.array(anchors)).T
     return {"x": x, "y": y, "text": texts, "text_align": aligns}
 

@@ -11,7 +11,7 @@ import numpy as np
 from app.frame import Geometry
 from app.views.axis import rounded_up
 from solver.arrays import Array
-from solver.discrete.structure import Act, Description
+from solver.discrete.structure import OUTWARD, Act, Description
 from solver.study.trade_case import Surroundings
 
 THICK = 52.0
@@ -49,7 +49,7 @@ class Layout:
     height as they are drawn; bare ones show no loads. `scale` is in px/m: only of rods
     it differs along x and y. `origin` is the middle of their foot, px. An arrow is
     `arrow` px long at its largest value, a letter of its words `letter` px wide, and a
-    line of them `row` px high;
+    line of them `row` px high; a body is about `body_height` m high;
     the largest displacement takes `motion` px at most. Keys stand below the bodies in
     `key_rows`, or at their left if there are none.
 
@@ -79,6 +79,12 @@ class Layout:
         if is_bare:
             self.description = replace(self.description, acts=())
         top = float(geometry.nodes[:, 1].max())
+        self.body_height = top / self.description.bodies
+        if self.description.footings is not None:
+            # Bands may go beyond the lines of their nodes.
+            top = float(self.description.height or top)
+            area = self.description.length * top
+            self.body_height = math.sqrt(area / self.description.bodies)
         self.size = np.array([self.description.length, top])
         self.angle = 0.0
         # Rods alone are drawn level, whatever they are.
@@ -252,6 +258,10 @@ def _margins(
             # An open gap is drawn, too.
             size += deepest
         room[hold.side] = max(room[hold.side], size)
+    for footing in description.footings or ():
+        for side, outward in OUTWARD.items():
+            if np.max(footing.outward @ outward) > 0.5:
+                room[side] = max(room[side], 18.0)
     is_upright = False
     if surroundings is not None:
         is_upright = surroundings.is_upright
@@ -259,15 +269,21 @@ def _margins(
         if surroundings.place == "around":
             room["top"] = max(room["top"], GROUND + 16.0)
     for act in description.acts:
-        side = act.where.partition(" ")[0]
+        side = act.side
         if is_upright:
             size = arrow + 10.0
         elif side in ("left", "right"):
             size = 20.0 + letter * (len(act.symbol) + len(act.unit) + 9)
+            if act.outward is not None:
+                size += arrow
         elif side not in ("top", "bottom"):
             continue
         elif is_aside(act):
             size = beside(description, side) + 11.0
+            if act.outward is not None:
+                # It may stand at an end of the side.
+                for end in ("left", "right"):
+                    room[end] = max(room[end], arrow + 6.0)
         else:
             size = arrow + 10.0
         room[side] = max(room.get(side, 0.0), size)
@@ -279,6 +295,7 @@ def _margins(
 
 def beside(description: Description, side: str) -> float:
     """Distance of an arrow along a side from that side, px."""
-    if any(hold.side == side for hold in description.holds):
+    is_held = any(hold.side == side for hold in description.holds)
+    if is_held or description.footings:
         return 20.0
     return 9.0

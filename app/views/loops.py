@@ -25,7 +25,7 @@ from app.views.colors import (
 )
 from app.views.parts import hover
 from app.views.view import ExtraView, View
-from app.worker.geometry import thinned
+from app.worker.cells import thinned
 from solver.arrays import Array
 from solver.laws import FrictionLaw
 from solver.study import comparison

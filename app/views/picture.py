@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,12 +15,13 @@ from app.views.acts import (
     Rest,
     anchor_of,
     color_of,
+    footing_strokes,
     gapped,
     ground_edge,
     strokes_of,
     text_of,
 )
-from app.views.colors import EDGE, ERROR, FORCE, HALO, STATUS
+from app.views.colors import EDGE, ERROR, FORCE, HALO, REFERENCE, STATUS
 from app.views.colors import GROUND as GROUND_COLOR
 from app.views.layout import BAND, GROUND, IMAGE, Layout, is_opposite, turned
 from solver.arrays import Array
@@ -28,12 +29,27 @@ from solver.discrete.structure import Act
 
 MECHANISM = 0.12
 """Largest motion of a mechanism as drawn, over the height of all bodies."""
+NAMED = 0.4
+"""Largest length of the name of a joint over that of all bodies."""
+NAME = 14.0
+ASKEW = 0.3
+"""Distance of the name of a joint from its end, px, and slope of a joint from which on
+its name stands beside it and not above or below."""
 LEFT_OF = {"left": 0.0, "center": 0.5, "right": 1.0}
 """Share of a text at the left of its anchor, by its alignment."""
 Columns = dict[str, Any]
 """Columns of one source by their names."""
 Strokes = list[tuple[Array, str, float]]
 """Lines with NaN between them, shape (n, 2), px, a colour, and a width, px."""
+
+
+class Word(NamedTuple):
+    """A text in the figure: its anchor, (2,), px, the side it is at, and a colour."""
+
+    text: str
+    anchor: Array
+    align: str
+    color: str
 
 
 class Picture:
@@ -82,7 +98,10 @@ class Picture:
         """Contact points, px from the middle of the foot, shape (n_points, 2)."""
         positions = self._geometry.points
         local = self._moved(positions, self.frame.deformed.points[:, :, self.column])
-        if self._description.height is not None and self._description.bodies == 1:
+        is_alone = (
+            self._description.bodies == 1 and self._description.height is not None
+        )
+        if is_alone and self._description.footings is None:
             # The band lies below a single body. Rods leave room for it.
             at_foot = positions[:, 1] <= 1e-6 * self._description.length
             local[at_foot, 1] -= 0.5 * BAND
@@ -97,7 +116,7 @@ class Picture:
         for act in self._description.acts:
             setting = behind.get(act.where)
             peak = self._peaks[act.where]
-            points = self._follow(act.points * layout.size)
+            points = self._follow(act.points_at(self._now) * layout.size)
             arrows.append(Arrows(act, setting, points, layout, peak, self._now))
         return arrows
 
@@ -253,6 +272,12 @@ class Picture:
         length = self._description.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
         strokes = strokes_of(layout, self._factor, self._now, feet)
+        for footing in self._description.footings or ():
+            points = footing.points * layout.size
+            places = layout.local(points)
+            if footing.kind != "support":
+                places = self._follow(points)
+            strokes.append(footing_strokes(footing, places, layout, self._factor))
         if self._description.tilt is not None:
             corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
@@ -269,10 +294,13 @@ class Picture:
             top = self.layout.size[1] * self.layout.scale[1]
             for kind, line in lines.items():
                 lines[kind] = np.concatenate([line, [0.0, top] - [-1.0, 1.0] * line])
-        height = self.layout.size[1] * self.layout.scale[1] / self._description.bodies
+        height = self.layout.body_height * self.layout.scale[1]
         width = min(BAND, 0.35 * height)
         # Broad bands of many interfaces, as in a wall, would cover the bodies.
-        if chains.max() >= self._description.bodies:
+        most = self._description.bodies
+        if self._description.footings is not None:
+            most = 1
+        if chains.max() >= most:
             width = min(width, 5.0)
         # A dark rim below what slips: what sticks is quiet.
         slipping = [line for kind, line in lines.items() if kind in (-1, 1)]
@@ -297,12 +325,28 @@ class Picture:
         return self.points[self._geometry.chains == chain]
 
     def _words(self) -> Columns:
-        """Symbols and values of the loads, and the slope, inside the figure."""
+        """Symbols and values of loads, names of ground and joint, and the slope."""
+        words = self._words_of_loads()
+        if not self.layout.is_bare:
+            words += self._name_of_ground() + self._name_of_joint()
+        if self._description.tilt is not None:
+            x = 0.5 * self._description.length * self.layout.scale[0] + 30.0
+            slope = f"slope {number(float(np.degrees(self.tilt)))}°"
+            anchor = np.array([x, -14.0]) + self.layout.origin
+            words.append(Word(slope, anchor, "left", FORCE))
+        x, y = _inside(self.layout, words)
+        return {
+            "x": x,
+            "y": y,
+            "text": [word.text for word in words],
+            "text_align": [word.align for word in words],
+            "text_color": [word.color for word in words],
+        }
+
+    def _words_of_loads(self) -> list[Word]:
+        """Symbols and values of the loads."""
         layout = self.layout
-        texts = []
-        anchors = []
-        aligns = []
-        colors = []
+        words = []
         for arrows in self.arrows:
             act = arrows.act
             # Pressures from both sides have one text.
@@ -312,39 +356,51 @@ class Picture:
             anchor = self.page(anchor)
             if layout.angle:
                 # In rows above what stands upright.
-                above = layout.height - (len(texts) + 0.5) * layout.row
+                above = layout.height - (len(words) + 0.5) * layout.row
                 anchor = np.array([layout.origin[0], above])
                 align = "center"
-            texts.append(text_of(act, self._now))
-            anchors.append(anchor)
-            aligns.append(align)
-            colors.append(color_of(act))
-        surroundings = layout.surroundings
-        if surroundings is not None and not layout.is_bare:
-            edge = ground_edge(layout, self._factor)
-            end = edge[0] + [8.0, -0.5 * GROUND]
-            align = "left"
-            if layout.angle:
-                end = edge[-1] - [10.0, 0.5 * GROUND]
-                align = "center"
-            texts.append(surroundings.ground)
-            anchors.append(self.page(end))
-            aligns.append(align)
-            colors.append(GROUND_COLOR)
-        if self._description.tilt is not None:
-            x = 0.5 * self._description.length * layout.scale[0] + 30.0
-            texts.append(f"slope {number(float(np.degrees(self.tilt)))}°")
-            anchors.append(np.array([x, -14.0]) + layout.origin)
-            aligns.append("left")
-            colors.append(FORCE)
-        x, y = _inside(layout, texts, anchors, aligns)
-        return {
-            "x": x,
-            "y": y,
-            "text": texts,
-            "text_align": aligns,
-            "text_color": colors,
-        }
+            words.append(Word(text_of(act, self._now), anchor, align, color_of(act)))
+        return words
+
+    def _name_of_ground(self) -> list[Word]:
+        """Name of the ground of a case, if there is one."""
+        surroundings = self.layout.surroundings
+        if surroundings is None:
+            return []
+        edge = ground_edge(self.layout, self._factor)
+        end = edge[0] + [8.0, -0.5 * GROUND]
+        align = "left"
+        if self.layout.angle:
+            end = edge[-1] - [10.0, 0.5 * GROUND]
+            align = "center"
+        return [Word(surroundings.ground, self.page(end), align, GROUND_COLOR)]
+
+    def _name_of_joint(self) -> list[Word]:
+        """Name of the selected joint of bodies of any shape, where it has room."""
+        line = self._halo()
+        # Where bodies are small the name would cover them.
+        room = NAMED * self.layout.size[0] * self.layout.scale[0]
+        if self.layout.letter * len(self._selected) > room:
+            return []
+        if self._description.footings is None or not len(line):
+            return []
+        anchor, align = self._anchor_of_name(line)
+        return [Word(self._selected, self.page(anchor), align, REFERENCE)]
+
+    def _anchor_of_name(self, line: Array) -> tuple[Array, str]:
+        """Anchor of the name of a joint beyond one end of its line, (n, 2), and side.
+
+        The end is the one nearer to the middle of all bodies, px.
+        """
+        middle = 0.5 * self.layout.size * self.layout.scale * [0.0, 1.0]
+        ends = line[[0, -1]]
+        nearer = int(np.hypot(*(ends - middle).T).argmin())
+        away = ends[nearer] - ends[1 - nearer]
+        away /= np.hypot(*away) or 1.0
+        align = "center"
+        if abs(away[0]) > ASKEW:
+            align = "left" if away[0] > 0.0 else "right"
+        return ends[nearer] + NAME * away, align
 
     def _is_repeated(self, act: Act) -> bool:
         """Check whether a load is a pressure from below that is named above already."""
@@ -354,13 +410,11 @@ class Picture:
         return any(is_opposite(act, other) for other in above)
 
 
-def _inside(
-    layout: Layout, texts: list[str], anchors: list[Array], aligns: list[str]
-) -> tuple[Array, Array]:
-    """X and y, (n,), px, of anchors, (2,) each, moved so that no text is cut."""
-    x, y = np.reshape(anchors, (-1, 2)).T
-    widths = np.array([layout.letter * len(text) + 4.0 for text in texts])
-    left = widths * [LEFT_OF[align] for align in aligns]
+def _inside(layout: Layout, words: Sequence[Word]) -> tuple[Array, Array]:
+    """X and y, (n,), px, of the anchors of words, moved so that no text is cut."""
+    x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
+    widths = np.array([layout.letter * len(word.text) + 4.0 for word in words])
+    left = widths * [LEFT_OF[word.align] for word in words]
     right = np.maximum(layout.width - widths + left, left)
     return np.clip(x, left, right), np.clip(y, 8.0, layout.height - 8.0)
 

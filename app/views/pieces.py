@@ -206,7 +206,7 @@ class PiecesView(ExtraView):
         largest = {
             "force": np.hypot(totals[:, 0], totals[:, 1]).max(initial=0.0),
             "moved": np.nanmax(np.abs(linear.joined), initial=0.0),
-            "gap": linear.gap.max(initial=0.0),
+            "gap": _open_gap(linear),
         }
         for name, size in largest.items():
             kept = self._scales.setdefault(name, 1.0)
@@ -222,7 +222,7 @@ class PiecesView(ExtraView):
         placed = self._placed
         force = self._scales["force"]
         texts = [f"Displacement × {number(placed.factor(self._scales), 2)}"]
-        if extra.stages[LINEAR].gap.any():
+        if _open_gap(extra.stages[LINEAR]):
             texts.append(f"gaps × {number(placed.jump_factor(self._scales), 2)}")
         texts.append(f"longest arrow {unit_for(force, 'N')(force)}")
         if extra.left_out:
@@ -358,6 +358,7 @@ class _Placed:
         """Hatched lines along the joints of pieces with a support, (n, 2), px."""
         extra = self._extra
         is_held = np.bincount(extra.joints)[extra.joints] == 1
+        is_held &= extra.is_straight
         quarters = extra.quarters[is_held] * self._pixels + self._origin
         middles = quarters.mean(axis=1, keepdims=True)
         edges = middles + 2.0 * (quarters - middles)
@@ -367,21 +368,27 @@ class _Placed:
         return np.concatenate(strokes)
 
     @property
-    def _is_lying(self) -> Array:
-        """Truth of sides that lie, (n_sides, 1); others stand upright."""
-        sizes = np.ptp(self._extra.quarters, axis=1) * self._pixels
-        return np.asarray(sizes[:, :1] > sizes[:, 1:])
+    def _along(self) -> Array:
+        """Unit vectors along sides, (n_sides, 2); of a side without length upright."""
+        quarters = self._extra.quarters
+        along = (quarters[:, 1] - quarters[:, 0]) * self._pixels
+        lengths = np.hypot(*along.T)[:, None]
+        along = np.where(lengths > 0.0, along, [0.0, 1.0])
+        return np.asarray(along / np.where(lengths > 0.0, lengths, 1.0))
 
     @property
     def _outward(self) -> Array:
         """Unit vectors from pieces across their sides, (n_sides, 2)."""
-        sign = np.where(self._extra.is_above == 1, -1.0, 1.0)[:, None]
-        return np.where(self._is_lying, sign * [0.0, 1.0], sign * [1.0, 0.0])
+        extra = self._extra
+        across = self._along[:, ::-1] * [-1.0, 1.0]
+        middles = extra.quarters.mean(axis=1) * self._pixels + self._origin
+        beyond = ((middles - self._middles[extra.owners]) * across).sum(axis=1)
+        return np.asarray(np.copysign(1.0, beyond)[:, None] * across)
 
     def _aside(self) -> Array:
         """Shift of arrows along joints, (n_sides, 2), px."""
         sign = np.where(self._extra.is_above == 1, ASKEW, -ASKEW)[:, None]
-        return np.where(self._is_lying, sign * [1.0, 0.0], sign * [0.0, 1.0])
+        return sign * self._along
 
 
 def _boxes(corners: Array, parts: Indices) -> tuple[Array, Array]:
@@ -411,6 +418,14 @@ def _arrows(tails: Array, spans: Array, longest: float) -> tuple[Array, Array]:
     half = 0.45 * length * along[:, ::-1] * [-1.0, 1.0]
     heads = np.stack([tips, ends + half, ends - half], axis=1)
     return gapped(np.stack([tails, ends], axis=1)), heads
+
+
+def _open_gap(stage: StageFields) -> float:
+    """Largest gap of a stage, m; 0 where it is no more than rounding."""
+    gap = float(stage.gap.max(initial=0.0))
+    if gap > CLOSED * float(np.nanmax(np.abs(stage.moved), initial=0.0)):
+        return gap
+    return 0.0
 
 
 def _sentence(extra: Pieces, stage: StageFields, column: int, name: str) -> str:

@@ -15,7 +15,17 @@ from app.frame import LINEAR, LOCAL, Frame, Run, Selection
 from app.units import number, unit_for
 from app.views.acts import Arrows, Rest
 from app.views.axis import rounded_up
-from app.views.colors import BODY, EDGE, GHOST, GROUND, HINT, KEYS, LATIN, UNSEEN
+from app.views.colors import (
+    BODY,
+    EDGE,
+    ERROR,
+    GHOST,
+    GROUND,
+    HINT,
+    KEYS,
+    LATIN,
+    UNSEEN,
+)
 from app.views.hints import NONE, hints_of
 from app.views.layout import NARROW, Layout, layout_of
 from app.views.parts import bare, color_bar
@@ -289,7 +299,7 @@ class Scene(View):
             return
         run = picture.frame.run
         at = picture.to_local(event.x, event.y)
-        middles = picture.nodes[run.geometry.quads].mean(axis=1)
+        middles = picture.nodes[run.geometry.cells].mean(axis=1)
         nearest = np.hypot(*(middles - at).T).argmin()
         chosen: dict[str, Any] = {"substructure": int(run.geometry.parts[nearest])}
         away = np.hypot(*(picture.points - at).T)
@@ -320,7 +330,7 @@ class ExtraScene(Scene):
 
 
 class Stress(ExtraScene):
-    """A stress in every quadrilateral that is drawn, at the selected instant."""
+    """A stress in every cell that is drawn, at the selected instant."""
 
     name = "Stress"
     needs = frozenset({"stress"})
@@ -350,12 +360,12 @@ class Stress(ExtraScene):
         else:
             self.colors.update(palette=Cividis256, low=0.0, high=high)
         self.bar.title = f"{title}, {unit.name}"
-        corners = picture.many(picture.nodes[picture.frame.run.geometry.quads])
+        corners = picture.many(picture.nodes[picture.frame.run.geometry.cells])
         self.fill("stress", **corners, value=values[:, picture.column] / unit.factor)
 
 
 class Thrust(ExtraScene):
-    """Resultant forces of joints, as lines from middle to middle of bodies.
+    """Resultant forces of joints, as lines from body to body; hinges of a chain.
 
     The width of a line is in proportion to its force; the largest force of all instants
     has the widest line.
@@ -371,6 +381,8 @@ class Thrust(ExtraScene):
         super()._draw(plot)
         look = {"line_color": LATIN, "line_alpha": 0.8, "line_cap": "round"}
         self.add("thrust", "MultiLine", "xs ys line_width", **look)
+        look = {"fill_color": "white", "line_color": ERROR, "line_width": 2.5}
+        self.add("hinges", "Scatter", "x y", size=9, **look)
 
     def _show(self, extra: Any, picture: Picture) -> None:
         largest = float(extra["forces"].max())
@@ -378,4 +390,11 @@ class Thrust(ExtraScene):
         is_drawn = share > FAINTEST
         lines = picture.layout.local(extra["lines"][is_drawn, :, :, picture.column])
         self.fill("thrust", **picture.many(lines), line_width=WIDEST * share[is_drawn])
-        self.show("note", f"widest line {unit_for(largest, 'N')(largest)}")
+        is_hinge = extra["hinges"][:, picture.column] > 0.0
+        hinges = picture.layout.local(extra["lines"][is_hinge, 1, :, picture.column])
+        x, y = picture.page(hinges).T
+        self.fill("hinges", x=x, y=y)
+        note = f"widest line {unit_for(largest, 'N')(largest)}"
+        if len(hinges):
+            note += f"; hinges: {len(hinges)}"
+        self.show("note", note)

@@ -13,7 +13,8 @@ import numpy as np
 from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
-from app.worker.geometry import MOST_POINTS, floats, thinned
+from app.worker.cells import floats, thinned
+from app.worker.geometry import MOST_POINTS
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.plane.band import Band

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
+from app.worker.cells import (
+    NONE,
+    cells_of,
+    drawings_of_grids,
+    drawings_of_shapes,
+    floats,
+    joined,
+    mesh_of,
+    thinned,
+)
+from app.worker.thrust import Thrusts
 from solver.arrays import Array, Indices
-from solver.discrete import Problem
+from solver.discrete import Bodies, Problem
 from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
@@ -28,39 +38,10 @@ MOST_POINTS = 201
 frame."""
 MOST_WIRES = 6
 """Largest number of wires whose axial force is shown, beside a broken one."""
-MOST_QUADS = 400
-"""Largest number of quadrilaterals that are drawn, or one for each body."""
-NONE = -1
-"""Number in place of a missing degree of freedom, and between two lines of nodes."""
 StressField = tuple[str, str, Floats]
-"""Title, SI unit, and values in the quadrilaterals, (n_quads, n_instants)."""
+"""Title, SI unit, and values in the cells, (n_cells, n_instants)."""
 Extras = dict[str, Callable[[Iterate, Needs], Any]]
 """Extras of an iterate for some views, by the names in `View.needs`."""
-
-
-def floats(values: NDArray[np.generic]) -> Floats:
-    """Arrays as frames have them, of the same shape."""
-    return values.astype(np.float32, order="C")
-
-
-def thinned(size: int, limit: int) -> Indices:
-    """Indices of a thinned axis, (n,), first and last included, n up to a limit."""
-    if size <= limit:
-        return np.arange(size)
-    return np.unique(np.linspace(0, size - 1, limit).round().astype(np.intp))
-
-
-def _shares_of_points(pressed: Array, whole: Array, sizes: Indices) -> Array:
-    """Share of each point in the resultant of its joint, (n_points, n_shown).
-
-    A resultant acts at the mean of the points by their pressing force, (n_points,
-    n_shown), N; in the middle of a joint that is open. `whole` are the sums of these
-    forces, (n_joints, n_shown), N, `sizes` the numbers of points, (n_joints,).
-    """
-    divisor = np.repeat(np.where(whole > 0.0, whole, 1.0), sizes, axis=0)
-    is_closed = np.repeat(whole > 0.0, sizes, axis=0)
-    even = np.repeat(1.0 / sizes, sizes)[:, None]
-    return np.where(is_closed, pressed / divisor, even)
 
 
 class Drawn:
@@ -224,97 +205,46 @@ def _rectangles(
 
 
 class DrawnMesh(Drawn):
-    """Plane bodies, with some lines of the mesh of each substructure."""
+    """Plane bodies, with some lines or groups of the elements of each substructure."""
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         inside = problem.inside
         values = settings.values()
+        structure = settings.structure()
         self._inside = inside
         self._poisson = values["poisson"]
         self._state = values["plane"]
+        # Positions are drawn from the lower left corner of all bodies on.
+        self._corner = np.zeros(2)
+        if isinstance(structure, Bodies):
+            drawings = drawings_of_shapes(structure, inside)
+            self._corner, _ = structure.box
+            poisson = np.array([body.poisson for body in structure.bodies])
+            self._poisson = poisson[inside.bodies]
+        else:
+            drawings = drawings_of_grids(inside)
         self.extras: Extras = {"stress": self._stress}
         if settings.has_joints:
-            self.extras["thrust"] = self._thrust
-        # All grids are thinned alike, so that bodies of one size look alike.
-        limit = max(MOST_QUADS // len(inside.grids), 1)
-        shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
-        share = min(np.sqrt(limit / shapes.prod(axis=1).max()), 1.0)
-        grids = []
-        quads = []
-        first = 0
-        for grid in inside.grids:
-            up, across = _kept_lines(grid, share, limit)
-            grids.append(grid[np.ix_(up, across)])
-            quads.append(first + _quads_of(grid, up, across))
-            first += (len(up) - 1) * (len(across) - 1)
-        self._nodes = np.concatenate([grid.ravel() for grid in grids])
-        # The quadrilateral that each element lies in.
-        self._quad = np.concatenate(quads)
-        mesh = mesh_of([inside.nodes[grid] for grid in grids], np.arange(len(grids)))
-        description = settings.structure().description()
-        super().__init__(problem, description, columns, mesh, problem.positions)
+            self.extras["thrust"] = Thrusts(problem, self._corner, columns).of
+        self._nodes = np.concatenate([drawing.numbers for drawing in drawings])
+        # The cell that each element lies in.
+        self._cells = cells_of(drawings)
+        mesh = joined(drawings)
+        mesh["nodes"] = mesh["nodes"] - floats(self._corner)
+        description = structure.description()
+        positions = problem.positions - self._corner
+        super().__init__(problem, description, columns, mesh, positions)
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
-        """Von Mises' equivalent stress, its mean in every quadrilateral."""
+        """Von Mises' equivalent stress, its mean in every cell."""
         means = []
         for moved in np.moveaxis(self._moved(iterate), -1, 0):
             stress = self._inside.stress(moved)
             shown = von_mises(stress, self._poisson, self._state)
             means.append(
-                np.bincount(self._quad, weights=shown) / np.bincount(self._quad)
+                np.bincount(self._cells, weights=shown) / np.bincount(self._cells)
             )
         return "von Mises stress", "Pa", floats(np.stack(means, axis=1))
-
-    def _thrust(self, iterate: Iterate, needs: Needs) -> dict[str, Floats]:
-        """Resultant force in every joint of bricks, and where it acts.
-
-        "lines" go from the middle of one brick over the point where the resultant acts
-        to the middle of the other, (n_joints, 3, 2, n_instants), m; on a support they
-        end there. "forces" are their sizes, (n_joints, n_instants), N.
-        """
-        contacts = self._problem.rubbing
-        lines = np.zeros((len(contacts), 3, 2, len(self._columns)))
-        forces = np.zeros((len(contacts), len(self._columns)))
-        for stacked in contacts.stacks:
-            normal, tangential = [
-                iterate.contact_force[numbers][:, self._columns]
-                for numbers in stacked.forces
-            ]
-            sizes = stacked.law.sizes
-            firsts = np.cumsum(sizes) - sizes
-            pressed = np.maximum(normal, 0.0)
-            whole = np.add.reduceat(pressed, firsts)
-            sheared = np.add.reduceat(tangential, firsts)
-            weights = _shares_of_points(pressed, whole, sizes)
-            lines[stacked.numbers] = self._lines(stacked.law, firsts, weights)
-            forces[stacked.numbers] = np.hypot(whole, sheared)
-        return {"lines": floats(lines), "forces": floats(forces)}
-
-    def _lines(self, law: Contact, firsts: Indices, weights: Array) -> Array:
-        """Lines of thrust over joints, (n_joints, 3, 2, n_shown), m.
-
-        `firsts` are the first points of the joints, (n_joints,), `weights` those with
-        which each point counts, (n_points, n_shown).
-        """
-        problem = self._problem
-        middles = self._middles()
-        _, pairs = np.unique(law.points, return_index=True)
-        above, *below = [problem.row_dofs[rows[pairs]] for rows in law.tangent.sides]
-        moments = problem.positions[above][:, :, None] * weights[:, None]
-        points = np.add.reduceat(moments, firsts)
-        ends = points
-        if below:
-            ends = middles[below[0][firsts]]
-        begins = middles[above[firsts]]
-        return np.stack(np.broadcast_arrays(begins, points, ends), axis=1)
-
-    def _middles(self) -> Array:
-        """Middle of the body of each degree of freedom, shape (n_dofs, 2, 1), m."""
-        problem = self._problem
-        middles = np.zeros((problem.n_dofs, 2, 1))
-        for grid, part in zip(self._inside.grids, problem.substructures, strict=True):
-            middles[part.dofs, :, 0] = self._inside.nodes[grid].mean(axis=(0, 1))
-        return middles
 
     def nodes_of(self, displacement: Array) -> Floats:
         """Displacement of nodes, (n_nodes, 2), m, from that of all, (n_dofs,), m."""
@@ -330,71 +260,3 @@ class DrawnMesh(Drawn):
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         return floats(self._moved(iterate)[self._nodes])
-
-
-def _kept_lines(grid: Indices, share: float, limit: int) -> tuple[Indices, Indices]:
-    """Rows and columns of a grid of nodes that are drawn, (n_up,) and (n_across,).
-
-    They are a share of all lines, and make no more cells than a limit.
-    """
-    n_rows, n_columns = np.subtract(grid.shape, 1)
-    rows = max(int(share * n_rows), 1)
-    columns = max(min(int(share * n_columns), limit // rows), 1)
-    return thinned(n_rows + 1, rows + 1), thinned(n_columns + 1, columns + 1)
-
-
-def _quads_of(grid: Indices, up: Indices, across: Indices) -> Indices:
-    """Quadrilateral of kept rows and columns about each element, (n_elements,)."""
-    n_rows, n_columns = np.subtract(grid.shape, 1)
-    row = np.searchsorted(up, np.arange(n_rows), side="right") - 1
-    column = np.searchsorted(across, np.arange(n_columns), side="right") - 1
-    return np.add.outer(row * (len(across) - 1), column).ravel()
-
-
-def ring_of(grid: Indices) -> Indices:
-    """Numbers around a grid, (n_rows, n_columns), the first again at the end, (n,)."""
-    sides = (grid[0], grid[1:, -1], grid[-1, -2::-1], grid[-2::-1, 0])
-    return np.concatenate(sides)
-
-
-def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
-    """Nodes, quadrilaterals and outlines, as `Geometry` has them, of grids of nodes.
-
-    Each grid is of one of the parts, (n_rows, n_columns, 2), m, row by row from below.
-    """
-    quads = []
-    rings = []
-    first = 0
-    for grid in grids:
-        n_rows, n_columns = grid.shape[:2]
-        size = n_rows * n_columns
-        n = np.arange(first, first + size).reshape(n_rows, n_columns)
-        corners = (n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1])
-        quads.append(np.stack(corners, axis=-1).reshape(-1, 4))
-        rings.append(ring_of(n))
-        first += size
-    nodes = np.concatenate([grid.reshape(-1, 2) for grid in grids])
-    sides = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
-    free = sides[_is_free(sides, nodes)]
-    return {
-        "nodes": floats(nodes),
-        "quads": np.concatenate(quads).astype(np.int32),
-        "parts": np.repeat(parts, [len(some) for some in quads]),
-        "outlines": np.concatenate([np.append(ring, NONE) for ring in rings]),
-        "rims": np.insert(free, 2, NONE, axis=1).ravel(),
-    }
-
-
-def _is_free(sides: Indices, nodes: Array) -> NDArray[np.bool_]:
-    """Check which sides, (n_sides, 2), of grids no other grid has, (n_sides,).
-
-    A shared side runs the other way round in the other grid; grids share positions,
-    not nodes, (n_nodes, 2), m.
-    """
-    rounded = np.round(nodes / np.ptp(nodes) * 1e5).astype(np.int64)
-    position = np.unique(rounded, axis=0, return_inverse=True)[1].ravel()
-    ends = position[sides]
-    there = ends @ [len(nodes), 1]
-    back = ends @ [1, len(nodes)]
-    has_length = ends[:, 0] != ends[:, 1]
-    return ~np.isin(there, back) & has_length

@@ -16,9 +16,17 @@ from scipy import sparse
 
 from app.frame import LINEAR, LOCAL, Floats
 from app.messages import Needs
-from app.worker.geometry import NONE, PITCH, THICKNESS, floats, ring_of, thinned
-from solver.arrays import Array, Indices
-from solver.discrete import Problem
+from app.worker.cells import (
+    NONE,
+    Drawing,
+    drawings_of_shapes,
+    floats,
+    ring_of,
+    thinned,
+)
+from app.worker.geometry import PITCH, THICKNESS
+from solver.arrays import Array, Flags, Indices
+from solver.discrete import Bodies, Problem
 from solver.discrete.substructure import Substructure
 from solver.latin import Iterate
 from solver.settings.scene import Settings
@@ -30,6 +38,10 @@ MOST_DETAILED = 40
 interface alone."""
 MOST_RODS = 6
 """Largest number of rods whose pieces are shown."""
+BENT = 0.05
+"""Largest distance of a straight side from its chord, over half of that."""
+ASIDE = 0.1
+"""Angle between a chord and the direction that tells components apart, rad."""
 MOST_CORNERS = 600
 MOST_MOMENTS = 101
 """Largest numbers of corners of outlines, about, and of instants that are shown."""
@@ -81,7 +93,9 @@ class Pieces:
     owners: Indices
     """Piece of each side, (n_sides,)."""
     quarters: Floats
-    """Quarter points of each side, (n_sides, 2, 2), m."""
+    """Quarter points of each side, (n_sides, 2, 2), m; of a curved one on its chord."""
+    is_straight: Flags
+    """Whether each side is a straight line, (n_sides,)."""
     points: Floats
     """Points with micro forces, (n_points, 2), m."""
     sides: Indices
@@ -106,7 +120,8 @@ class Cutter:
         self._problem = problem
         self._kind = settings.kind
         self._columns = columns
-        self._bodies = settings.structure().description().bodies
+        self._structure = settings.structure()
+        self._bodies = self._structure.description().bodies
         if self._kind == "helices":
             self._bodies = len(problem.rubbing)
         self._made: tuple[str, _Apart] | None = None
@@ -126,8 +141,13 @@ class Cutter:
         names = list(problem.rubbing)
         numbers = np.arange(len(problem.substructures))
         if self._kind == "plane":
-            outlines = _outlines_of_bodies(problem)
             positions = problem.positions[problem.row_dofs]
+            if isinstance(self._structure, Bodies):
+                outlines = _outlines_of_shapes(problem, self._structure)
+                # From the corner on from which bodies are drawn.
+                positions = positions - self._structure.box[0]
+            else:
+                outlines = _outlines_of_bodies(problem)
         else:
             count = min(self._bodies, MOST_RODS)
             if self._kind == "helices":
@@ -176,6 +196,29 @@ def _outlines_of_bodies(problem: Problem) -> list[_Outline]:
         matrix, given = inside.of_part(number, ring)
         motion = matrix @ _mean_of_rows(problem.substructures[number])
         corners = inside.nodes[grid.ravel()[ring]]
+        outlines.append(_Outline(corners, motion, given))
+    return outlines
+
+
+def _outlines_of_shapes(problem: Problem, structure: Bodies) -> list[_Outline]:
+    """Outlines of the substructures of bodies of any shape."""
+    inside = problem.inside
+    assert inside is not None
+    limit = max(MOST_CORNERS // len(inside.grids), 8)
+    longest = dict[int, tuple[Drawing, Indices]]()
+    for drawing in drawings_of_shapes(structure, inside):
+        for ring in drawing.rings:
+            if drawing.part not in longest or len(ring) > len(longest[drawing.part][1]):
+                longest[drawing.part] = drawing, ring
+    outlines = []
+    for number, (drawing, ring) in sorted(longest.items()):
+        kept = ring[thinned(len(ring), limit)]
+        nodes = inside.grids[number]
+        order = np.argsort(nodes)
+        numbers = order[np.searchsorted(nodes[order], drawing.numbers[kept])]
+        matrix, given = inside.of_part(number, numbers)
+        motion = matrix @ _mean_of_rows(problem.substructures[number])
+        corners = drawing.positions[kept] - structure.box[0]
         outlines.append(_Outline(corners, motion, given))
     return outlines
 
@@ -244,7 +287,8 @@ class _SidePairs(NamedTuple):
 class _Joints:
     """Sides of the joints between some pieces, and forces on them.
 
-    `joints`, `is_above`, `owners`, `quarters`, `points` and `sides` are as in `Pieces`.
+    `joints`, `is_above`, `owners`, `quarters`, `is_straight`, `points` and `sides` are
+    as in `Pieces`.
     `macro`, (4 n_sides, n_rows), and `micro`, (2 n_points, n_rows), are maps from the
     forces on all rows, whose `positions` are (n_rows, 2), m. With many joints there are
     micro forces on the interface of a name alone.
@@ -262,27 +306,32 @@ class _Joints:
         self.left_out = len(keys) - len(kept)
         names = [*problem.rubbing, ""]
         self.names = [names[number] for number in keys[kept, 0]]
-        self._gather(pairs, of_pairs, kept)
+        turns = np.zeros(problem.n_rows, dtype=bool)
+        if problem.inside is not None:
+            turns = problem.inside.directions[problem.row_dofs, 2] != 0.0
+        self._gather(pairs, of_pairs, kept, turns)
         self.owners = owners[self._rows[np.unique(self._sides, return_index=True)[1]]]
-        self._components = np.zeros(len(self._rows), dtype=np.intp)
+        self._directions = np.tile([1.0, 0.0], (len(self._rows), 1))
         if problem.inside is not None:
             dofs = problem.row_dofs[self._rows]
-            along = problem.inside.directions[dofs, :2]
-            self._components = np.abs(along).argmax(axis=1)
+            self._directions = problem.inside.directions[dofs, :2]
         self._positions = positions[self._rows]
         self._measure()
         self.macro = self._macro()
         self.points, self.sides, self.micro = self._micro(name)
 
-    def _gather(self, pairs: _SidePairs, of_pairs: Indices, kept: Indices) -> None:
+    def _gather(
+        self, pairs: _SidePairs, of_pairs: Indices, kept: Indices, turns: Flags
+    ) -> None:
         """Number the sides of the joints that are kept, and collect their rows.
 
-        `of_pairs` are the joints of the pairs, (n_pairs,).
+        `of_pairs` are the joints of the pairs, (n_pairs,). Rows of a turn, (n_rows,),
+        have no force.
         """
         rows = np.concatenate([pairs.below, pairs.above])
         joints = np.tile(of_pairs, 2)
         is_above = np.repeat([0, 1], len(of_pairs))
-        has_side = (rows != NONE) & np.isin(joints, kept)
+        has_side = (rows != NONE) & np.isin(joints, kept) & ~turns[rows]
         self._rows = rows[has_side]
         sides = 2 * np.searchsorted(kept, joints[has_side]) + is_above[has_side]
         each, self._sides = np.unique(sides, return_inverse=True)
@@ -290,29 +339,66 @@ class _Joints:
         self.is_above = each % 2
 
     def _measure(self) -> None:
-        """Find quarter points, and the place of each row along its side, -1 to 1."""
+        """Find quarter points, and the place of each row along its side, -1 to 1.
+
+        The place is the one on the chord from end to end of the side.
+        """
+        begin, end = self._ends()
+        middle = 0.5 * (begin + end)
+        half = 0.5 * (end - begin)
+        steps = np.array([-0.5, 0.5])[None, :, None]
+        self.quarters = middle[:, None] + steps * half[:, None]
+        chords = half[self._sides]
+        squares = (chords**2).sum(axis=1)
+        beyond = self._positions - middle[self._sides]
+        away = (beyond * chords).sum(axis=1)
+        has_length = squares > 0.0
+        self._along = np.divide(away, squares, np.zeros_like(away), where=has_length)
+        beside = beyond - self._along[:, None] * chords
+        is_off = (beside**2).sum(axis=1) > BENT**2 * squares
+        self.is_straight = np.bincount(self._sides, weights=is_off) == 0.0
+        self._components = self._components_along(chords)
+
+    def _components_along(self, chords: Array) -> Indices:
+        """Component of each row, (n_rows,), 0 nearly along its chord and 1 across.
+
+        Of both rows at a node one is of either. Chords have the shape (n_rows, 2), m.
+        """
+        # Turned a little: two directions that are askew by 45 degrees are told apart.
+        cos = np.cos(ASIDE)
+        sin = np.sin(ASIDE)
+        turned = chords @ np.array([[cos, sin], [-sin, cos]])
+        turned[~chords.any(axis=1)] = cos, sin
+        across = turned[:, ::-1] * [-1.0, 1.0]
+        of_chord = np.abs((self._directions * turned).sum(axis=1))
+        of_normal = np.abs((self._directions * across).sum(axis=1))
+        return (of_normal > of_chord).astype(np.intp)
+
+    def _ends(self) -> tuple[Array, Array]:
+        """Ends of each side along its longer direction, (n_sides, 2) both, m."""
         shape = len(self.joints), 2
         low = np.full(shape, np.inf)
         high = np.full(shape, -np.inf)
         np.minimum.at(low, self._sides, self._positions)
         np.maximum.at(high, self._sides, self._positions)
-        middle = 0.5 * (low + high)
-        half = 0.5 * (high - low)
-        steps = np.array([-0.5, 0.5])[None, :, None]
-        self.quarters = middle[:, None] + steps * half[:, None]
-        along = half.argmax(axis=1)[self._sides]
-        each = np.arange(len(self._rows))
-        away = (self._positions - middle[self._sides])[each, along]
-        length = half[self._sides][each, along]
-        self._along = np.divide(away, length, np.zeros_like(away), where=length > 0.0)
+        longer = (high - low).argmax(axis=1)[self._sides]
+        place = self._positions[np.arange(len(self._rows)), longer]
+        order = np.lexsort((place, self._sides))
+        firsts = np.searchsorted(self._sides[order], np.arange(shape[0]))
+        lasts = np.append(firsts[1:], len(order)) - 1
+        return self._positions[order[firsts]], self._positions[order[lasts]]
 
     def _macro(self) -> sparse.csr_array:
         """Map to macro forces at quarter points, (4 n_sides, n_rows), as of a lever."""
-        shares = np.concatenate([0.5 - self._along, 0.5 + self._along])
-        targets = 4 * self._sides + self._components
-        places = np.concatenate([targets, targets + 2]), np.tile(self._rows, 2)
+        shares = np.stack([0.5 - self._along, 0.5 + self._along], axis=1)
+        # Of every row to both quarter points, along x and y.
+        values = shares[:, :, None] * self._directions[:, None]
+        targets = 4 * self._sides[:, None] + np.arange(4)
+        rows = np.repeat(self._rows, 4)
         shape = 4 * len(self.joints), self._n_rows
-        return sparse.csr_array((shares, places), shape=shape)
+        macro = sparse.csr_array((values.ravel(), (targets.ravel(), rows)), shape=shape)
+        macro.eliminate_zeros()
+        return macro
 
     def _micro(self, name: str) -> tuple[Array, Indices, sparse.csr_array]:
         """Points with micro forces, (n_points, 2), m, their sides, and a map to these.
@@ -321,21 +407,29 @@ class _Joints:
         """
         groups = self._groups(name)
         members = np.concatenate([np.zeros(0, dtype=np.intp), *groups])
-        places = np.round(self._along[members], 9)
-        keys = np.stack([self._sides[members], places], axis=1)
+        keys = np.stack(
+            [self._sides[members], np.round(self._along[members], 9)], axis=1
+        )
         keys, first, of_members = np.unique(
             keys, axis=0, return_index=True, return_inverse=True
         )
+        within = self._within(groups)
+        at, by = within.coords
+        values = within.data[:, None] * self._directions[members[at]]
+        targets = 2 * of_members.ravel()[at, None] + np.arange(2)
+        rows = np.repeat(self._rows[members][by], 2)
+        shape = 2 * len(keys), self._n_rows
+        micro = sparse.csr_array((values.ravel(), (targets.ravel(), rows)), shape=shape)
+        micro.eliminate_zeros()
+        points = self._positions[members[first]]
+        return points, keys[:, 0].astype(np.intp), micro
+
+    def _within(self, groups: list[Indices]) -> sparse.coo_array:
+        """Map from forces of rows to their micro part, group by group."""
         blocks = [sparse.coo_array((0, 0))]
         for group in groups:
             blocks.append(sparse.coo_array(_without_macro(self._along[group])))
-        within = sparse.block_diag(blocks, format="coo")
-        targets = 2 * of_members.ravel() + self._components[members]
-        places = targets[within.coords[0]], self._rows[members][within.coords[1]]
-        shape = 2 * len(keys), self._n_rows
-        micro = sparse.csr_array((within.data, places), shape=shape)
-        points = self._positions[members[first]]
-        return points, keys[:, 0].astype(np.intp), micro
+        return sparse.block_diag(blocks, format="coo")
 
     def _groups(self, name: str) -> list[Indices]:
         """Rows of each side and component with micro forces, in order along it."""
@@ -424,6 +518,7 @@ class _Apart:
             is_above=joints.is_above,
             owners=joints.owners,
             quarters=floats(joints.quarters),
+            is_straight=joints.is_straight,
             points=floats(joints.points),
             sides=joints.sides,
             left_out=joints.left_out,

@@ -11,8 +11,9 @@ import numpy as np
 
 from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
 from app.messages import TABLE, Needs
+from app.worker.cells import floats, thinned
 from app.worker.extras import EXTRAS, Sampled
-from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
+from app.worker.geometry import DrawnMesh, DrawnRods
 from app.worker.pieces import Cutter
 from app.worker.strand import DrawnRope
 from app.worker.zigzag import Trail, zigzag

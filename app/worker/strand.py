@@ -17,14 +17,8 @@ from scipy.ndimage import binary_dilation
 
 from app.frame import Bytes, DeformedGeometry, Floats, Geometry
 from app.messages import Needs
-from app.worker.geometry import (
-    MOST_POINTS,
-    Extras,
-    StressField,
-    floats,
-    mesh_of,
-    thinned,
-)
+from app.worker.cells import floats, mesh_of, thinned
+from app.worker.geometry import MOST_POINTS, Extras, StressField
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.rope.rope import Rope
@@ -91,7 +85,7 @@ class DrawnRope:
         return DeformedGeometry(self._nodes_moved, self._points_moved, status)
 
     def _mesh(self) -> dict[str, Any]:
-        """The mesh of the strips; sets wires and points of quads, and moves nodes."""
+        """The mesh of the strips; sets wires and points of cells, and moves nodes."""
         numbers, steps, grids = zip(*self._strips(), strict=True)
         mesh = mesh_of(grids, numbers)
         z = self._z
@@ -104,7 +98,7 @@ class DrawnRope:
         return mesh
 
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
-        """Mean stress over the section of every wire, (n_quads, n_instants), Pa."""
+        """Mean stress over the section of every wire, (n_cells, n_instants), Pa."""
         stress = wire_stresses(self._rope, iterate.displacement, self._columns)
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])

@@ -11,8 +11,9 @@ from scipy import sparse
 
 from app.frame import LINEAR, LOCAL, OPEN, Floats
 from app.messages import Needs
+from app.worker.cells import floats, thinned
 from app.worker.extras import Sampled
-from app.worker.geometry import MOST_POINTS, floats, thinned
+from app.worker.geometry import MOST_POINTS
 from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete import Problem
 from solver.latin import Answer, Iterate

@@ -100,9 +100,9 @@ class Inside:
     ----------
     nodes
         Coordinates of all nodes, shape (n_nodes, 2), m.
-    elements, bodies
+    elements, bodies, parts
         Corners of every element, counter-clockwise, (n_elements, 4), and number of the
-        body of every element, (n_elements,).
+        body and of the substructure of every element, (n_elements,).
     grids
         Nodes of every substructure: of a rectangle row by row from below, shape
         (n_rows, n_columns), of others in any order, (n_nodes,).
@@ -136,6 +136,7 @@ class Inside:
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(elements) for elements in corners]
         self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
+        self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
         self.directions: Array = np.concatenate(along)[first]
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:

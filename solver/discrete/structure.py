@@ -49,12 +49,14 @@ class Act:
         Symbol of the values, and their SI unit.
     points
         Points on the undeformed bodies, shape (n, 2), as shares of their length and
-        height.
+        height; of a load that travels those of each instant, (n, 2, n_instants).
     towards
         Direction of positive values, a unit vector, or one of each instant, (2,
         n_instants).
     values
         Values over time, shape (n_instants,), or those of each place, (n, n_instants).
+    outward
+        Unit vector out of the body where the load acts; None: that of its side.
     """
 
     where: str
@@ -63,11 +65,30 @@ class Act:
     towards: Direction | Array
     values: Array
     unit: str
+    outward: Direction | None = None
 
     @property
     def away(self) -> Direction:
         """Direction out of the body, a unit vector: there is room for an arrow."""
-        return OUTWARD.get(self.where.partition(" ")[0], OUTWARD["right"])
+        if self.outward is not None:
+            return self.outward
+        return OUTWARD.get(self.side, OUTWARD["right"])
+
+    @property
+    def side(self) -> str:
+        """Side of all bodies that `where` names, or to which the outward vector points.
+
+        "body" for a load on the whole body.
+        """
+        if self.outward is None:
+            return self.where.partition(" ")[0]
+        return max(OUTWARD, key=lambda side: np.dot(OUTWARD[side], self.away))
+
+    def points_at(self, instant: int) -> Array:
+        """Points, shape (n, 2), at an instant, as shares of length and height."""
+        if self.points.ndim > 2:
+            return np.asarray(self.points[:, :, instant])
+        return self.points
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,17 +125,21 @@ class Footing:
     Attributes
     ----------
     kind
-        A support is rigid and rough; rollers hold along their normal alone.
+        A support is rigid and rough, and stands still; a clamp moves with the body, as
+        do rollers, which hold it along one axis alone.
     points
         Points on the undeformed bodies, shape (n, 2), as shares of their length and
         height.
     outward
         Unit vectors out of the bodies, into what holds them, shape (n, 2).
+    gap
+        Opening between the points and a support, shape (n,), m; None: there is none.
     """
 
-    kind: Literal["rollers", "support"]
+    kind: Literal["clamp", "rollers", "support"]
     points: Array
     outward: Array
+    gap: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +149,7 @@ class Description:
     Attributes
     ----------
     bodies
-        Number of equal bodies above each other.
+        Number of equal bodies above each other, or of bodies of any shape.
     length, height
         Size of all bodies together, m; rods have no height.
     instants
@@ -140,7 +165,8 @@ class Description:
         Number of the broken body, from 0, and position of the break, m; None where no
         body is broken.
     footings
-        Supports and held nodes of bodies of any shape, whose sides have no names.
+        Supports and held nodes of bodies of any shape, whose sides have no names; None
+        of rods and rectangles.
     """
 
     bodies: int
@@ -151,7 +177,7 @@ class Description:
     holds: Sequence[Hold]
     tilt: Array | None = None
     broken: tuple[int, float] | None = None
-    footings: Sequence[Footing] = ()
+    footings: Sequence[Footing] | None = None
 
     def __post_init__(self) -> None:
         """Leave out loads and displacements that are always zero."""

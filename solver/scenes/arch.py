@@ -274,8 +274,10 @@ class ArchSettings(PlaneSettings):
         pressures = np.multiply.outer(self.fill * heights, self._hold)
         yield Act("top fill", "σ", backs[shown], DOWN, pressures, "Pa")
         if self.has_live:
-            forces = self._passing.reshape(len(backs), -1)
-            yield Act("top load", "F", backs, DOWN, forces, "N")
+            shares = ring.under_load(self.path("place_load")).reshape(len(backs), -1)
+            places = np.einsum("nt,na->at", shares, backs)
+            force = self.path("live_load")
+            yield Act("top load", "F", places[None], DOWN, force, "N")
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None

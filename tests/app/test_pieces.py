@@ -117,7 +117,7 @@ def test_in_the_local_stage_both_sides_fit_and_their_forces_balance(scene: str) 
     assert local.gap.max() <= 1e-6 * np.nanmax(np.abs(local.moved))
 
 
-@pytest.mark.parametrize("scene", ["block", "layers", "wall", "incline"])
+@pytest.mark.parametrize("scene", ["block", "layers", "wall", "incline", "arch"])
 def test_in_the_linear_stage_each_piece_is_in_balance_and_in_the_local_stage_not(
     scene: str,
 ) -> None:
@@ -139,6 +139,8 @@ def unbalance_of_piece(
     problem: Problem, pieces: Pieces, stage: str, piece: int
 ) -> float:
     """Resultant and moment of all forces on a piece, over its largest force."""
+    # Pieces are drawn from the lower left corner of all on.
+    corner = problem.inside.nodes.min(axis=0)
     is_own = pieces.owners == piece
     forces = [pieces.stages[stage].forces[is_own].reshape(-1, 2, problem.n_instants)]
     at = [pieces.quarters[is_own].reshape(-1, 2)]
@@ -147,7 +149,7 @@ def unbalance_of_piece(
         along = problem.inside.directions[part.dofs, :2]
         given = along[:, :, None] * part.body_force[:, None]
         forces.append(given * problem.scales.force)
-        at.append(problem.positions[part.dofs])
+        at.append(problem.positions[part.dofs] - corner)
     force = np.concatenate(forces)
     x, y = np.concatenate(at).T[:, :, None]
     moment = (x - x.mean()) * force[:, 1] - (y - y.mean()) * force[:, 0]
@@ -156,7 +158,7 @@ def unbalance_of_piece(
     return float(max(sums) / np.abs(force).max())
 
 
-@pytest.mark.parametrize("scene", ["block", "strand"])
+@pytest.mark.parametrize("scene", ["block", "strand", "arch"])
 def test_micro_forces_have_no_resultant_and_no_moment(scene: str) -> None:
     settings = settings_of(scene, start="zero", finish="none")
     *_, (_, pieces) = taken_apart(settings, last=2)

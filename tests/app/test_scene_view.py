@@ -239,13 +239,13 @@ def test_other_views_show_every_instant(frame: Frame) -> None:
                 view.update(frame, Selection(phase), None)
     assert all(np.isfinite(values).all() for _, values in paths_of(frame.run))
     _, _, values = frame.extras["stress"]
-    assert values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
+    assert values.shape == (len(frame.run.geometry.cells), len(frame.run.instants))
 
 
 def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:
     # What goes behind within a step is cut off straight, which takes less than 1 %.
     geometry = frame_of(small("rope")).run.geometry
-    corners = geometry.nodes[geometry.quads].astype(float)
+    corners = geometry.nodes[geometry.cells].astype(float)
     x = corners[:, :, 0]
     y = corners[:, :, 1]
     areas = 0.5 * np.abs(
@@ -261,7 +261,7 @@ def test_a_tap_selects_the_substructure_that_is_there() -> None:
     view = shown(frame_of(small("bar")))
     geometry = view.picture.frame.run.geometry  # type: ignore[union-attr]
     quad = int(np.flatnonzero(geometry.parts == 2)[0])
-    middle = view.picture.nodes[geometry.quads[quad]].mean(axis=0)  # type: ignore[union-attr]
+    middle = view.picture.nodes[geometry.cells[quad]].mean(axis=0)  # type: ignore[union-attr]
     x, y = view.picture.page(middle)  # type: ignore[union-attr]
     view._select(SimpleNamespace(x=x, y=y))
     assert view.state.selection.substructure == 2
@@ -376,7 +376,7 @@ def test_words_lie_beside_the_bodies(frame: Frame, width: float) -> None:
         picture = view.picture
         assert picture is not None
         words = view.sources["words"].data
-        corners = picture.page(picture.nodes[frame.run.geometry.quads])
+        corners = picture.page(picture.nodes[frame.run.geometry.cells])
         low = corners.min(axis=1)
         high = corners.max(axis=1)
         for x, y, text, align in zip(

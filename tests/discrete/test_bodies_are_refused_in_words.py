@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shaped
 
 from solver.discrete import Beam, Bodies, Body, Held, Joint, Load, Mesh
 from solver.refusal import RefusedError
@@ -101,6 +102,24 @@ def test_what_cannot_be_is_refused_by_name(words: str) -> None:
     with pytest.raises(RefusedError) as caught:
         WRONG[words]()
     assert words in str(caught.value)
+
+
+def test_nodes_that_are_held_along_both_axes_are_clamped() -> None:
+    structure = shaped.arch(3, spread=1e-3)
+    described = structure.description()
+    assert [footing.kind for footing in described.footings or ()] == ["clamp", "clamp"]
+    for footing in described.footings or ():
+        assert footing.points[:, 1] == pytest.approx(np.zeros(len(footing.points)))
+        assert footing.outward[:, 1] == pytest.approx(-np.ones(len(footing.points)))
+    (moved,) = (act for act in described.acts if act.unit == "m")
+    assert (moved.side, moved.away) == ("bottom", (0.0, -1.0))
+
+
+def test_a_load_at_a_point_has_room_along_itself() -> None:
+    described = shaped.belt(np.pi, 0.3, 1.2).description()
+    for act in described.acts:
+        direction = np.asarray(act.towards)[:, -1]
+        assert abs(direction @ act.away) == pytest.approx(1.0)
 
 
 def test_what_is_described_lies_on_the_bodies() -> None:

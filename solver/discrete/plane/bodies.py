@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from solver.discrete.plane.bodies_refused import (
     check_weight,
 )
 from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.meshes import Mesh
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Description, Footing, Loop
@@ -207,32 +209,68 @@ class Bodies:
         unit: str,
     ) -> Act:
         """Act at the middle one of the nodes of what is given."""
-        middle = given.nodes[len(given.nodes) // 2 : len(given.nodes) // 2 + 1]
-        points = self._as_shares(self.bodies[given.body].nodes[middle])
-        return Act(given.name, symbol, points, towards, values, unit)
+        nodes, outward = self._line(given)
+        middle = len(nodes) // 2
+        points = self._as_shares(self.bodies[given.body].nodes[nodes[[middle]]])
+        away = outward[middle]
+        if not self._has_edges(given):
+            # At a point without a normal there is room along the load.
+            along = np.asarray(towards)
+            if along.ndim > 1:
+                along = along[:, np.abs(values).argmax()]
+            away = np.copysign(1.0, along @ away) * along
+        x, y = away.tolist()
+        return Act(given.name, symbol, points, towards, values, unit, (x, y))
+
+    def _has_edges(self, given: Held | Load) -> bool:
+        """Check whether the nodes of what is given are a chain of edges of a mesh."""
+        shape = self.bodies[given.body].shape
+        return isinstance(shape, Mesh) and shape.edges_of(given.nodes) is not None
+
+    def _line(self, given: Held | Load) -> tuple[Indices, Array]:
+        """Nodes of what is given in order along a line, (n,), and unit vectors there.
+
+        The vectors point out of the body, (n, 2): those of its edges, or where the
+        nodes are no chain of edges all the way from its middle to theirs.
+        """
+        body = self.bodies[given.body]
+        if self._has_edges(given):
+            return given.nodes, body.outward(given.nodes)
+        places = body.nodes[given.nodes]
+        order = np.argsort(places[:, int(np.ptp(places, axis=0).argmax())])
+        beyond = places.mean(axis=0) - body.nodes.mean(axis=0)
+        size = float(np.hypot(*beyond))
+        outward = np.array([0.0, -1.0])
+        if size > 0.0:
+            outward = beyond / size
+        return given.nodes[order], np.tile(outward, (len(order), 1))
 
     def _footings(self) -> Iterator[Footing]:
-        """Rigid supports, and nodes that are held without being moved."""
+        """Rigid supports, and nodes that are held, whether they are moved or not."""
         for joint in self.joints:
             if joint.below is None:
                 points = self.bodies[joint.above].nodes[joint.nodes]
-                feet = points - joint.normals * np.reshape(joint.gap, (-1, 1))
-                yield Footing("support", self._as_shares(feet), -joint.normals)
+                gap = np.broadcast_to(joint.gap, len(points))
+                yield Footing("support", self._as_shares(points), -joint.normals, gap)
+        # Nodes that are held along both axes are clamped.
+        axes = dict[tuple[int, bytes], list[Held]]()
         for held in self.held:
-            if held.axis == 2 or np.any(held.displacement):
-                continue
-            points = self._as_shares(self.bodies[held.body].nodes[held.nodes])
-            outward = np.zeros_like(points)
-            # Away from the middle of the body, along the axis that is held.
-            middle = self.bodies[held.body].nodes.mean(axis=0)
-            beyond = self.bodies[held.body].nodes[held.nodes].mean(axis=0) - middle
-            outward[:, held.axis] = np.sign(beyond[held.axis]) or 1.0
-            yield Footing("rollers", points, outward)
+            if held.axis < 2:
+                axes.setdefault((held.body, held.nodes.tobytes()), []).append(held)
+        for alike in axes.values():
+            nodes, outward = self._line(alike[0])
+            points = self._as_shares(self.bodies[alike[0].body].nodes[nodes])
+            kind: Literal["clamp", "rollers"] = "rollers"
+            if len(alike) > 1:
+                kind = "clamp"
+            yield Footing(kind, points, outward)
 
     def _as_shares(self, points: Array) -> Array:
-        """Points, (n, 2), m, as shares of the length and height of all bodies."""
+        """Points, (n, 2, ...), m, as shares of the length and height of all bodies."""
         corner, size = self.box
-        return np.asarray((points - corner) / np.where(size > 0.0, size, 1.0))
+        axes = (2,) + (1,) * (points.ndim - 2)
+        size = np.where(size > 0.0, size, 1.0).reshape(axes)
+        return np.asarray((points - corner.reshape(axes)) / size)
 
 
 def _directed(force: Array) -> tuple[Array, Array]:

@@ -46,16 +46,25 @@ class CutShape:
     """
 
     def __init__(self, shape: Shape, count: int) -> None:
-        self.labels = np.zeros(len(shape.centres), dtype=np.intp)
         places = shape.centres
         if isinstance(shape, Beam):
             # A line may wind back beside itself, and is cut along itself.
             places = shape.laid_out
-        _bisect(places, np.arange(len(self.labels)), count, 0, self.labels)
+        self.labels = bisected(places, count)
         numbers = range(count)
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]
         self.nodes = [np.unique(shape.element_nodes[some]) for some in self.elements]
         self.seams = _seams_of(shape, self.labels)
+
+
+def bisected(centres: Array, count: int) -> Indices:
+    """Numbers of the groups of points, (n,), of a count, by repeated bisection.
+
+    Each group of the points, (n, 2), is halved across its longer direction.
+    """
+    labels = np.zeros(len(centres), dtype=np.intp)
+    _bisect(centres, np.arange(len(centres)), count, 0, labels)
+    return labels
 
 
 def _bisect(

@@ -1,0 +1,386 @@
+"""Cells, outlines and rims of bodies as they are drawn, from their meshes.
+
+Grids of rectangles are thinned line by line, other meshes by groups of elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from app.frame import Floats
+from solver.arrays import Array, Flags, Indices
+from solver.discrete import Beam, Bodies
+from solver.discrete.inside import Inside
+from solver.discrete.plane.cut_shapes import bisected
+
+MOST_CELLS = 400
+"""Largest number of cells that are drawn, or one for each substructure."""
+MOST_AROUND = 1200
+"""Largest number of nodes on the outlines of thinned meshes, about."""
+SHARPEST = 0.94
+"""Cosine of the angle from which on an outline has a corner (20 degrees)."""
+BAND = 0.03
+"""Least thickness of a drawn band of beams, over the size of all bodies."""
+NONE = -1
+"""Number in place of a missing degree of freedom, and between two lines of nodes."""
+
+
+def floats(values: NDArray[np.generic]) -> Floats:
+    """Arrays as frames have them, of the same shape."""
+    return values.astype(np.float32, order="C")
+
+
+def thinned(size: int, limit: int) -> Indices:
+    """Indices of a thinned axis, (n,), first and last included, n up to a limit."""
+    if size <= limit:
+        return np.arange(size)
+    return np.unique(np.linspace(0, size - 1, limit).round().astype(np.intp))
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """Some elements of a substructure as they are drawn.
+
+    Attributes
+    ----------
+    part
+        Number of the substructure.
+    numbers
+        Numbers of the nodes among those of all bodies, (n,).
+    positions
+        Where the nodes are drawn, (n, 2), m: a band has two for each node of its line.
+    cells
+        Corners of each cell among these nodes, (n_cells, n_corners); the last is
+        repeated where a cell has fewer.
+    rings
+        Closed lines round the cells, the first of these nodes again at the end.
+    cell_of_elements
+        Number of the cell that each element lies in, (n_elements,).
+    """
+
+    part: int
+    numbers: Indices
+    positions: Array
+    cells: Indices
+    rings: Sequence[Indices]
+    cell_of_elements: Indices
+
+
+def drawings_of_grids(inside: Inside) -> list[Drawing]:
+    """Drawings of rectangular substructures, with some lines of their grids."""
+    # All grids are thinned alike, so that bodies of one size look alike.
+    limit = max(MOST_CELLS // len(inside.grids), 1)
+    shapes = np.array([np.subtract(grid.shape, 1) for grid in inside.grids])
+    share = min(np.sqrt(limit / shapes.prod(axis=1).max()), 1.0)
+    drawings = []
+    for part, grid in enumerate(inside.grids):
+        up, across = _kept_lines(grid, share, limit)
+        kept = grid[np.ix_(up, across)]
+        positions = inside.nodes[kept]
+        drawings.append(_drawn_grid(part, kept, positions, _quads_of(grid, up, across)))
+    return drawings
+
+
+def drawings_of_shapes(structure: Bodies, inside: Inside) -> list[Drawing]:
+    """Drawings of substructures of any shape."""
+    share = min(MOST_CELLS / len(inside.elements), 1.0)
+    around = 4.0 * sum(body.shape.size for body in structure.bodies)
+    sides = _sides_in_contact(structure)
+    thinnest = BAND * float(structure.box[1].max())
+    bodies = inside.bodies[np.searchsorted(inside.parts, np.arange(len(inside.grids)))]
+    drawings = []
+    for part, number in enumerate(bodies.tolist()):
+        elements = inside.elements[inside.parts == part]
+        count = max(round(share * len(elements)), 1)
+        shape = structure.bodies[number].shape
+        if isinstance(shape, Beam):
+            thickness = np.sqrt(12.0 * shape.second_moment / shape.area)
+            thickness = max(float(thickness), thinnest)
+            drawings += _bands(part, inside, elements, count, thickness, sides)
+        elif count < len(elements):
+            step = around / MOST_AROUND
+            drawings.append(_grouped(part, inside.nodes, elements, count, step))
+        else:
+            drawings.append(_as_meshed(part, inside.nodes, elements))
+    return drawings
+
+
+def mesh_of(grids: Sequence[Array], parts: ArrayLike) -> dict[str, Any]:
+    """Nodes, cells and outlines, as `Geometry` has them, of grids of nodes.
+
+    Each grid is of one of the parts, (n_rows, n_columns, 2), m, row by row from below.
+    """
+    drawings = []
+    for part, grid in zip(np.asarray(parts).tolist(), grids, strict=True):
+        numbers = np.zeros(grid.shape[:2], dtype=np.intp)
+        drawings.append(_drawn_grid(part, numbers, grid, numbers))
+    return joined(drawings)
+
+
+def joined(drawings: Sequence[Drawing]) -> dict[str, Any]:
+    """Nodes, cells and outlines of drawings, as `Geometry` has them."""
+    widest = max(drawing.cells.shape[1] for drawing in drawings)
+    cells = []
+    rings = []
+    first = 0
+    for drawing in drawings:
+        missing = widest - drawing.cells.shape[1]
+        padded = np.pad(drawing.cells, ((0, 0), (0, missing)), mode="edge")
+        cells.append(first + padded)
+        rings += [first + ring for ring in drawing.rings]
+        first += len(drawing.numbers)
+    nodes = np.concatenate([drawing.positions for drawing in drawings])
+    sides = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+    free = sides[_is_free(sides, nodes)]
+    sizes = [len(drawing.cells) for drawing in drawings]
+    return {
+        "nodes": floats(nodes),
+        "cells": np.concatenate(cells).astype(np.int32),
+        "parts": np.repeat([drawing.part for drawing in drawings], sizes),
+        "outlines": np.concatenate([np.append(ring, NONE) for ring in rings]),
+        "rims": np.insert(free, 2, NONE, axis=1).ravel(),
+    }
+
+
+def cells_of(drawings: Sequence[Drawing]) -> Indices:
+    """Number of the cell of each element among those of all drawings, (n_elements,)."""
+    numbers = []
+    first = 0
+    for drawing in drawings:
+        numbers.append(first + drawing.cell_of_elements)
+        first += len(drawing.cells)
+    return np.concatenate(numbers)
+
+
+def ring_of(grid: Indices) -> Indices:
+    """Numbers around a grid, (n_rows, n_columns), the first again at the end, (n,)."""
+    sides = (grid[0], grid[1:, -1], grid[-1, -2::-1], grid[-2::-1, 0])
+    return np.concatenate(sides)
+
+
+def _drawn_grid(
+    part: int, numbers: Indices, positions: Array, cell_of_elements: Indices
+) -> Drawing:
+    """Drawing of a grid of nodes, (n_rows, n_columns), at positions, (..., 2), m."""
+    n = np.arange(numbers.size).reshape(numbers.shape)
+    corners = (n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1])
+    return Drawing(
+        part=part,
+        numbers=numbers.ravel(),
+        positions=positions.reshape(-1, 2),
+        cells=np.stack(corners, axis=-1).reshape(-1, 4),
+        rings=[ring_of(n)],
+        cell_of_elements=cell_of_elements,
+    )
+
+
+def _kept_lines(grid: Indices, share: float, limit: int) -> tuple[Indices, Indices]:
+    """Rows and columns of a grid of nodes that are drawn, (n_up,) and (n_across,).
+
+    They are a share of all lines, and make no more cells than a limit.
+    """
+    n_rows, n_columns = np.subtract(grid.shape, 1)
+    rows = max(int(share * n_rows), 1)
+    columns = max(min(int(share * n_columns), limit // rows), 1)
+    return thinned(n_rows + 1, rows + 1), thinned(n_columns + 1, columns + 1)
+
+
+def _quads_of(grid: Indices, up: Indices, across: Indices) -> Indices:
+    """Quadrilateral of kept rows and columns about each element, (n_elements,)."""
+    n_rows, n_columns = np.subtract(grid.shape, 1)
+    row = np.searchsorted(up, np.arange(n_rows), side="right") - 1
+    column = np.searchsorted(across, np.arange(n_columns), side="right") - 1
+    return np.add.outer(row * (len(across) - 1), column).ravel()
+
+
+def _sides_in_contact(structure: Bodies) -> Array:
+    """Normals into the bodies at nodes with a contact, (n_nodes, 2), elsewhere 0."""
+    normals = np.zeros((structure.first_nodes[-1], 2))
+    for joint in structure.joints:
+        for (body, nodes), sign in zip(joint.sides, (1.0, -1.0), strict=False):
+            normals[structure.first_nodes[body] + nodes] = sign * joint.normals
+    return normals
+
+
+def _bands(
+    part: int,
+    inside: Inside,
+    elements: Indices,
+    count: int,
+    thickness: float,
+    sides: Array,
+) -> list[Drawing]:
+    """Bands of a line of beams, (n_elements, 4), in about `count` cells.
+
+    A band lies on what it touches, by `sides`, (n_nodes, 2), else about its line. The
+    line of a substructure may be in several stretches, as turns round a drum are.
+    """
+    breaks = np.flatnonzero(elements[1:, 0] != elements[:-1, 1]) + 1
+    drawings = []
+    for stretch in np.split(elements, breaks):
+        line = np.append(stretch[:, 0], stretch[-1, 1])
+        along = np.gradient(inside.nodes[line], axis=0)
+        left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        left *= thickness / np.linalg.norm(left, axis=1, keepdims=True)
+        side = np.sign(np.sum(left * sides[line]))
+        # From the line to its free side, or half on either.
+        low = inside.nodes[line] + 0.5 * (side - 1.0) * left
+        grid = np.stack([line, line])
+        across = thinned(len(line), max(count * len(stretch) // len(elements), 1) + 1)
+        positions = np.stack([low, low + left])[:, across]
+        quads = _quads_of(grid, np.arange(2), across)
+        drawings.append(_drawn_grid(part, grid[:, across], positions, quads))
+    return drawings
+
+
+def _as_meshed(part: int, nodes: Array, elements: Indices) -> Drawing:
+    """Drawing of elements, (n_elements, 4), one by one."""
+    numbers, cells = np.unique(elements, return_inverse=True)
+    cells = cells.reshape(elements.shape)
+    return Drawing(
+        part=part,
+        numbers=numbers,
+        positions=nodes[numbers],
+        cells=cells,
+        rings=_closed_lines(_border(cells, np.zeros(len(cells), dtype=np.intp))[0]),
+        cell_of_elements=np.arange(len(cells)),
+    )
+
+
+def _grouped(
+    part: int, nodes: Array, elements: Indices, count: int, step: float
+) -> Drawing:
+    """Drawing of elements, (n_elements, 4), in a number of groups.
+
+    Of the nodes on borders stay those at which groups meet, corners of the outline, and
+    one in each step along it, m.
+    """
+    labels = bisected(nodes[elements].mean(axis=1), count)
+    sides, owners = _border(elements, labels)
+    around, _ = _border(elements, np.zeros_like(labels))
+    outlines = _closed_lines(around)
+    is_kept = _meeting(sides, owners, around)
+    for line in outlines:
+        is_kept[line[:-1][_is_corner(nodes[line]) | _begins(nodes[line], step)]] = True
+    borders = [_closed_lines(sides[owners == group]) for group in range(count)]
+    for line in chain.from_iterable(borders):
+        # A piece in the midst of a group meets no two others.
+        if len(np.unique(line[is_kept[line]])) < 3:
+            is_kept[line] = True
+    cells = _polygons(borders, is_kept)
+    rings = [line[is_kept[line]] for line in outlines]
+    numbers = np.unique(np.concatenate([cells.ravel(), *rings]))
+    return Drawing(
+        part=part,
+        numbers=numbers,
+        positions=nodes[numbers],
+        cells=np.searchsorted(numbers, cells),
+        rings=[np.searchsorted(numbers, ring) for ring in rings],
+        cell_of_elements=labels,
+    )
+
+
+def _meeting(sides: Indices, owners: Indices, around: Indices) -> Flags:
+    """Check at which nodes more than two groups meet, (n_nodes,).
+
+    `sides` are those of the borders of groups, (n, 2), by their `owners`, (n,), and
+    `around` those of the outline, (n, 2), beyond which is one more.
+    """
+    size = int(sides.max()) + 1
+    pairs = np.unique(np.stack([sides[:, 0], owners], axis=1), axis=0)
+    counts = np.bincount(pairs[:, 0], minlength=size)
+    counts += np.bincount(np.unique(around), minlength=size)
+    return np.asarray(counts > 2)
+
+
+def _polygons(borders: Sequence[Sequence[Indices]], is_kept: Flags) -> Indices:
+    """Nodes that are kept round each group, (n_groups, n_corners), the last repeated.
+
+    Round a hole, or a group in several pieces, there are several closed lines, one
+    after the other: there and back between them there is no area.
+    """
+    polygons = []
+    for lines in borders:
+        path = list[int]()
+        for line in lines:
+            kept = line[is_kept[line]].tolist()
+            path += [*kept, kept[0], *path[:1]]
+        polygons.append(path)
+    widest = max(len(polygon) for polygon in polygons)
+    padded = [
+        np.pad(polygon, (0, widest - len(polygon)), mode="edge") for polygon in polygons
+    ]
+    return np.array(padded)
+
+
+def _border(elements: Indices, labels: Indices) -> tuple[Indices, Indices]:
+    """Sides of elements, (n_elements, 4), beyond which is another label or nothing.
+
+    Returns
+    -------
+    Both ends of each side, counter-clockwise round its element, (n, 2), and the label
+    of the element, (n,).
+    """
+    sides = np.stack([elements, np.roll(elements, -1, axis=1)], axis=-1).reshape(-1, 2)
+    owners = np.repeat(labels, elements.shape[1])
+    # Triangles have their last corner twice.
+    has_length = sides[:, 0] != sides[:, 1]
+    sides = sides[has_length]
+    owners = owners[has_length]
+    size = int(elements.max()) + 1
+    there = (owners * size + sides[:, 0]) * size + sides[:, 1]
+    back = (owners * size + sides[:, 1]) * size + sides[:, 0]
+    is_border = ~np.isin(there, back)
+    return sides[is_border], owners[is_border]
+
+
+def _closed_lines(sides: Indices) -> list[Indices]:
+    """Closed lines of directed sides, (n, 2), the first node again at the end."""
+    ahead = dict[int, list[int]]()
+    for begin, end in sides.tolist():
+        ahead.setdefault(begin, []).append(end)
+    lines = []
+    for begin, ends in ahead.items():
+        while ends:
+            line = [begin]
+            # As many sides lead to a node as away from it.
+            while ahead[line[-1]]:
+                line.append(ahead[line[-1]].pop())
+            lines.append(np.array(line, dtype=np.intp))
+    return lines
+
+
+def _begins(line: Array, step: float) -> Flags:
+    """Check where steps along a closed line, (n + 1, 2), m, begin, (n,)."""
+    lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    steps = np.floor((np.cumsum(lengths) - lengths) / step)
+    return np.diff(steps, prepend=-1.0) > 0.0
+
+
+def _is_corner(line: Array) -> Flags:
+    """Check where a closed line, (n + 1, 2), m, has corners, (n,)."""
+    along = np.diff(line, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    turns = np.einsum("na,na->n", along, np.roll(along, 1, axis=0))
+    return np.asarray(turns < SHARPEST)
+
+
+def _is_free(sides: Indices, nodes: Array) -> Flags:
+    """Check which sides, (n_sides, 2), of outlines no other outline has, (n_sides,).
+
+    A shared side runs the other way round in the other one; outlines share positions,
+    not nodes, (n_nodes, 2), m.
+    """
+    rounded = np.round(nodes / np.ptp(nodes) * 1e5).astype(np.int64)
+    position = np.unique(rounded, axis=0, return_inverse=True)[1].ravel()
+    ends = position[sides]
+    there = ends @ [len(nodes), 1]
+    back = ends @ [1, len(nodes)]
+    has_length = ends[:, 0] != ends[:, 1]
+    return ~np.isin(there, back) & has_length

@@ -1,0 +1,249 @@
+"""Bodies of any shape on the page: cells, bands, supports, thrust, loads, pieces."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shaped
+from scipy.spatial import Delaunay
+
+from app.frame import Frame, Selection
+from app.messages import Needs, Start
+from app.state import PageState, default_settings
+from app.views.acts import hatched
+from app.views.scene import Scene, Thrust
+from app.worker.cells import (
+    BAND,
+    MOST_CELLS,
+    Drawing,
+    drawings_of_shapes,
+    joined,
+)
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+from solver.discrete import Bodies, Body, Held, Mesh, discretise
+from solver.settings.scene import Settings
+
+
+def areas(cells: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Areas of cells, (n_cells,), by the shoelace formula."""
+    x, y = np.moveaxis(positions[cells], -1, 0)
+    after = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+    return np.asarray(0.5 * np.sum(x * after[1] - after[0] * y, axis=1))
+
+
+def disc(rings: int) -> Mesh:
+    """Triangles in a disc of radius 1 with a hole of radius a half."""
+    places = []
+    for radius in np.linspace(0.5, 1.0, rings):
+        angles = np.linspace(0.0, 2.0 * np.pi, 12 * rings, endpoint=False)
+        angles = angles + radius
+        places.append(radius * np.stack([np.cos(angles), np.sin(angles)], axis=1))
+    corners = np.concatenate(places)
+    triangles = Delaunay(corners).simplices
+    middles = np.hypot(*corners[triangles].mean(axis=1).T)
+    elements = triangles[middles > 0.5]
+    x, y = np.moveaxis(corners[elements], -1, 0)
+    cross = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0])
+    cross -= (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+    elements[cross < 0.0] = elements[cross < 0.0][:, ::-1]
+    return Mesh(corners, elements)
+
+
+def held(mesh: Mesh, substructures: int) -> Bodies:
+    """A body that is held everywhere."""
+    body = Body("disc", mesh, 1e9, substructures=substructures)
+    nodes = np.arange(mesh.n_corners)
+    instants = np.linspace(0.0, 1.0, 3)
+    holds = [Held(f"held {n}", 0, nodes, n, 0.0 * instants) for n in (0, 1)]
+    return Bodies([body], (), holds, (), instants, 1.0)
+
+
+def drawings(structure: Bodies) -> list[Drawing]:
+    inside = discretise(structure).inside
+    assert inside is not None
+    return drawings_of_shapes(structure, inside)
+
+
+@pytest.mark.parametrize("substructures", [1, 3])
+@pytest.mark.parametrize("rings", [4, 12])
+def test_cells_cover_a_body_once_and_are_few(rings: int, substructures: int) -> None:
+    mesh = disc(rings)
+    drawn = joined(drawings(held(mesh, substructures)))
+    covered = areas(drawn["cells"], drawn["nodes"].astype(float))
+    assert len(covered) == pytest.approx(min(len(mesh.elements), MOST_CELLS), abs=2)
+    assert covered.min() > 0.0
+    # Neighbours share what is left of their border: no hole, and nothing twice.
+    outlines = drawn["outlines"]
+    rings = np.split(outlines, np.flatnonzero(outlines < 0))
+    positions = drawn["nodes"].astype(float)
+    enclosed = [float(areas(ring[ring >= 0][None], positions)[0]) for ring in rings]
+    assert covered.sum() == pytest.approx(sum(enclosed), rel=1e-5)
+    # Of a thinned outline the bows between two nodes are missing.
+    assert covered.sum() == pytest.approx(mesh.volume, rel=0.02)
+
+
+def test_cells_of_thinned_elements_lie_where_these_are() -> None:
+    mesh = disc(12)
+    (drawing,) = drawings(held(mesh, 1))
+    centres = mesh.centres
+    for cell in range(0, len(drawing.cells), 37):
+        corners = drawing.positions[drawing.cells[cell]]
+        own = centres[drawing.cell_of_elements == cell]
+        assert np.all(own > corners.min(axis=0) - 0.05)
+        assert np.all(own < corners.max(axis=0) + 0.05)
+    assert np.all(np.bincount(drawing.cell_of_elements) > 0)
+
+
+def test_rims_run_along_the_outline_and_round_a_hole_but_not_along_cuts() -> None:
+    drawn = joined(drawings(held(disc(4), 3)))
+    ends = drawn["rims"].reshape(-1, 3)[:, :2]
+    radii = np.hypot(*np.moveaxis(drawn["nodes"][ends].astype(float), -1, 0))
+    on_rim = np.isclose(radii, 1.0) | np.isclose(radii, 0.5)
+    assert on_rim.all()
+    lengths = np.hypot(*np.diff(drawn["nodes"][ends].astype(float), axis=1)[:, 0].T)
+    assert lengths.sum() == pytest.approx(3.0 * np.pi, rel=0.01)
+
+
+def test_a_belt_is_a_band_that_lies_on_its_drum() -> None:
+    structure = shaped.belt(np.pi, 0.3, 1.2)
+    thickness = BAND * structure.box[1].max()
+    (drawing,) = drawings(structure)
+    count = len(drawing.positions) // 2
+    inner = np.hypot(*drawing.positions[:count].T)
+    outer = np.hypot(*drawing.positions[count:].T)
+    on_drum = slice(3, count - 3)
+    assert inner[on_drum] == pytest.approx(0.1, rel=1e-6)
+    assert outer[on_drum] - inner[on_drum] == pytest.approx(thickness, rel=0.01)
+    # Both nodes of the band move with one of the line.
+    assert np.array_equal(drawing.numbers[:count], drawing.numbers[count:])
+
+
+def ran(settings: Settings, *extras: str, ends: bool = True) -> Frame:
+    """Frame with which a run ends, or that of its second iterate."""
+    runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
+    while ends and runner.rest() is not None:
+        runner.advance()
+    while len(runner.history) < 2 and runner.status is None:
+        runner._iterate()
+    needs = Needs(extras=frozenset(extras), readings=("hinges@0.5",))
+    return runner.frame(needs)
+
+
+def arch(**changes: object) -> Settings:
+    few = {"voussoirs": 12, "instants": 21, **changes}
+    return default_settings("arch").replace(**few)
+
+
+def shown(frame: Frame, phase: float, kind: type[Scene] = Scene) -> Scene:
+    view = kind(PageState(frame.run.settings, frame=frame))
+    _ = view.figure
+    view.update(frame, Selection(phase), None)
+    return view
+
+
+@pytest.fixture(scope="module")
+def spread() -> Frame:
+    """An arch whose abutments have moved apart."""
+    settings = arch(displacement=1e-3, abutment_load="later", finish="at-once")
+    return ran(settings, "thrust", "stress")
+
+
+def test_the_line_of_thrust_lies_in_the_arch_and_carries_its_weight(
+    spread: Frame,
+) -> None:
+    thrust = spread.extras["thrust"]
+    points = thrust["lines"][:, 1, :, -1].astype(float)
+    # Positions are from the lower left corner, of the structure from the centre.
+    corner, _ = spread.run.settings.structure().box
+    radii = np.hypot(*(points + corner).T)
+    assert np.all((radii > 0.925 - 1e-6) & (radii < 1.075 + 1e-6))
+    description = spread.run.geometry.description
+    (weight,) = (a.values[-1] for a in description.acts if a.where == "body")
+    at_ends = thrust["forces"][[0, -1], -1].astype(float)
+    expected = np.hypot(spread.loop[1, -1], 0.5 * weight)
+    assert at_ends == pytest.approx(np.full(2, expected), rel=1e-3)
+    # From joint to joint: what ends one line begins the next.
+    lines = thrust["lines"][..., -1]
+    assert lines[:-1, 0] == pytest.approx(lines[1:, 2])
+
+
+def test_hinges_are_marked_and_counted_as_the_quantity_counts_them(
+    spread: Frame,
+) -> None:
+    hinges = spread.extras["thrust"]["hinges"]
+    count = int(hinges[:, spread.run.column(0.5)].sum())
+    assert count == spread.readings["hinges@0.5"]
+    # At the crown and at both haunches.
+    assert count == 3
+    assert hinges[:, 0].sum() == 0.0
+    view = shown(spread, 0.5, Thrust)
+    assert len(view.sources["hinges"].data["x"]) == count
+    notes = str([item.label for item in view._keys.items])
+    assert f"hinges: {count}" in notes
+
+
+def test_the_foot_of_an_abutment_is_hatched_and_moves_with_it(spread: Frame) -> None:
+    kinds = [footing.kind for footing in spread.run.geometry.description.footings]
+    assert kinds == ["clamp", "clamp"]
+    view = shown(spread, 1.0)
+    picture = view.picture
+    assert picture is not None
+    held_now = picture._holds()
+    before = shown(spread, 0.0).picture._holds()  # type: ignore[union-attr]
+    moved = np.nanmax(held_now[:, 0]) - np.nanmax(before[:, 0])
+    assert moved == pytest.approx(1e-3 * picture._factor * picture.layout.scale[0])
+    assert np.nanmin(held_now[:, 0]) == pytest.approx(np.nanmin(before[:, 0]))
+
+
+def test_a_load_that_travels_is_one_arrow_and_is_dragged_where_it_is() -> None:
+    frame = ran(arch(live=2000.0, displacement=0.0, thickness=0.2), ends=False)
+    places = []
+    for phase in (0.4, 0.6, 0.8):
+        view = shown(frame, phase)
+        picture = view.picture
+        assert picture is not None
+        (arrows,) = (each for each in picture.draggable if each.setting == "live")
+        assert len(arrows.lines) == 1  # type: ignore[union-attr]
+        places.append(float(arrows.base[0, 0]))  # type: ignore[union-attr]
+    assert places[0] < places[1] < places[2]
+    handle = picture.page(arrows.handle)
+    base = picture.page(arrows.base[0])  # type: ignore[union-attr]
+    half = 0.5 * (handle + base)
+    view._hold(SimpleNamespace(x=handle[0], y=handle[1]))
+    view._let_go(SimpleNamespace(x=half[0], y=half[1]))
+    assert view.state.settings.live == pytest.approx(1000.0, rel=0.02)
+
+
+def test_an_arch_that_falls_shows_by_which_mechanism() -> None:
+    frame = ran(arch(thickness=0.09, displacement=0.0))
+    assert frame.run.mechanism is not None
+    ghost = shown(frame, 1.0).sources["ghost"].data
+    assert len(ghost["x"]) > 10
+    assert np.nanmax(np.abs(frame.run.mechanism)) > 0.0
+
+
+def test_the_selected_joint_is_named_beside_it(spread: Frame) -> None:
+    state = PageState(spread.run.settings, frame=spread)
+    view = Scene(state)
+    _ = view.figure
+    view.update(spread, Selection(0.5, interface="crown"), None)
+    words = view.sources["words"].data
+    place = words["text"].index("crown")
+    picture = view.picture
+    assert picture is not None
+    halo = picture.page(picture._halo())
+    assert abs(words["x"][place] - halo[:, 0].mean()) < 12.0
+    assert words["y"][place] < halo[:, 1].min()
+
+
+def test_hatches_of_a_round_support_lie_behind_it() -> None:
+    angles = np.linspace(0.0, 2.0 * np.pi, 41)
+    outward = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    strokes = hatched(100.0 * outward, -outward)
+    radii = np.hypot(*strokes[np.isfinite(strokes[:, 0])].T)
+    assert radii.max() < 100.0 + 1e-9
+    assert radii.min() < 94.0
