@@ -102,15 +102,11 @@ class BodyStiffness:
     depth
         Depth of the bodies across the interface at each pair, shape (n_pairs,), or one
         for all pairs, m; infinite where nothing limits it.
-    shares
-        Share of each pair in the k of its interface, shape (n_pairs,), where it is not
-        that in its area; None where it is.
     """
 
     above: Array | float = 1.0
     below: Array | float = float("inf")
     depth: Array | float = float("inf")
-    shares: Array | None = None
 
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
@@ -139,8 +135,6 @@ class BodyStiffness:
             pressing = CONTACT_STIFFNESS * self._slender(law, length)
             sliding = SLIDING_BETWEEN_BODIES * pressing
         share = law.weights / length
-        if self.shares is not None:
-            share = self.shares
         for component in law.components:
             stiffness = sliding if component is law.tangent else pressing
             for rows, modulus in zip(
@@ -156,13 +150,8 @@ class BodyStiffness:
         layers 200 to 1000 times as long as thick 1 % of the contact force takes 9 to 13
         iterations, 43 to 55 with the k of `choose` (measured).
         """
-        if law.is_on_support:
-            return
         squeezed = np.minimum(self.above, self.below) * law.weights / self.depth
-        for component in law.components:
-            for rows in component.sides:
-                # Only ever stiffer: where the k of `choose` is larger it stays.
-                k[rows] = np.maximum(k[rows], squeezed)
+        stiffen(law, k, squeezed)
 
     def _slender(self, law: Pairs, length: Array) -> Array:
         """Factor on k between two bodies that are thin beside their length.
@@ -178,3 +167,58 @@ class BodyStiffness:
         resolved = np.minimum(self.depth / (length / steps), 1.0)
         slender = SLENDER * self.depth / length * resolved
         return np.asarray(np.sqrt(np.minimum(slender, 1.0)))
+
+
+@dataclass(frozen=True, eq=False)
+class NodalStiffness:
+    """Stiffness of bodies of any shape, as seen by every pair of an interface.
+
+    The bodies as a whole resist a displacement of all pairs with one stiffness, and
+    that of one pair alone, with its neighbours held, with another. k is their geometric
+    mean, as of rods (`RodStiffness`), times `FRICTION_FACTOR` on a rigid support, where
+    no macro forces see to long waves.
+
+    Attributes
+    ----------
+    whole, local
+        Stiffness of the bodies above and below as a whole, by the share of each pair,
+        and of each pair alone, along and across the interface: shape (n_pairs, 2,
+        n_sides), scaled.
+    squeezed
+        Stiffness of the softer body across its depth, by the share of each pair, shape
+        (n_pairs,), scaled.
+    """
+
+    whole: Array
+    local: Array
+    squeezed: Array
+
+    elsewhere: ClassVar[float] = BodyStiffness.elsewhere
+    on_cuts: ClassVar[float] = BodyStiffness.on_cuts
+
+    def choose(self, law: Pairs, k: Array, parts: float) -> None:
+        """Write the k of interfaces into that of all rows, as `RodStiffness.choose`."""
+        stiffness = np.sqrt(self.whole * self.local)
+        if law.is_on_support:
+            stiffness *= FRICTION_FACTOR
+        for component in law.components:
+            number = 0 if component is law.tangent else 1
+            for side, rows in enumerate(component.sides):
+                k[rows] = stiffness[:, number, side]
+
+    def stick(self, law: Pairs, k: Array) -> None:
+        """Write the k of two bodies that nowhere slip, as `BodyStiffness.stick`."""
+        stiffen(law, k, self.squeezed)
+
+
+def stiffen(law: Pairs, k: Array, least: Array) -> None:
+    """Raise the k of interfaces between bodies to a least one of each pair, (n_pairs,).
+
+    `k` is that of all rows, (n_rows,), scaled, and is changed in place. Where it is
+    larger it stays.
+    """
+    if law.is_on_support:
+        return
+    for component in law.components:
+        for rows in component.sides:
+            k[rows] = np.maximum(k[rows], least)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -88,9 +89,38 @@ class CutBodies:
         self._operators = dict[Hashable, tuple[SchurComplement, Elasticity]]()
         self.parts = list(self._parts())
 
-    def modulus(self, number: int) -> float:
-        """Young's modulus of a body, or E A / l of beams, over the unit of stress."""
-        return _modulus(self.structure.bodies[number]) / self.young
+    def is_mesh(self, number: int) -> bool:
+        """Check whether a body is a mesh, not a line of beams."""
+        return isinstance(self.structure.bodies[number].shape, Mesh)
+
+    @cached_property
+    def moduli(self) -> Array:
+        """Young's modulus of each mesh, E A of each beam, (n_bodies,), scaled."""
+        values = []
+        for body in self.structure.bodies:
+            if isinstance(body.shape, Mesh):
+                values.append(body.young / self.young)
+            else:
+                values.append(body.young * body.shape.area / self.young)
+        return np.array(values)
+
+    @cached_property
+    def volumes(self) -> Array:
+        """Volume of each body, (n_bodies,), m^3."""
+        return np.array([body.shape.volume for body in self.structure.bodies])
+
+    @cached_property
+    def local_stiffness(self) -> Array:
+        """Stiffness of each row while all others are held, (n_rows,), scaled."""
+        diagonals = dict[int, Array]()
+        found = []
+        for part in self.parts:
+            operator = part.elasticity
+            if id(operator) not in diagonals:
+                diagonal = operator.stiffness.diagonal()
+                diagonals[id(operator)] = diagonal[operator.trace]
+            found.append(diagonals[id(operator)])
+        return np.concatenate(found)
 
     def owner(self, number: int, part: int) -> int:
         """Number of a part of a body among all."""

@@ -13,14 +13,9 @@ from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_pieces import JointPiece
-from solver.discrete.plane.meshes import Mesh
-from solver.laws import BodyStiffness, Component, Contact, Friction, Unilateral
+from solver.laws import Component, Contact, Friction, NodalStiffness, Unilateral
 from solver.laws.friction import compliance_of
-
-QUADRATIC = 0.5
-"""k of a joint over that of bilinear elements. Of 31 voussoirs with 1, 2, 4 elements
-across, whose abutment moves, 1 % takes 45, 40, 72 iterations; with 1 63, 47, 102; by
-areas instead of their roots 55, 42, 78, and 150, 87, 135 with 1 (measured)."""
+from solver.laws.stiffness import SLENDER
 
 
 class _Pairs(NamedTuple):
@@ -87,7 +82,7 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
         points=points.ravel(),
         positions=_positions(cut, numbers)[known],
         weights=pairs.weights,
-        stiffness_beside=_stiffness_beside(cut, pairs),
+        stiffness_beside=_stiffness_beside(cut, pairs, tangent, normal),
         macro=_macro_basis(cut, [cut.pieces[number] for number in pairs.pieces]),
         names=names,
         interfaces=interfaces,
@@ -154,37 +149,39 @@ def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Compo
     return Component(*along), Component(*across)
 
 
-def _stiffness_beside(cut: CutBodies, pairs: _Pairs) -> BodyStiffness:
-    """Moduli and depth of the bodies at joints, for their search direction.
+def _stiffness_beside(
+    cut: CutBodies, pairs: _Pairs, tangent: Component, normal: Component
+) -> NodalStiffness:
+    """Stiffness of the bodies at joints, for their search direction.
 
-    Nodes of elements with a node in the middle have uneven areas, but a body resists
-    the displacement of any node by about E: k goes by the roots of the areas.
+    A mesh resists with about E as a whole, with E d / l if it is thin beside the length
+    l of the joint, and on a rigid support with E l / d, where d is its depth. Beams
+    resist with E A / l along the joint; across it their neighbours hardly help.
     """
-    bodies = cut.structure.bodies
-    above = []
-    below = []
-    depths = []
-    for number in pairs.joints:
-        joint = cut.structure.joints[number]
-        above.append(cut.modulus(joint.above))
-        modulus = np.inf
-        if joint.below is not None:
-            modulus = cut.modulus(joint.below)
-        below.append(modulus)
-        shape = bodies[joint.above].shape
-        depth = np.inf
-        if isinstance(shape, Mesh):
-            depth = shape.volume / float(shape.shares(joint.nodes).sum())
-        depths.append(depth)
     of_joint = pairs.joint_of_pairs
-    roots = np.sqrt(pairs.weights)
-    sums = np.bincount(of_joint, weights=roots)[of_joint]
-    return BodyStiffness(
-        above=np.array(above)[of_joint],
-        below=np.array(below)[of_joint],
-        depth=np.array(depths)[of_joint],
-        shares=QUADRATIC * roots / sums,
+    lengths = np.bincount(of_joint, weights=pairs.weights)
+    share = pairs.weights / lengths[of_joint]
+    rows = np.stack(
+        [np.stack(each.sides, axis=1) for each in (tangent, normal)], axis=1
     )
+    local = cut.local_stiffness[rows]
+    whole = local.copy()
+    squeezed = np.full(len(share), np.inf)
+    for side in range(rows.shape[2]):
+        sides = [cut.structure.joints[number].sides[side][0] for number in pairs.joints]
+        is_mesh = np.array([cut.is_mesh(number) for number in sides])
+        stiffness = cut.moduli[sides] / np.where(is_mesh, 1.0, lengths)
+        depth = np.where(is_mesh, cut.volumes[sides] / lengths, lengths)
+        if rows.shape[2] == 1:
+            shape = np.maximum(lengths / depth, 1.0)
+        else:
+            shape = np.minimum(SLENDER * depth / lengths, 1.0)
+        along = (stiffness * shape)[of_joint] * share
+        whole[:, 0, side] = along
+        whole[is_mesh[of_joint], 1, side] = along[is_mesh[of_joint]]
+        across = (stiffness * lengths / depth)[of_joint] * share
+        squeezed = np.minimum(squeezed, across)
+    return NodalStiffness(whole, local, squeezed)
 
 
 def _macro_basis(
