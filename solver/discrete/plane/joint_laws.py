@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -116,18 +116,31 @@ def _friction(
 
 def _along_joints(values: Sequence[tuple[Array | float, int]]) -> Array:
     """Values of joints, each with its number of nodes, node by node: (n_nodes,)."""
+    sizes = [size for _, size in values]
+    constants = [value for value, _ in values if isinstance(value, float)]
+    if len(constants) == len(values):
+        return np.repeat(constants, sizes)
     return np.concatenate([np.broadcast_to(value, size) for value, size in values])
 
 
 def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
     """Distance of the nodes of joints from the first of each, (n_nodes,), m."""
+    known = dict[Hashable, Array]()
     found = []
     for number in numbers:
         joint = cut.structure.joints[number]
-        nodes = cut.structure.bodies[joint.above].nodes[joint.nodes]
-        steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
-        found.append(np.cumsum(np.append(0.0, steps)))
+        shape = cut.structure.bodies[joint.above].shape
+        key = id(shape), joint.nodes.tobytes()
+        if key not in known:
+            known[key] = _distances(shape.nodes[joint.nodes])
+        found.append(known[key])
     return np.concatenate(found)
+
+
+def _distances(nodes: Array) -> Array:
+    """Distance of nodes, (n, 2), from the first along the line of them, (n,)."""
+    steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
+    return np.cumsum(np.append(0.0, steps))
 
 
 def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Component]:
@@ -194,18 +207,34 @@ def _macro_basis(
     joints = cut.structure.joints
     if joints[pieces[0].joint].below is None:
         return None
+    known = dict[Hashable, Array]()
     blocks = []
     for piece in pieces:
-        above = joints[piece.joint].above
-        nodes = cut.structure.bodies[above].nodes[joints[piece.joint].nodes]
-        steps = np.linalg.norm(np.diff(nodes[piece.places], axis=0), axis=1)
-        along = np.cumsum(np.append(0.0, steps))
-        reach = along[-1] or 1.0
-        size = cut.parts[cut.owner(above, piece.parts[0])].of_shape.size
-        slenderness = (piece.weights.sum() / size) ** 2
-        blocks.append(
-            legendre_basis(
+        joint = joints[piece.joint]
+        part = cut.parts[cut.owner(joint.above, piece.parts[0])].of_shape
+        # Pieces of joints that are alike share their arrays.
+        key = id(part), joint.nodes.tobytes(), id(piece.weights)
+        if key not in known:
+            nodes = cut.structure.bodies[joint.above].shape.nodes
+            along = _distances(nodes[joint.nodes[piece.places]])
+            reach = along[-1] or 1.0
+            slenderness = (piece.weights.sum() / part.size) ** 2
+            known[key] = legendre_basis(
                 2.0 * along / reach - 1.0, slenderness, cut.structure.macro_degree
             )
-        )
-    return sparse.csr_array(sparse.block_diag(blocks))
+        blocks.append(known[key])
+    return _beside_each_other(blocks)
+
+
+def _beside_each_other(blocks: Sequence[Array]) -> sparse.csr_array:
+    """Diagonal matrix of blocks, (n_rows, n_columns) each."""
+    heights = np.array([block.shape[0] for block in blocks])
+    widths = np.array([block.shape[1] for block in blocks])
+    # Rows of one block are as wide as it.
+    of_rows = np.repeat(widths, heights)
+    ends = np.append(0, np.cumsum(of_rows))
+    first_columns = np.repeat(np.cumsum(widths) - widths, heights)
+    columns = np.arange(ends[-1]) - np.repeat(ends[:-1] - first_columns, of_rows)
+    values = np.concatenate([block.ravel() for block in blocks])
+    shape = len(of_rows), int(widths.sum())
+    return sparse.csr_array((values, columns, ends), shape)
