@@ -217,6 +217,31 @@ class NodalStiffness:
         stiffen(law, k, self.squeezed)
 
 
+def of_whole_mesh(depth: Array, length: Array, *, on_support: bool) -> Array:
+    """Stiffness over E of bodies against a displacement of a whole joint, (n_joints,).
+
+    About 1 of a body as large as the joint is long. A body of the depth d behind a
+    joint of length l slides like a rod on another if it is thin, with d / l
+    (`SLENDER`), and is squeezed on a rigid support, with l / d. A large body gives way
+    like a round one of radius r beside a contact of half width b, with 1 / C, where C =
+    (2 ln(4 r/b) - 1) / pi (Johnson, Contact Mechanics, 1985, section 5.6).
+
+    Parameters
+    ----------
+    depth, length
+        Area of each body over the length of the joint, and this length, (n_joints,), m.
+    on_support
+        Whether the joints are on rigid supports.
+    """
+    if on_support:
+        thin = np.maximum(length / depth, 1.0)
+    else:
+        thin = np.minimum(SLENDER * depth / length, 1.0)
+    radius = np.sqrt(depth * length / np.pi)
+    compliance = (2.0 * np.log(8.0 * radius / length) - 1.0) / np.pi
+    return np.asarray(thin / np.maximum(compliance, 1.0))
+
+
 def stiffen(law: Pairs, k: Array, least: Array) -> None:
     """Raise the k of interfaces between bodies to a least one of each pair, (n_pairs,).
 

@@ -60,7 +60,7 @@ class CutBodies:
     pieces
         Pieces of the joints.
     first_parts
-        Number of the first part of each body, (n_bodies + 1,).
+        Numbers of the first part of each body, and of the parts.
     parts
         Parts, body by body. Their rows are by ("above", piece), ("below", piece),
         ("first", body, seam), ("second", body, seam) and ("held", number).
@@ -82,7 +82,7 @@ class CutBodies:
         )
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
         counts = [body.substructures for body in bodies]
-        self.first_parts = np.cumsum([0, *counts])
+        self.first_parts = np.cumsum([0, *counts]).tolist()
         self._shape_parts = self._of_shapes()
         self._traces: list[dict[Hashable, NodalTrace]] = [{} for _ in self._shape_parts]
         self._trace_pieces()
@@ -126,7 +126,7 @@ class CutBodies:
 
     def owner(self, number: int, part: int) -> int:
         """Number of a part of a body among all."""
-        return int(self.first_parts[number]) + part
+        return self.first_parts[number] + part
 
     def local_frames(self, number: int, nodes: Indices) -> Array:
         """Directions at nodes of a body in its own axes, shape (n, 2, 2)."""

@@ -15,7 +15,7 @@ from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_pieces import JointPiece
 from solver.laws import Component, Contact, Friction, NodalStiffness, Unilateral
 from solver.laws.friction import compliance_of
-from solver.laws.stiffness import SLENDER
+from solver.laws.stiffness import of_whole_mesh
 
 
 class _Pairs(NamedTuple):
@@ -167,9 +167,8 @@ def _stiffness_beside(
 ) -> NodalStiffness:
     """Stiffness of the bodies at joints, for their search direction.
 
-    A mesh resists with about E as a whole, with E d / l if it is thin beside the length
-    l of the joint, and on a rigid support with E l / d, where d is its depth. Beams
-    resist with E A / l along the joint; across it their neighbours hardly help.
+    A mesh resists with about E as a whole (`of_whole_mesh`). Beams resist with E A / l
+    along a joint of length l; across it their neighbours hardly help.
     """
     of_joint = pairs.joint_of_pairs
     lengths = np.bincount(of_joint, weights=pairs.weights)
@@ -183,13 +182,11 @@ def _stiffness_beside(
     for side in range(rows.shape[2]):
         sides = [cut.structure.joints[number].sides[side][0] for number in pairs.joints]
         is_mesh = np.array([cut.is_mesh(number) for number in sides])
+        on_support = rows.shape[2] == 1
         stiffness = cut.moduli[sides] / np.where(is_mesh, 1.0, lengths)
         depth = np.where(is_mesh, cut.volumes[sides] / lengths, lengths)
-        if rows.shape[2] == 1:
-            shape = np.maximum(lengths / depth, 1.0)
-        else:
-            shape = np.minimum(SLENDER * depth / lengths, 1.0)
-        along = (stiffness * shape)[of_joint] * share
+        of_mesh = of_whole_mesh(depth, lengths, on_support=on_support)
+        along = (stiffness * np.where(is_mesh, of_mesh, 1.0))[of_joint] * share
         whole[:, 0, side] = along
         whole[is_mesh[of_joint], 1, side] = along[is_mesh[of_joint]]
         across = (stiffness * lengths / depth)[of_joint] * share
