@@ -42,7 +42,7 @@ BETWEEN_BODIES = 0.5
 """k between bodies of any shape over the geometric mean of what the whole body and one
 pair resist. Of arches of 31 to 121 voussoirs, whose abutment moves, 1 % of the contact
 force takes 15 to 46 iterations, 18 to 64 with twice as much; of two bodies on a slope
-12 to 41, and 10 to 73 (MATHEMATICS.md, 19)."""
+12 to 41, and 11 to 73 (MATHEMATICS.md, 19)."""
 
 
 @dataclass(frozen=True, eq=False)
