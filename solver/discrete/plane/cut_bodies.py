@@ -82,7 +82,7 @@ class CutBodies:
         )
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
         counts = [body.substructures for body in bodies]
-        self.first_parts = np.cumsum([0, *counts]).tolist()
+        self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
         self._shape_parts = self._of_shapes()
         self._traces: list[dict[Hashable, NodalTrace]] = [{} for _ in self._shape_parts]
         self._trace_pieces()

@@ -171,7 +171,7 @@ def _stiffness_beside(
     along a joint of length l; across it their neighbours hardly help.
     """
     of_joint = pairs.joint_of_pairs
-    lengths = np.bincount(of_joint, weights=pairs.weights)
+    lengths: Array = np.bincount(of_joint, weights=pairs.weights).astype(float)
     share = pairs.weights / lengths[of_joint]
     rows = np.stack(
         [np.stack(each.sides, axis=1) for each in (tangent, normal)], axis=1
