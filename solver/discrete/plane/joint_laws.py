@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_pieces import JointPiece
@@ -168,30 +168,53 @@ def _stiffness_beside(
     """Stiffness of the bodies at joints, for their search direction.
 
     A mesh resists with about E as a whole (`of_whole_mesh`). Beams resist with E A / l
-    along a joint of length l; across it their neighbours hardly help.
+    along a joint of length l; across it they stay where they are pressed.
     """
     of_joint = pairs.joint_of_pairs
     lengths: Array = np.bincount(of_joint, weights=pairs.weights).astype(float)
     share = pairs.weights / lengths[of_joint]
-    rows = np.stack(
-        [np.stack(each.sides, axis=1) for each in (tangent, normal)], axis=1
-    )
+    components = [np.stack(each.sides, axis=1) for each in (tangent, normal)]
+    rows = np.stack(components, axis=1)
     local = cut.local_stiffness[rows]
-    whole = local.copy()
+    whole = np.empty_like(local)
     squeezed = np.full(len(share), np.inf)
     for side in range(rows.shape[2]):
-        sides = [cut.structure.joints[number].sides[side][0] for number in pairs.joints]
-        is_mesh = np.array([cut.is_mesh(number) for number in sides])
         on_support = rows.shape[2] == 1
-        stiffness = cut.moduli[sides] / np.where(is_mesh, 1.0, lengths)
-        depth = np.where(is_mesh, cut.volumes[sides] / lengths, lengths)
-        of_mesh = of_whole_mesh(depth, lengths, on_support=on_support)
-        along = (stiffness * np.where(is_mesh, of_mesh, 1.0))[of_joint] * share
+        of_joints, across = _whole_joints(cut, pairs, side, lengths, on_support)
+        along = of_joints[of_joint] * share
+        # Across beams k is at least that along them, as their tension presses them.
+        tension = np.maximum(local[:, 1, side], np.sqrt(along * local[:, 0, side]))
+        is_beam = ~_is_mesh(cut, pairs, side)[of_joint]
+        local[is_beam, 1, side] = tension[is_beam]
         whole[:, 0, side] = along
-        whole[is_mesh[of_joint], 1, side] = along[is_mesh[of_joint]]
-        across = (stiffness * lengths / depth)[of_joint] * share
-        squeezed = np.minimum(squeezed, across)
+        whole[:, 1, side] = np.where(is_beam, tension, along)
+        squeezed = np.minimum(squeezed, across[of_joint] * share)
     return NodalStiffness(whole, local, squeezed)
+
+
+def _bodies(cut: CutBodies, pairs: _Pairs, side: int) -> list[int]:
+    """Numbers of the bodies on a side of joints, 0 above and 1 below."""
+    return [cut.structure.joints[number].sides[side][0] for number in pairs.joints]
+
+
+def _is_mesh(cut: CutBodies, pairs: _Pairs, side: int) -> Flags:
+    """Check which bodies on a side of joints are meshes, (n_joints,)."""
+    return np.array([cut.is_mesh(number) for number in _bodies(cut, pairs, side)])
+
+
+def _whole_joints(
+    cut: CutBodies, pairs: _Pairs, side: int, lengths: Array, on_support: bool
+) -> tuple[Array, Array]:
+    """Stiffness of bodies on a side of whole joints: as a whole, and squeezed.
+
+    Shape (n_joints,) both, scaled; `lengths` are those of the joints, (n_joints,), m.
+    """
+    bodies = _bodies(cut, pairs, side)
+    is_mesh = _is_mesh(cut, pairs, side)
+    modulus = cut.moduli[bodies] / np.where(is_mesh, 1.0, lengths)
+    depth = np.where(is_mesh, cut.volumes[bodies] / lengths, lengths)
+    of_mesh = of_whole_mesh(depth, lengths, on_support=on_support)
+    return modulus * np.where(is_mesh, of_mesh, 1.0), modulus * lengths / depth
 
 
 def _macro_basis(
