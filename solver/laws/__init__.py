@@ -5,12 +5,11 @@ from solver.laws.friction import Friction, FrictionLaw
 from solver.laws.interface import Component, Interface
 from solver.laws.linear import Dirichlet, Neumann, Perfect
 from solver.laws.play import SlipFactor
-from solver.laws.stiffness import BeamStiffness, BodyStiffness, RodStiffness
+from solver.laws.stiffness import BodyStiffness, NodalStiffness, RodStiffness
 from solver.laws.unilateral import Unilateral
 
 __all__ = [
     "OPEN",
-    "BeamStiffness",
     "BodyStiffness",
     "Component",
     "Contact",
@@ -19,6 +18,7 @@ __all__ = [
     "FrictionLaw",
     "Interface",
     "Neumann",
+    "NodalStiffness",
     "Perfect",
     "RodStiffness",
     "SlipFactor",

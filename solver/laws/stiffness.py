@@ -25,11 +25,6 @@ AT_A_POINT = 0.1
 """k of a point where a spring pulls, over E, for a metre of thickness. On blocks on
 slopes 1 % of the contact force takes 8 to 18 iterations, and 29 to more than 120 with
 the k of a contact, which keeps the body from sliding (measured)."""
-ON_BEAMS = 4.0
-"""k of a point of a line of beams on a support over E A / l of the line. 1 % of the
-contact force of belts and tendons of 20 to 40 elements takes 29 to 58 iterations, of
-120 elements 62 to 95; with half as much up to 95 on 40, with twice 93 on 120
-(measured)."""
 RESOLVED = 96.0
 FINER = 1.0 / 3.0
 """Number of elements along a support above which its k grows with their number, and
@@ -43,6 +38,11 @@ SLENDER = 40.0
 """Ratio of length to thickness of two bodies in contact above which k must be
 smaller. Of layers 10 to 1000 times as long as thick 1 % of the contact force takes at
 most 45 iterations, more than 150 without (measured)."""
+BETWEEN_BODIES = 0.5
+"""k between bodies of any shape over the geometric mean of what the whole body and one
+pair resist. Of arches of 31 to 121 voussoirs, whose abutment moves, 1 % of the contact
+force takes 15 to 46 iterations, 18 to 64 with twice as much; of two bodies on a slope
+12 to 41, and 11 to 73 (MATHEMATICS.md, 19)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,35 +92,6 @@ class RodStiffness:
 
 
 @dataclass(frozen=True, eq=False)
-class BeamStiffness:
-    """Stiffness of a line of beams on a support.
-
-    k of a point is `ON_BEAMS` times the stiffness E A / l of the line, by which tension
-    resists slip; a row has its share by tributary length. Across, nothing but the
-    tension of the line resists, and any k of that size does (measured from a tenth to
-    25 times).
-
-    Attributes
-    ----------
-    modulus
-        Stiffness E A / l of the line of each pair, shape (n_pairs,), scaled.
-    """
-
-    modulus: Array
-
-    elsewhere: ClassVar[float] = 8.0
-    on_cuts: ClassVar[float] = 1.0
-
-    def choose(self, law: Pairs, k: Array, parts: float) -> None:
-        """Write the k of interfaces into that of all rows, as `RodStiffness.choose`."""
-        pairs = law.interface_of_pairs
-        mean = (law.sums(law.weights) / law.sizes)[pairs]
-        for component in law.components:
-            for rows in component.sides:
-                k[rows] = ON_BEAMS * self.modulus * law.weights / mean
-
-
-@dataclass(frozen=True, eq=False)
 class BodyStiffness:
     """Stiffness of bodies in the plane, above and below an interface.
 
@@ -136,15 +107,11 @@ class BodyStiffness:
     depth
         Depth of the bodies across the interface at each pair, shape (n_pairs,), or one
         for all pairs, m; infinite where nothing limits it.
-    shares
-        Share of each pair in the k of its interface, shape (n_pairs,), where it is not
-        that in its area; None where it is.
     """
 
     above: Array | float = 1.0
     below: Array | float = float("inf")
     depth: Array | float = float("inf")
-    shares: Array | None = None
 
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
@@ -173,8 +140,6 @@ class BodyStiffness:
             pressing = CONTACT_STIFFNESS * self._slender(law, length)
             sliding = SLIDING_BETWEEN_BODIES * pressing
         share = law.weights / length
-        if self.shares is not None:
-            share = self.shares
         for component in law.components:
             stiffness = sliding if component is law.tangent else pressing
             for rows, modulus in zip(
@@ -190,13 +155,8 @@ class BodyStiffness:
         layers 200 to 1000 times as long as thick 1 % of the contact force takes 9 to 13
         iterations, 43 to 55 with the k of `choose` (measured).
         """
-        if law.is_on_support:
-            return
         squeezed = np.minimum(self.above, self.below) * law.weights / self.depth
-        for component in law.components:
-            for rows in component.sides:
-                # Only ever stiffer: where the k of `choose` is larger it stays.
-                k[rows] = np.maximum(k[rows], squeezed)
+        stiffen(law, k, squeezed)
 
     def _slender(self, law: Pairs, length: Array) -> Array:
         """Factor on k between two bodies that are thin beside their length.
@@ -212,3 +172,84 @@ class BodyStiffness:
         resolved = np.minimum(self.depth / (length / steps), 1.0)
         slender = SLENDER * self.depth / length * resolved
         return np.asarray(np.sqrt(np.minimum(slender, 1.0)))
+
+
+@dataclass(frozen=True, eq=False)
+class NodalStiffness:
+    """Stiffness of bodies of any shape, as seen by every pair of an interface.
+
+    The bodies as a whole resist a displacement of all pairs with one stiffness, and
+    that of one pair alone, with its neighbours held, with another. k is their geometric
+    mean, as of rods (`RodStiffness`), times `FRICTION_FACTOR` on a rigid support, and
+    times `BETWEEN_BODIES` elsewhere.
+
+    Attributes
+    ----------
+    whole, local
+        Stiffness of the bodies above and below as a whole, by the share of each pair,
+        and of each pair alone, along and across the interface: shape (n_pairs, 2,
+        n_sides), scaled.
+    squeezed
+        Stiffness of the softer body across its depth, by the share of each pair, shape
+        (n_pairs,), scaled.
+    """
+
+    whole: Array
+    local: Array
+    squeezed: Array
+
+    elsewhere: ClassVar[float] = BodyStiffness.elsewhere
+    on_cuts: ClassVar[float] = BodyStiffness.on_cuts
+
+    def choose(self, law: Pairs, k: Array, parts: float) -> None:
+        """Write the k of interfaces into that of all rows, as `RodStiffness.choose`."""
+        factor = BETWEEN_BODIES
+        if law.is_on_support:
+            factor = FRICTION_FACTOR
+        stiffness = factor * np.sqrt(self.whole * self.local)
+        for component in law.components:
+            number = 0 if component is law.tangent else 1
+            for side, rows in enumerate(component.sides):
+                k[rows] = stiffness[:, number, side]
+
+    def stick(self, law: Pairs, k: Array) -> None:
+        """Write the k of two bodies that nowhere slip, as `BodyStiffness.stick`."""
+        stiffen(law, k, self.squeezed)
+
+
+def of_whole_mesh(depth: Array, length: Array, *, on_support: bool) -> Array:
+    """Stiffness over E of bodies against a displacement of a whole joint, (n_joints,).
+
+    About 1 of a body as large as the joint is long. A body of the depth d behind a
+    joint of length l slides like a rod on another if it is thin, with d / l
+    (`SLENDER`), and is squeezed on a rigid support, with l / d. A large body gives way
+    like a round one of radius r beside a contact of half width b, with 1 / C, where C =
+    (2 ln(4 r/b) - 1) / pi (Johnson, Contact Mechanics, 1985, section 5.6).
+
+    Parameters
+    ----------
+    depth, length
+        Area of each body over the length of the joint, and this length, (n_joints,), m.
+    on_support
+        Whether the joints are on rigid supports.
+    """
+    if on_support:
+        thin = np.maximum(length / depth, 1.0)
+    else:
+        thin = np.minimum(SLENDER * depth / length, 1.0)
+    radius = np.sqrt(depth * length / np.pi)
+    compliance = (2.0 * np.log(8.0 * radius / length) - 1.0) / np.pi
+    return np.asarray(thin / np.maximum(compliance, 1.0))
+
+
+def stiffen(law: Pairs, k: Array, least: Array) -> None:
+    """Raise the k of interfaces between bodies to a least one of each pair, (n_pairs,).
+
+    `k` is that of all rows, (n_rows,), scaled, and is changed in place. Where it is
+    larger it stays.
+    """
+    if law.is_on_support:
+        return
+    for component in law.components:
+        for rows in component.sides:
+            k[rows] = np.maximum(k[rows], least)

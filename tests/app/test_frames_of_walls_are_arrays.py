@@ -2,32 +2,15 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
 from itertools import islice
+
+from counting import calls_of
 
 from app.messages import Needs
 from app.worker.sampling import Sampler
 from solver.latin import iterations
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-
-
-def calls_of(work: Callable[[], object]) -> int:
-    """Number of Python functions that a piece of work calls."""
-    count = 0
-
-    def on_event(_frame: object, event: str, _argument: object) -> None:
-        nonlocal count
-        count += event == "call"
-
-    before = sys.getprofile()
-    sys.setprofile(on_event)
-    try:
-        work()
-    finally:
-        sys.setprofile(before)
-    return count
 
 
 def test_three_frames_of_a_wall_take_few_calls_a_joint() -> None:

@@ -75,7 +75,7 @@ WRONG = {
     "Body 'lower'.young = -1": lambda: replace(LOWER, young=-1.0),
     "2 with the name 'lower'": lambda: bodies(bodies=(LOWER, replace(LOWER))),
     "2 with the name 'bed'": lambda: bodies(held=(replace(FOOT, name="bed"),)),
-    'Bodies = "supports"': lambda: bodies(held=(replace(FOOT, name="supports"),)),
+    "Held 'supports'.name": lambda: bodies(held=(replace(FOOT, name="supports"),)),
     "Joint 'bed' on body = 2": lambda: bodies(joints=(replace(JOINT, above=2),)),
     "3 nodes of Body 'upper'": lambda: bodies(
         joints=(replace(JOINT, nodes=np.array([0, 1, 2])),)
@@ -131,3 +131,14 @@ def test_what_is_described_lies_on_the_bodies() -> None:
     (foot,) = described.footings
     assert foot.points[:, 1] == pytest.approx(np.zeros(3))
     assert foot.outward[:, 1] == pytest.approx(-np.ones(3))
+
+
+def test_names_of_laws_are_refused_for_interfaces_alone() -> None:
+    for field, named in (("joints", JOINT), ("held", FOOT)):
+        message = f"{type(named).__name__} 'contacts'.name"
+        with pytest.raises(RefusedError, match=message):
+            bodies(**{field: (replace(named, name="contacts"),)})
+    # Loads and bodies are no interfaces.
+    assert bodies(loads=(replace(PULL, name="contacts"),)).loads[0].name == "contacts"
+    named = (replace(LOWER, name="supports"), UPPER)
+    assert bodies(bodies=named).bodies[0].name == "supports"

@@ -21,11 +21,16 @@ joint."""
 
 
 def check_names(named: Sequence[Body | Joint | Held | Load]) -> None:
-    """Refuse names that occur twice."""
+    """Refuse names that occur twice, and those of laws for interfaces."""
+    for each in named:
+        if isinstance(each, Joint | Held) and each.name in RESERVED:
+            raise RefusedError(
+                f"{each}.name",
+                each.name,
+                f"a name other than {' and '.join(RESERVED)}",
+                "choose another one, as laws of all joints together have these",
+            )
     for name, count in Counter(each.name for each in named).items():
-        if name in RESERVED:
-            remedy = f"{' and '.join(RESERVED)} are names of laws, choose another"
-            raise RefusedError("Bodies", name, "other names", remedy)
         if count > 1:
             raise RefusedError(
                 "Bodies",

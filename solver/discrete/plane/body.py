@@ -166,7 +166,7 @@ class Joint:
     def __str__(self) -> str:
         return f"Joint {self.name!r}"
 
-    @property
+    @cached_property
     def sides(self) -> list[tuple[int, Indices]]:
         """Bodies and their chains of nodes; the one above first."""
         sides = [(self.above, self.nodes)]

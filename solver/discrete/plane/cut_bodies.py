@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +60,7 @@ class CutBodies:
     pieces
         Pieces of the joints.
     first_parts
-        Number of the first part of each body, (n_bodies + 1,).
+        Numbers of the first part of each body, and of the parts.
     parts
         Parts, body by body. Their rows are by ("above", piece), ("below", piece),
         ("first", body, seam), ("second", body, seam) and ("held", number).
@@ -76,10 +77,12 @@ class CutBodies:
             if key not in shapes:
                 shapes[key] = CutShape(body.shape, body.substructures)
         self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
-        self.frames = NodeFrames(bodies, structure.joints, structure.held)
+        self.frames = NodeFrames(
+            bodies, structure.first_nodes, structure.joints, structure.held
+        )
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
         counts = [body.substructures for body in bodies]
-        self.first_parts = np.cumsum([0, *counts])
+        self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
         self._shape_parts = self._of_shapes()
         self._traces: list[dict[Hashable, NodalTrace]] = [{} for _ in self._shape_parts]
         self._trace_pieces()
@@ -88,19 +91,60 @@ class CutBodies:
         self._operators = dict[Hashable, tuple[SchurComplement, Elasticity]]()
         self.parts = list(self._parts())
 
-    def modulus(self, number: int) -> float:
-        """Young's modulus of a body, or E A / l of beams, over the unit of stress."""
-        return _modulus(self.structure.bodies[number]) / self.young
+    def is_mesh(self, number: int) -> bool:
+        """Check whether a body is a mesh, not a line of beams."""
+        return isinstance(self.structure.bodies[number].shape, Mesh)
+
+    @cached_property
+    def moduli(self) -> Array:
+        """Young's modulus of each mesh, E A of each beam, (n_bodies,), scaled."""
+        values = []
+        for body in self.structure.bodies:
+            if isinstance(body.shape, Mesh):
+                values.append(body.young / self.young)
+            else:
+                values.append(body.young * body.shape.area / self.young)
+        return np.array(values)
+
+    @cached_property
+    def volumes(self) -> Array:
+        """Volume of each body, (n_bodies,), m^3."""
+        return np.array([body.shape.volume for body in self.structure.bodies])
+
+    @cached_property
+    def local_stiffness(self) -> Array:
+        """Stiffness of each row while all others are held, (n_rows,), scaled."""
+        diagonals = dict[int, Array]()
+        found = []
+        for part in self.parts:
+            operator = part.elasticity
+            if id(operator) not in diagonals:
+                diagonal = operator.stiffness.diagonal()
+                diagonals[id(operator)] = diagonal[operator.trace]
+            found.append(diagonals[id(operator)])
+        return np.concatenate(found)
 
     def owner(self, number: int, part: int) -> int:
         """Number of a part of a body among all."""
-        return int(self.first_parts[number]) + part
+        return self.first_parts[number] + part
 
     def local_frames(self, number: int, nodes: Indices) -> Array:
         """Directions at nodes of a body in its own axes, shape (n, 2, 2)."""
-        turned = self.frames.frames[number][nodes]
-        own = turned @ self.structure.bodies[number].rotation
+        first = self.structure.first_nodes[number]
+        return np.asarray(self._own_frames[first + nodes])
+
+    @cached_property
+    def _own_frames(self) -> Array:
+        """Directions at all nodes in the axes of their bodies, (n_nodes, 2, 2)."""
+        rotations = np.array([body.rotation for body in self.structure.bodies])
+        sizes = np.diff(self.structure.first_nodes)
+        own = self.frames.frames @ np.repeat(rotations, sizes, axis=0)
         return snapped(own.reshape(-1, 2)).reshape(-1, 2, 2)
+
+    @cached_property
+    def _rounded_frames(self) -> Array:
+        """Directions at all nodes in the axes of their bodies, up to rounding."""
+        return _rounded(self._own_frames)
 
     def _of_shapes(self) -> list[ShapePart]:
         """Parts of shapes, body by body; those of one kind are shared."""
@@ -127,17 +171,22 @@ class CutBodies:
 
     def _trace_pieces(self) -> None:
         """Add the rows of the joints."""
+        known = dict[Hashable, NodalTrace]()
         for number, piece in enumerate(self.pieces):
             joint = self.structure.joints[piece.joint]
             has_macro = joint.below is not None
             sides = zip(("above", "below"), joint.sides, piece.parts, strict=False)
             for name, (body, nodes), part in sides:
                 owner = self.owner(body, part)
-                dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
-                k = self._shape_parts[owner].density * piece.weights
-                direction = np.repeat(k[:, None], 2, axis=1)
-                trace = NodalTrace(dofs, direction, has_macro)
-                self._traces[owner][name, number] = trace
+                own = self._shape_parts[owner]
+                # Pieces of joints that are alike share their arrays.
+                key = id(own), nodes.tobytes(), id(piece.weights), has_macro
+                if key not in known:
+                    dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
+                    k = own.density * piece.weights
+                    direction = np.repeat(k[:, None], 2, axis=1)
+                    known[key] = NodalTrace(dofs, direction, has_macro)
+                self._traces[owner][name, number] = known[key]
 
     def _trace_seams(self) -> None:
         """Add the rows of both sides of the cuts inside bodies."""
@@ -228,7 +277,7 @@ class CutBodies:
     def _global_frames(self, body: int, part: ShapePart) -> Array:
         """Motion of the degrees of freedom of a part, (n_nodes, n_axes, 3)."""
         frames = np.zeros((len(part.nodes), part.n_axes, N_AXES))
-        frames[:, :2, :2] = self.frames.frames[body][part.nodes]
+        frames[:, :2, :2] = self.frames.of_body(body)[part.nodes]
         frames[:, 2:, 2] = 1.0
         return frames
 
@@ -240,25 +289,32 @@ class CutBodies:
         Members of a group of parts have forces inside all or none of them.
         """
         part = self._shape_parts[owner]
-        traces = self._traces[owner].values()
-        frames = self.local_frames(body, part.nodes)
+        traces = list(self._traces[owner].values())
+        nodes = self.structure.first_nodes[body] + part.nodes
+        turned = self._rounded_frames[nodes].tobytes()
+        # Most parts that are alike have the very same traces.
+        of_traces = tuple(id(trace) for trace in traces)
+        same = id(part), of_traces, turned, has_force
+        if same in self._operators:
+            return self._operators[same]
         dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
         direction = np.concatenate([trace.direction.ravel() for trace in traces])
-        of_rows = frames.reshape(-1, 2)
-        key = (
+        alike = (
             id(part),
             dofs.tobytes(),
-            _rounded(direction / direction.max()),
-            _rounded(of_rows),
+            _rounded(direction / direction.max()).tobytes(),
+            turned,
             tuple(trace.has_macro for trace in traces),
             has_force,
         )
-        if key not in self._operators:
+        if alike not in self._operators:
+            frames = self.local_frames(body, part.nodes)
             condensed = part.condensed(frames, np.unique(dofs))
             trace_of_rows = np.searchsorted(condensed.kept, dofs)
             operator = Elasticity(condensed.stiffness, trace_of_rows, direction)
-            self._operators[key] = condensed, operator
-        return self._operators[key]
+            self._operators[alike] = condensed, operator
+        self._operators[same] = self._operators[alike]
+        return self._operators[alike]
 
     def _loads(self) -> Mapping[int, Array]:
         """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.
@@ -290,7 +346,7 @@ def _modulus(body: Body) -> float:
     return body.young * body.shape.area / body.shape.size
 
 
-def _rounded(values: Array) -> bytes:
-    """Values of any shape up to rounding, as a key."""
+def _rounded(values: Array) -> Array:
+    """Values of any shape up to rounding, for a key."""
     # Zero is added so that -0 is 0.
-    return (np.round(values, DIGITS) + 0.0).tobytes()
+    return np.asarray(np.round(values, DIGITS) + 0.0)

@@ -9,6 +9,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Shape
+from solver.discrete.plane.meshes import Mesh
 
 
 class Seam(NamedTuple):
@@ -51,10 +52,14 @@ class CutShape:
             # A line may wind back beside itself, and is cut along itself.
             places = shape.laid_out
         self.labels = bisected(places, count)
+        if isinstance(shape, Mesh):
+            self.labels = in_one_piece(shape, self.labels)
         numbers = range(count)
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]
         self.nodes = [np.unique(shape.element_nodes[some]) for some in self.elements]
-        self.seams = _seams_of(shape, self.labels)
+        self.seams = list[Seam]()
+        if count > 1:
+            self.seams = _seams_of(shape, self.labels)
 
 
 def bisected(centres: Array, count: int) -> Indices:
@@ -65,6 +70,35 @@ def bisected(centres: Array, count: int) -> Indices:
     labels = np.zeros(len(centres), dtype=np.intp)
     _bisect(centres, np.arange(len(centres)), count, 0, labels)
     return labels
+
+
+def in_one_piece(mesh: Mesh, labels: Indices) -> Indices:
+    """Labels of parts, each of which is one piece, (n_elements,).
+
+    The largest piece of a part stays; others go one by one, the smallest first, to the
+    part with which they share most edges. `labels` are of the same shape.
+    """
+    labels = labels.copy()
+    first, second = mesh.neighbours
+    while True:
+        pieces = mesh.pieces(labels)
+        sizes = np.bincount(pieces)
+        of_pieces = np.zeros(len(sizes), dtype=np.intp)
+        of_pieces[pieces] = labels
+        # From small to large: the last one of each part is its largest.
+        order = np.argsort(sizes, kind="stable")
+        _, largest = np.unique(of_pieces[order][::-1], return_index=True)
+        others = np.delete(order, len(order) - 1 - largest)
+        if not len(others):
+            return labels
+        inside = pieces == others[0]
+        beside = np.concatenate(
+            [
+                labels[second[inside[first] & ~inside[second]]],
+                labels[first[inside[second] & ~inside[first]]],
+            ]
+        )
+        labels[inside] = np.bincount(beside).argmax()
 
 
 def _bisect(

@@ -2,33 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.elements import legendre_basis
-from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_pieces import JointPiece
-from solver.discrete.plane.meshes import Mesh
-from solver.laws import (
-    BeamStiffness,
-    BodyStiffness,
-    Component,
-    Contact,
-    Friction,
-    Unilateral,
-)
+from solver.laws import Component, Contact, Friction, NodalStiffness, Unilateral
 from solver.laws.friction import compliance_of
-
-QUADRATIC = 0.5
-"""k of a joint over that of bilinear elements. Of 31 voussoirs with 1, 2, 4 elements
-across, whose abutment moves, 1 % takes 45, 40, 72 iterations; with 1 63, 47, 102; by
-areas instead of their roots 55, 42, 78, and 150, 87, 135 with 1 (measured)."""
+from solver.laws.stiffness import of_whole_mesh
 
 
 class _Pairs(NamedTuple):
@@ -95,7 +82,7 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
         points=points.ravel(),
         positions=_positions(cut, numbers)[known],
         weights=pairs.weights,
-        stiffness_beside=_stiffness_beside(cut, pairs),
+        stiffness_beside=_stiffness_beside(cut, pairs, tangent, normal),
         macro=_macro_basis(cut, [cut.pieces[number] for number in pairs.pieces]),
         names=names,
         interfaces=interfaces,
@@ -129,18 +116,31 @@ def _friction(
 
 def _along_joints(values: Sequence[tuple[Array | float, int]]) -> Array:
     """Values of joints, each with its number of nodes, node by node: (n_nodes,)."""
+    sizes = [size for _, size in values]
+    constants = [value for value, _ in values if isinstance(value, float)]
+    if len(constants) == len(values):
+        return np.repeat(constants, sizes)
     return np.concatenate([np.broadcast_to(value, size) for value, size in values])
 
 
 def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
     """Distance of the nodes of joints from the first of each, (n_nodes,), m."""
+    known = dict[Hashable, Array]()
     found = []
     for number in numbers:
         joint = cut.structure.joints[number]
-        nodes = cut.structure.bodies[joint.above].nodes[joint.nodes]
-        steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
-        found.append(np.cumsum(np.append(0.0, steps)))
+        shape = cut.structure.bodies[joint.above].shape
+        key = id(shape), joint.nodes.tobytes()
+        if key not in known:
+            known[key] = _distances(shape.nodes[joint.nodes])
+        found.append(known[key])
     return np.concatenate(found)
+
+
+def _distances(nodes: Array) -> Array:
+    """Distance of nodes, (n, 2), from the first along the line of them, (n,)."""
+    steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
+    return np.cumsum(np.append(0.0, steps))
 
 
 def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Component]:
@@ -162,48 +162,59 @@ def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Compo
     return Component(*along), Component(*across)
 
 
-def _stiffness_beside(cut: CutBodies, pairs: _Pairs) -> BodyStiffness | BeamStiffness:
-    """Stiffness beside joints: of bodies, or of lines of beams on a support."""
-    above = [cut.structure.joints[number].above for number in pairs.joints]
-    bodies = cut.structure.bodies
-    is_on_support = cut.structure.joints[pairs.joints[0]].below is None
-    if is_on_support and all(isinstance(bodies[one].shape, Beam) for one in above):
-        moduli = np.array([cut.modulus(number) for number in above])
-        return BeamStiffness(moduli[pairs.joint_of_pairs])
-    return _of_bodies(cut, pairs)
+def _stiffness_beside(
+    cut: CutBodies, pairs: _Pairs, tangent: Component, normal: Component
+) -> NodalStiffness:
+    """Stiffness of the bodies at joints, for their search direction.
 
-
-def _of_bodies(cut: CutBodies, pairs: _Pairs) -> BodyStiffness:
-    """Moduli and depth of the bodies at joints, for their search direction.
-
-    Nodes of elements with a node in the middle have uneven areas, but a body resists
-    the displacement of any node by about E: k goes by the roots of the areas.
+    A mesh resists with about E as a whole (`of_whole_mesh`). Beams resist with E A / l
+    along a joint of length l; across it they stay where they are pressed.
     """
-    bodies = cut.structure.bodies
-    above = []
-    below = []
-    depths = []
-    for number in pairs.joints:
-        joint = cut.structure.joints[number]
-        above.append(cut.modulus(joint.above))
-        modulus = np.inf
-        if joint.below is not None:
-            modulus = cut.modulus(joint.below)
-        below.append(modulus)
-        shape = bodies[joint.above].shape
-        depth = np.inf
-        if isinstance(shape, Mesh):
-            depth = shape.volume / float(shape.shares(joint.nodes).sum())
-        depths.append(depth)
     of_joint = pairs.joint_of_pairs
-    roots = np.sqrt(pairs.weights)
-    sums = np.bincount(of_joint, weights=roots)[of_joint]
-    return BodyStiffness(
-        above=np.array(above)[of_joint],
-        below=np.array(below)[of_joint],
-        depth=np.array(depths)[of_joint],
-        shares=QUADRATIC * roots / sums,
-    )
+    lengths: Array = np.bincount(of_joint, weights=pairs.weights).astype(float)
+    share = pairs.weights / lengths[of_joint]
+    components = [np.stack(each.sides, axis=1) for each in (tangent, normal)]
+    rows = np.stack(components, axis=1)
+    local = cut.local_stiffness[rows]
+    whole = np.empty_like(local)
+    squeezed = np.full(len(share), np.inf)
+    for side in range(rows.shape[2]):
+        on_support = rows.shape[2] == 1
+        of_joints, across = _whole_joints(cut, pairs, side, lengths, on_support)
+        along = of_joints[of_joint] * share
+        # Across beams k is at least that along them, as their tension presses them.
+        tension = np.maximum(local[:, 1, side], np.sqrt(along * local[:, 0, side]))
+        is_beam = ~_is_mesh(cut, pairs, side)[of_joint]
+        local[is_beam, 1, side] = tension[is_beam]
+        whole[:, 0, side] = along
+        whole[:, 1, side] = np.where(is_beam, tension, along)
+        squeezed = np.minimum(squeezed, across[of_joint] * share)
+    return NodalStiffness(whole, local, squeezed)
+
+
+def _bodies(cut: CutBodies, pairs: _Pairs, side: int) -> list[int]:
+    """Numbers of the bodies on a side of joints, 0 above and 1 below."""
+    return [cut.structure.joints[number].sides[side][0] for number in pairs.joints]
+
+
+def _is_mesh(cut: CutBodies, pairs: _Pairs, side: int) -> Flags:
+    """Check which bodies on a side of joints are meshes, (n_joints,)."""
+    return np.array([cut.is_mesh(number) for number in _bodies(cut, pairs, side)])
+
+
+def _whole_joints(
+    cut: CutBodies, pairs: _Pairs, side: int, lengths: Array, on_support: bool
+) -> tuple[Array, Array]:
+    """Stiffness of bodies on a side of whole joints: as a whole, and squeezed.
+
+    Shape (n_joints,) both, scaled; `lengths` are those of the joints, (n_joints,), m.
+    """
+    bodies = _bodies(cut, pairs, side)
+    is_mesh = _is_mesh(cut, pairs, side)
+    modulus = cut.moduli[bodies] / np.where(is_mesh, 1.0, lengths)
+    depth = np.where(is_mesh, cut.volumes[bodies] / lengths, lengths)
+    of_mesh = of_whole_mesh(depth, lengths, on_support=on_support)
+    return modulus * np.where(is_mesh, of_mesh, 1.0), modulus * lengths / depth
 
 
 def _macro_basis(
@@ -216,18 +227,34 @@ def _macro_basis(
     joints = cut.structure.joints
     if joints[pieces[0].joint].below is None:
         return None
+    known = dict[Hashable, Array]()
     blocks = []
     for piece in pieces:
-        above = joints[piece.joint].above
-        nodes = cut.structure.bodies[above].nodes[joints[piece.joint].nodes]
-        steps = np.linalg.norm(np.diff(nodes[piece.places], axis=0), axis=1)
-        along = np.cumsum(np.append(0.0, steps))
-        reach = along[-1] or 1.0
-        size = cut.parts[cut.owner(above, piece.parts[0])].of_shape.size
-        slenderness = (piece.weights.sum() / size) ** 2
-        blocks.append(
-            legendre_basis(
+        joint = joints[piece.joint]
+        part = cut.parts[cut.owner(joint.above, piece.parts[0])].of_shape
+        # Pieces of joints that are alike share their arrays.
+        key = id(part), joint.nodes.tobytes(), id(piece.weights)
+        if key not in known:
+            nodes = cut.structure.bodies[joint.above].shape.nodes
+            along = _distances(nodes[joint.nodes[piece.places]])
+            reach = along[-1] or 1.0
+            slenderness = (piece.weights.sum() / part.size) ** 2
+            known[key] = legendre_basis(
                 2.0 * along / reach - 1.0, slenderness, cut.structure.macro_degree
             )
-        )
-    return sparse.csr_array(sparse.block_diag(blocks))
+        blocks.append(known[key])
+    return _beside_each_other(blocks)
+
+
+def _beside_each_other(blocks: Sequence[Array]) -> sparse.csr_array:
+    """Diagonal matrix of blocks, (n_rows, n_columns) each."""
+    heights = np.array([block.shape[0] for block in blocks])
+    widths = np.array([block.shape[1] for block in blocks])
+    # Rows of one block are as wide as it.
+    of_rows = np.repeat(widths, heights)
+    ends = np.append(0, np.cumsum(of_rows))
+    first_columns = np.repeat(np.cumsum(widths) - widths, heights)
+    columns = np.arange(ends[-1]) - np.repeat(ends[:-1] - first_columns, of_rows)
+    values = np.concatenate([block.ravel() for block in blocks])
+    shape = len(of_rows), int(widths.sum())
+    return sparse.csr_array((values, columns, ends), shape)

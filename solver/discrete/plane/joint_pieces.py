@@ -5,7 +5,7 @@ Degrees of freedom at the nodes of a joint are those along its tangent and its n
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -53,77 +53,104 @@ class NodeFrames:
     """Directions of the degrees of freedom of the nodes of all bodies.
 
     Nodes of a joint have its tangent and normal, held ones the global axes, others the
-    axes of their body.
+    axes of their body. Nodes of all bodies follow each other.
 
     Attributes
     ----------
+    first_nodes
+        Number of the first node of each body, (n_bodies + 1,).
     frames
-        Of each body the first and the second direction at every node, in global axes,
-        (n_nodes, 2, 2).
+        The first and the second direction at every node, in global axes, (n_nodes, 2,
+        2).
+    has_pair
+        Of each joint its pairs that there are, (n,). None where directions differ, and
+        where both sides are held across the joint, so that any pressing force would be
+        a solution.
     """
 
     def __init__(
-        self, bodies: Sequence[Body], joints: Sequence[Joint], held: Sequence[Held]
+        self,
+        bodies: Sequence[Body],
+        first_nodes: Indices,
+        joints: Sequence[Joint],
+        held: Sequence[Held],
     ) -> None:
-        self._joints = joints
-        self.frames = [
-            np.tile(snapped(body.rotation.T), (len(body.nodes), 1, 1))
-            for body in bodies
-        ]
-        # Nodes with the directions of a joint, and those of which joints disagree.
-        self._of_joint = [np.zeros(len(body.nodes), dtype=bool) for body in bodies]
-        self._unlike = [np.zeros(len(body.nodes), dtype=bool) for body in bodies]
-        for joint in joints:
-            for number, nodes in joint.sides:
-                self._turn(number, nodes, snapped(joint.normals))
-        self._held = [np.zeros((len(body.nodes), 2), dtype=bool) for body in bodies]
+        self.first_nodes = first_nodes
+        sizes = np.diff(first_nodes)
+        turned = np.array([body.rotation.T for body in bodies])
+        axes = snapped(turned.reshape(-1, 2)).reshape(-1, 2, 2)
+        self.frames = np.repeat(axes, sizes, axis=0)
+        self._held = np.zeros((len(self.frames), 2), dtype=bool)
         for each in held:
             if each.axis < 2:
-                self._held[each.body][each.nodes, each.axis] = True
-        for number in range(len(bodies)):
-            self._hold(number)
+                self._held[first_nodes[each.body] + each.nodes, each.axis] = True
+        # Nodes with the directions of a joint, and those of which joints disagree.
+        self._of_joint = np.zeros(len(self.frames), dtype=bool)
+        self._unlike = np.zeros(len(self.frames), dtype=bool)
+        above, below, normals = self._pairs_of(joints)
+        has_below = below >= 0
+        nodes = np.concatenate([above, below[has_below]])
+        self._turn(nodes, np.concatenate([normals, normals[has_below]]))
+        self._hold()
+        has_pair = self._pairs_there(above, below, normals)
+        sizes_of_joints = [len(joint.nodes) for joint in joints]
+        ends = np.cumsum([0, *sizes_of_joints]).tolist()
+        self.has_pair = [has_pair[first:last] for first, last in pairwise(ends)]
 
-    def _turn(self, number: int, nodes: Indices, normals: Array) -> None:
-        """Give nodes of a body the directions of a joint, whose normals are (n, 2)."""
+    def _pairs_of(self, joints: Sequence[Joint]) -> tuple[Indices, Indices, Array]:
+        """Nodes above and below of all pairs of joints, (n,) both, and normals, (n, 2).
+
+        The node below is -1 on a support.
+        """
+        above = [np.zeros(0, dtype=np.intp)]
+        below = [np.zeros(0, dtype=np.intp)]
+        normals = [np.zeros((0, 2))]
+        for joint in joints:
+            above.append(self.first_nodes[joint.above] + joint.nodes)
+            if joint.below is not None and joint.nodes_below is not None:
+                below.append(self.first_nodes[joint.below] + joint.nodes_below)
+            else:
+                below.append(np.full(len(joint.nodes), -1))
+            normals.append(joint.normals)
+        whole = snapped(np.concatenate(normals))
+        return np.concatenate(above), np.concatenate(below), whole
+
+    def _turn(self, nodes: Indices, normals: Array) -> None:
+        """Give nodes, (n,), the directions of their first joint; normals are (n, 2)."""
         tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
         wanted = np.stack([tangents, normals], axis=1)
-        found = self.frames[number][nodes]
-        before = self._of_joint[number][nodes]
-        differs = np.abs(found - wanted).max(axis=(1, 2)) > ALIKE
-        self._unlike[number][nodes] |= before & differs
-        self.frames[number][nodes[~before]] = wanted[~before]
-        self._of_joint[number][nodes] = True
+        known, first = np.unique(nodes, return_index=True)
+        self.frames[known] = wanted[first]
+        differs = np.abs(self.frames[nodes] - wanted).max(axis=(1, 2)) > ALIKE
+        self._unlike[nodes[differs]] = True
+        self._of_joint[nodes] = True
 
-    def _hold(self, number: int) -> None:
-        """Give held nodes of a body the global axes, unless theirs are axes already."""
-        held = self._held[number]
-        frames = self.frames[number]
-        is_axis = np.abs(frames).max(axis=1) == 1.0
-        is_skew = (held & ~is_axis).any(axis=1)
-        unlike = self._unlike[number]
-        unlike |= is_skew & self._of_joint[number]
-        frames[is_skew | (unlike & held.any(axis=1))] = np.eye(2)
+    def _hold(self) -> None:
+        """Give held nodes the global axes, unless theirs are axes already."""
+        is_axis = np.abs(self.frames).max(axis=1) == 1.0
+        is_skew = (self._held & ~is_axis).any(axis=1)
+        self._unlike |= is_skew & self._of_joint
+        turned_back = is_skew | (self._unlike & self._held.any(axis=1))
+        self.frames[turned_back] = np.eye(2)
+
+    def _pairs_there(self, above: Indices, below: Indices, normals: Array) -> Flags:
+        """Check which pairs of joints there are, (n,); parameters as of `_pairs_of`."""
+        has_below = below >= 0
+        across = np.abs(normals) > 0.0
+        held_above = (self._held[above] & across).any(axis=1)
+        held_below = (self._held[below] & across).any(axis=1) | ~has_below
+        differs = self._unlike[above] | (self._unlike[below] & has_below)
+        return np.asarray(~differs & ~(held_above & held_below))
+
+    def of_body(self, number: int) -> Array:
+        """Directions at the nodes of a body, (n, 2, 2)."""
+        return self.frames[self.first_nodes[number] : self.first_nodes[number + 1]]
 
     def held_at(self, number: int, nodes: Indices, axis: int) -> tuple[Indices, Array]:
         """Degree of freedom along an axis, and its sign, of held nodes, (n,) both."""
-        along = self.frames[number][nodes, :, axis]
+        along = self.of_body(number)[nodes, :, axis]
         which = np.abs(along).argmax(axis=1)
         return which, along[np.arange(len(nodes)), which]
-
-    def has_pair(self, joint: Joint) -> Flags:
-        """Check which pairs of a joint there are, (n,).
-
-        None where directions differ, and where both sides are held across the joint, so
-        that any pressing force would be a solution.
-        """
-        has_pair = np.ones(len(joint.nodes), dtype=bool)
-        held_across = np.ones(len(joint.nodes), dtype=bool)
-        normals = snapped(joint.normals)
-        for number, nodes in joint.sides:
-            has_pair &= ~self._unlike[number][nodes]
-            across = np.abs(normals) > 0.0
-            held_across &= (self._held[number][nodes] & across).any(axis=1)
-        return has_pair & ~held_across
 
 
 def pieces_of(
@@ -140,9 +167,18 @@ def pieces_of(
         For a joint without any pair.
     """
     pieces = list[JointPiece]()
-    for number, joint in enumerate(joints):
-        has_pair = frames.has_pair(joint)
-        found = _pieces_of_joint(bodies, number, joint, cuts)
+    # Joints along the same nodes of the same shapes have the same pieces.
+    known = dict[Hashable, list[JointPiece]]()
+    for number, (joint, has_pair) in enumerate(
+        zip(joints, frames.has_pair, strict=True)
+    ):
+        key = tuple((id(cuts[body]), chain.tobytes()) for body, chain in joint.sides)
+        if key not in known:
+            known[key] = _pieces_of_joint(bodies, number, joint, cuts)
+        found = [piece._replace(joint=number) for piece in known[key]]
+        if has_pair.all():
+            pieces += found
+            continue
         kept = [piece for piece in found if has_pair[piece.places].any()]
         if not kept:
             raise RefusedError(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import skfem
 from scipy import sparse
-from skfem.models.elasticity import linear_elasticity
 
 from solver.arrays import Array, Indices
 from solver.discrete.plane.meshes import Mesh
@@ -23,11 +22,18 @@ def mesh_stiffness(mesh: Mesh, elements: Indices, elastic: Array) -> sparse.csr_
 
     `elastic` is an `elastic_matrix`, (3, 3), Pa.
     """
-    form = linear_elasticity(Lambda=elastic[0, 1], Mu=elastic[2, 2])
     element = skfem.ElementVector(_element(mesh))
     order = EXACT[mesh.elements.shape[1]]
     basis = skfem.Basis(mesh.grid, element, elements=elements, intorder=order)
-    return sparse.csr_array(skfem.asm(form, basis))
+    strains = _strains(basis)
+    stresses = np.einsum("ab,bieq,eq->aieq", elastic, strains, basis.dx)
+    blocks = np.einsum("aieq,ajeq->ije", strains, stresses, optimize=True)
+    dofs = basis.element_dofs
+    rows = np.broadcast_to(dofs[:, None], blocks.shape)
+    columns = np.broadcast_to(dofs, blocks.shape)
+    places = rows.ravel(), columns.ravel()
+    size = 2 * len(mesh.nodes)
+    return sparse.csr_array(sparse.coo_array((blocks.ravel(), places), (size, size)))
 
 
 def mesh_volumes(mesh: Mesh, elements: Indices) -> Array:
@@ -52,15 +58,23 @@ def mesh_strains(mesh: Mesh, elements: Indices) -> sparse.csr_array:
         elements=elements,
         quadrature=(middle, np.ones(1)),
     )
-    gradients = [each[0].grad[..., 0] for each in basis.basis]
-    (xx, xy), (yx, yy) = np.stack(gradients, axis=-1)
-    strains = np.stack([xx, yy, xy + yx])
+    strains = _strains(basis)[..., 0].swapaxes(1, 2)
     size = len(elements)
     rows = np.arange(3 * size).reshape(size, 3).T[:, :, None]
     both = np.broadcast_arrays(rows, basis.element_dofs.T)
     places = both[0].ravel(), both[1].ravel()
     shape = 3 * size, 2 * len(mesh.nodes)
     return sparse.csr_array(sparse.coo_array((strains.ravel(), places), shape))
+
+
+def _strains(basis: skfem.Basis) -> Array:
+    """Strains xx, yy, 2 xy of the functions of a basis at its points.
+
+    Shape (3, n_functions, n_elements, n_points).
+    """
+    gradients = np.stack([each[0].grad for each in basis.basis], axis=2)
+    (xx, xy), (yx, yy) = gradients
+    return np.stack([xx, yy, xy + yx])
 
 
 def _element(mesh: Mesh) -> skfem.Element:

@@ -236,18 +236,27 @@ class Mesh:
         unused = np.setdiff1d(np.arange(self.n_corners), self.elements)
         if len(unused):
             return f"corner {int(unused[0])} that no element has"
-        pieces = self._n_pieces
+        pieces = 1 + int(self.pieces(np.zeros(len(self.elements), dtype=np.intp)).max())
         if pieces > 1:
             return f"a mesh of {pieces} pieces"
         return ""
 
     @property
-    def _n_pieces(self) -> int:
-        """Number of pieces, the elements of which share no edge."""
-        first, second = self.grid.f2t[:, self.grid.f2t[1] >= 0]
+    def neighbours(self) -> Indices:
+        """Elements on both sides of each inner edge, (2, n_edges)."""
+        return np.asarray(self.grid.f2t[:, self.grid.f2t[1] >= 0], dtype=np.intp)
+
+    def pieces(self, labels: Indices) -> Indices:
+        """Number of the piece of every element, (n_elements,).
+
+        Elements of a piece hang together by edges, and have one label, (n_elements,).
+        """
+        first, second = self.neighbours
+        is_one = labels[first] == labels[second]
         size = len(self.elements)
-        links = sparse.coo_array((np.ones(len(first)), (first, second)), (size, size))
-        return int(connected_components(links, directed=False)[0])
+        places = first[is_one], second[is_one]
+        links = sparse.coo_array((np.ones(len(places[0])), places), (size, size))
+        return np.asarray(connected_components(links, directed=False)[1])
 
 
 def on_nodes(values: Array, shares: Array) -> Array:

@@ -11,7 +11,7 @@ from solver.arrays import Array, read_only
 from solver.checks import POSITIVE, check
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
-from solver.laws import BodyStiffness, Contact
+from solver.laws import Contact, RodStiffness
 
 LOOK = 3
 """Iteration that shows whether bodies slip on each other anywhere. In the second,
@@ -164,7 +164,7 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     parts = _sliding_parts(problem)
     for law in laws:
         law.stiffness_beside.choose(law, k, parts)
-        if sticks and isinstance(law.stiffness_beside, BodyStiffness):
+        if sticks and not isinstance(law.stiffness_beside, RodStiffness):
             law.stiffness_beside.stick(law, k)
         # The spring in series comes last, as it softens any k of the bodies.
         _raise_above_slope(law, k)
