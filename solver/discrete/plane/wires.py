@@ -5,10 +5,9 @@ Wires lie on a triangular grid, so that all contacts are at multiples of 30 degr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import Delaunay
@@ -88,30 +87,27 @@ class Disc:
     zones: dict[int, Indices]
 
     @classmethod
-    def of(cls, radius: float, directions: Sequence[int], zone: Zone) -> Disc:
-        """Mesh of a disc with zones in some directions, in turns."""
-        surface, below = zone.rings(radius)
+    def of(cls, radius: float, contacts: Mapping[int, Zone]) -> Disc:
+        """Mesh of a disc with zones of contact by their directions, in turns."""
         rims = []
         inside = []
-        for direction in directions:
+        for direction, zone in contacts.items():
             angle = direction * TURN
+            surface, below = zone.rings(radius)
             rims.append(angle + surface / radius)
             inside.append(_polar(radius - below[:, 1], angle + below[:, 0] / radius))
         near = np.concatenate(rims)
+        # Elsewhere the surface has a node at every half of a turn.
         others = TURN * np.arange(0.0, TURNS, 0.5)
-        # Angles elsewhere, where no graded mesh is.
         apart = np.abs(_wrapped(others[:, None] - near)).min(axis=1)
         angles = np.concatenate([near, others[apart > 0.5 * COARSE]])
         rim = _polar(np.full(len(angles), radius), angles)
         graded = np.concatenate([rim, *inside])
-        corners = np.concatenate([graded, _coarse(graded, radius)])
-        mesh = triangulated(corners)
-        first = (len(surface) - len(zone.offsets)) // 2
-        zones = {}
-        for number, direction in enumerate(directions):
-            start = number * len(surface) + first
-            zones[direction] = mesh.along(start + np.arange(len(zone.offsets)))
-        return cls(mesh, zones)
+        mesh = triangulated(np.concatenate([graded, _coarse(graded, radius)]))
+        return cls(
+            mesh,
+            dict(zip(contacts, _chains(mesh, contacts.values(), rims), strict=True)),
+        )
 
     def facing(self, direction: int) -> Indices:
         """Chain of the surface over 60 degrees about a direction without contacts."""
@@ -148,38 +144,69 @@ def _coarse(graded: Array, radius: float) -> Array:
     return points[distance > 0.5 * COARSE * radius]
 
 
-def plate_mesh(
-    centres: Array, radius: float, thickness: float, zone: Zone
-) -> tuple[Mesh, list[Indices]]:
-    """Mesh of a plate above the highest wires, and chains of its zones.
+@dataclass(frozen=True, eq=False)
+class Plate:
+    """A plate on the highest wires: its mesh, whose lower side is at 0, and chains.
 
-    The zones are those of wires at positions along it, (n,), m, from left to right.
-    The lower side is at 0.
+    Attributes
+    ----------
+    mesh
+        The mesh.
+    zones
+        Chains of its zones of contact, from left to right.
+    top, ends
+        Chains of its upper side, and of its left and right end.
     """
-    surface, below = zone.rings(radius)
-    surface = radius * np.sin(surface / radius)
-    ends = centres.min() - radius, centres.max() + radius
-    graded = [np.stack([below[:, 0] + x, below[:, 1]], axis=1) for x in centres]
-    lines = [surface + x for x in centres]
-    # Between wires and beyond them.
-    middles = [0.5 * (left + right) for left, right in pairwise(centres)]
-    lines.append(np.array([ends[0], *middles, ends[1]]))
-    bottom = np.concatenate(lines)
-    count = 4 * len(centres) + 1
-    top = np.linspace(*ends, count)
-    corners = [
-        np.stack([bottom, np.zeros_like(bottom)], axis=1),
-        *graded,
-        np.stack([top, np.full(count, thickness)], axis=1),
-        np.array([(end, 0.5 * thickness) for end in ends]),
-    ]
-    mesh = triangulated(np.concatenate(corners))
-    first = (len(surface) - len(zone.offsets)) // 2
+
+    mesh: Mesh
+    zones: list[Indices]
+    top: Indices
+    ends: tuple[Indices, Indices]
+
+    @classmethod
+    def of(cls, places: Array, radius: float, thickness: float, zone: Zone) -> Plate:
+        """Mesh of a plate on wires at places along it, (n_wires,), m."""
+        surface, below = zone.rings(radius)
+        surface = radius * np.sin(surface / radius)
+        lines = [surface + x for x in places]
+        left = places.min() - radius
+        right = places.max() + radius
+        # Between wires and beyond them.
+        lines.append(np.arange(left, right + radius, 2.0 * radius))
+        bottom = np.concatenate(lines)
+        upper = np.linspace(left, right, 4 * len(places) + 1)
+        middle = 0.5 * thickness
+        corners = [
+            np.stack([bottom, np.zeros_like(bottom)], axis=1),
+            np.stack([upper, np.full_like(upper, thickness)], axis=1),
+            np.array([(left, middle), (right, middle)]),
+            *[below + np.array([x, 0.0]) for x in places],
+        ]
+        mesh = triangulated(np.concatenate(corners))
+        first = len(bottom)
+        last = first + len(upper)
+        lower = len(bottom) - len(lines[-1])
+        return cls(
+            mesh,
+            _chains(mesh, [zone] * len(places), lines),
+            mesh.along(np.arange(first, last)),
+            (
+                mesh.along([lower, last, first]),
+                mesh.along([first - 1, last + 1, last - 1]),
+            ),
+        )
+
+
+def _chains(mesh: Mesh, zones: Iterable[Zone], lines: Sequence[Array]) -> list[Indices]:
+    """Chains of zones in the middles of lines of corners, the first ones of a mesh."""
     chains = []
-    for number in range(len(centres)):
-        start = number * len(surface) + first
-        chains.append(mesh.along(start + np.arange(len(zone.offsets))))
-    return mesh, chains
+    first = 0
+    for zone, line in zip(zones, lines, strict=False):
+        size = zone.elements + 1
+        start = first + (len(line) - size) // 2
+        chains.append(mesh.along(np.arange(start, start + size)))
+        first += len(line)
+    return chains
 
 
 @dataclass(frozen=True)
@@ -230,9 +257,7 @@ class Packing:
             numbers = np.flatnonzero(np.abs(np.hypot(*apart.T) - 2.0) < 0.1)
             turns = np.arctan2(apart[numbers, 1], apart[numbers, 0]) / TURN
             directions = np.rint(turns).astype(int) % TURNS
-            found.append(
-                dict(zip(directions.tolist(), numbers.tolist(), strict=True))
-            )
+            found.append(dict(zip(directions.tolist(), numbers.tolist(), strict=True)))
         return found
 
     def directions(self, wire: int, *, has_plate: bool) -> list[int]:
@@ -248,7 +273,9 @@ class Packing:
         """Direction of a wire at the end of an inner row out of all; None of others."""
         if self.row_of_wires[wire] in (0, len(self.rows) - 1):
             return None
-        free = [turn for turn in range(0, TURNS, 2) if turn not in self.neighbours[wire]]
+        free = [
+            turn for turn in range(0, TURNS, 2) if turn not in self.neighbours[wire]
+        ]
         if not free:
             return None
         vector = np.exp(1j * TURN * np.array(free)).sum()
