@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from solver import discrete
 from solver.discrete.problem import Problem
+from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.fault import FaultSettings
@@ -25,6 +26,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         RopeSettings,
         StrandSettings,
         WallSettings,
+        ArchSettings,
     )
 }
 

@@ -325,6 +325,19 @@ def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
     yield "force on the ground", "N/m", 4.0 * (pressing + 4.0 * brick), found
 
 
+def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
+    """Thrust of an arch over its weight, after an abutment has moved far enough.
+
+    The least where it has moved apart, the largest where it has moved inwards.
+    """
+    moved, thrust = answer.loop.along(answer.fields)
+    weight = answer.settings.structure().downwards[-1]
+    bounds = answer.settings.statics.thrusts()
+    assert bounds is not None
+    known = bounds[0] if moved[-1] > 0.0 else bounds[1]
+    yield "thrust over weight", "", known, float(thrust[-1] / weight)
+
+
 def moved_end(answer: SolvedCase) -> Iterator[Number]:
     """Force that moves an end of a rod with a free other end: sqrt(2 E S mu p u)."""
     rods = answer.settings.structure()

@@ -49,6 +49,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "top": "pulled",
     },
     "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
+    "arch": {"live": 100.0, "fill": 1e4, "abutment": "down", "span": 120.0},
 }
 
 

@@ -86,7 +86,8 @@ def test_what_a_run_finds_is_compared_with_or_without_times(scene: str) -> None:
         name = "displacement"
     values = getattr(run, name)
     shifted = values + 0.1 * np.ptp(values)
-    for timed in (True, False):
+    # The weight of an arch makes it thrust before an abutment moves.
+    for timed in (True,) if scene == "arch" else (True, False):
         assert beside(run, loop_from(run, timed=timed)).of(run.iterate) < 1e-9
         measured = loop_from(run, timed=timed, **{name: shifted})
         assert beside(run, measured).of(run.iterate) == pytest.approx(0.1, abs=1e-9)
@@ -226,18 +227,16 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
     assert np.mean(within) >= 0.75
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "noise"), [("pressure", 6000.0, 0.01), ("young", 2e11, 0.0)]
-)
+@pytest.mark.parametrize(("name", "value"), [("pressure", 6000.0), ("young", 2e11)])
 def test_what_is_known_as_a_product_alone_stays_near_its_start(
-    name: str, value: float, noise: float
+    name: str, value: float
 ) -> None:
     """Displacement under a given force knows mu p, and of E S the product E S mu p."""
     true = {"friction": 0.37, name: value}
     settings = scene_settings("bar").checked(
         {**BAR, "friction": 0.3, name: 0.8 * value}
     )
-    found = fit(settings, made(true, settings, noise), list(true))
+    found = fit(settings, made(true, settings, 0.01), list(true))
     assert np.isinf(found.errors).all()
     assert np.prod(found.nearest.values) == pytest.approx(0.37 * value, rel=0.02)
     # Along what is not determined nothing moves: both change by the same factor.

@@ -72,7 +72,7 @@ def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
         if figure.name == name:
             if at is None:
                 return figure.largest
-            return figure.at(_instant_at(run, at))
+            return figure.at(instant_at(run, at))
     return math.nan
 
 
@@ -110,10 +110,10 @@ def _axial_force_instant(run: FinishedRun, at: float | None) -> int:
     """Instant at a share of the interval, or the instant of the largest axial force."""
     if at is None:
         return first_largest(np.abs(_axial_force(run)).max(axis=0))
-    return _instant_at(run, at)
+    return instant_at(run, at)
 
 
-def _instant_at(run: FinishedRun, share: float) -> int:
+def instant_at(run: FinishedRun, share: float) -> int:
     """Instant that is nearest to a share of the interval."""
     times = run.problem.instants
     return int(np.abs(times - share * times[-1]).argmin())
