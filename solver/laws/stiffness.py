@@ -38,6 +38,34 @@ SLENDER = 40.0
 """Ratio of length to thickness of two bodies in contact above which k must be
 smaller. Of layers 10 to 1000 times as long as thick 1 % of the contact force takes at
 most 45 iterations, more than 150 without (measured)."""
+SMALL = 4.0
+"""Side of a square as large as a body, over the length of a contact, from which on the
+contact is small: the body moves beside it as a whole."""
+
+
+def of_small_contact(size: float, length: float, steps: int) -> float:
+    """Search direction of a small contact on a large body, times its length over E.
+
+    The body gives way as a whole with E / C per length, where C = (2 ln(4 r/b) - 1) /
+    pi for a half width b and a radius r (Johnson, Contact Mechanics, 1985, section
+    5.6), and from point to point, h apart, with E pi / (2 h) per area. The k of a point
+    is the geometric mean of the two, for which neither converges more slowly than the
+    other, across and along: nothing but elasticity keeps a round body in place. Seven
+    wires reach 1 % in 24 to 27 iterations with 0.6 to 1.2 times as much, in 42 with 0.4
+    times, in 122 with a tenth (measured).
+
+    Parameters
+    ----------
+    size
+        Side of a square as large as the body, m.
+    length
+        Length of the contact, m.
+    steps
+        Number of steps from point to point along it.
+    """
+    radius = size / np.sqrt(np.pi)
+    compliance = (2.0 * np.log(8.0 * radius / length) - 1.0) / np.pi
+    return float(np.sqrt(0.5 * np.pi * steps / compliance))
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,12 +133,16 @@ class BodyStiffness:
     shares
         Share of each pair in the k of its interface, shape (n_pairs,), where it is not
         that in its area; None where it is.
+    of_small
+        `of_small_contact` at each pair of a contact that is small beside its body, and
+        0 at others, shape (n_pairs,), or one for all pairs.
     """
 
     above: Array | float = 1.0
     below: Array | float = float("inf")
     depth: Array | float = float("inf")
     shares: Array | None = None
+    of_small: Array | float = 0.0
 
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
@@ -138,6 +170,9 @@ class BodyStiffness:
         else:
             pressing = CONTACT_STIFFNESS * self._slender(law, length)
             sliding = SLIDING_BETWEEN_BODIES * pressing
+        is_small = np.asarray(self.of_small) > 0.0
+        pressing = np.where(is_small, self.of_small, pressing)
+        sliding = np.where(is_small, self.of_small, sliding)
         share = law.weights / length
         if self.shares is not None:
             share = self.shares

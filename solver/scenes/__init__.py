@@ -7,6 +7,7 @@ from solver.discrete.problem import Problem
 from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
+from solver.scenes.bundle import BundleSettings
 from solver.scenes.fault import FaultSettings
 from solver.scenes.incline import InclineSettings
 from solver.scenes.layers import LayersSettings
@@ -27,6 +28,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         StrandSettings,
         WallSettings,
         ArchSettings,
+        BundleSettings,
     )
 }
 

@@ -40,6 +40,7 @@ SIZES = (
     "bricks",
     "courses",
     "voussoirs",
+    "rings",
 )
 """Numbers of a mesh; all decades are equally likely."""
 WIDE = {

@@ -117,6 +117,6 @@ def _check_opposite(bodies: Sequence[Body], joint: Joint) -> None:
         raise RefusedError(
             f"{joint}.nodes_below",
             Words(f"nodes {number} of both chains {apart[number]:g} m too far apart"),
-            f"nodes that face each other, up to the gap and {APART:g} of their distance",
+            f"nodes that face each other, up to the gap and {APART:g} of a step",
             "list both chains in the same order, and mesh both bodies alike there",
         )

@@ -103,7 +103,10 @@ class Wires:
     def bodies(self, young: float, poisson: float, weight: Array) -> list[Body]:
         """Wires of a weight along x and y, shape (2, n_instants), N/m^3."""
         bodies = []
+        area = np.pi * self.radius**2
         for number, (disc, turn) in enumerate(self._placed):
+            # The polygon of a mesh is smaller than the circle.
+            rounded = area / disc.mesh.volume
             body = Body(
                 f"wire {number + 1}",
                 disc.mesh,
@@ -111,7 +114,7 @@ class Wires:
                 poisson,
                 origin=self.centres[number],
                 angle=turn * TURN,
-                weight=weight,
+                weight=rounded * weight,
             )
             bodies.append(body)
         if self.has_plate:

@@ -11,11 +11,13 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
+from solver.discrete.plane.body import Joint, Shape
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_pieces import JointPiece
 from solver.discrete.plane.meshes import Mesh
 from solver.laws import BodyStiffness, Component, Contact, Friction, Unilateral
 from solver.laws.friction import compliance_of
+from solver.laws.stiffness import SMALL, of_small_contact
 
 QUADRATIC = 0.5
 """k of a joint over that of bilinear elements. Of 31 voussoirs with 1, 2, 4 elements
@@ -164,6 +166,7 @@ def _stiffness_beside(cut: CutBodies, pairs: _Pairs) -> BodyStiffness:
     above = []
     below = []
     depths = []
+    of_small = []
     for number in pairs.joints:
         joint = cut.structure.joints[number]
         above.append(cut.modulus(joint.above))
@@ -176,15 +179,28 @@ def _stiffness_beside(cut: CutBodies, pairs: _Pairs) -> BodyStiffness:
         if isinstance(shape, Mesh):
             depth = shape.volume / float(shape.shares(joint.nodes).sum())
         depths.append(depth)
+        of_small.append(_of_small(bodies[joint.above].shape, joint))
     of_joint = pairs.joint_of_pairs
     roots = np.sqrt(pairs.weights)
     sums = np.bincount(of_joint, weights=roots)[of_joint]
+    small = np.array(of_small)[of_joint]
     return BodyStiffness(
         above=np.array(above)[of_joint],
         below=np.array(below)[of_joint],
         depth=np.array(depths)[of_joint],
-        shares=QUADRATIC * roots / sums,
+        shares=np.where(small > 0.0, 1.0, QUADRATIC) * roots / sums,
+        of_small=small,
     )
+
+
+def _of_small(shape: Shape, joint: Joint) -> float:
+    """`of_small_contact` of a joint that is small beside a shape, or 0."""
+    if not isinstance(shape, Mesh):
+        return 0.0
+    length = float(shape.shares(joint.nodes).sum())
+    if shape.size < SMALL * length:
+        return 0.0
+    return of_small_contact(shape.size, length, len(joint.nodes) - 1)
 
 
 def _macro_basis(

@@ -222,16 +222,16 @@ class Packing:
     rows: tuple[int, ...]
 
     @classmethod
-    def hexagon(cls, layers: int) -> Packing:
-        """Layers of wires round one in the middle."""
-        upper = range(2 * layers, layers, -1)
-        rows = [*reversed(upper), 2 * layers + 1, *upper]
+    def hexagon(cls, rings: int) -> Packing:
+        """Rings of wires round one in the middle."""
+        upper = range(2 * rings, rings, -1)
+        rows = [*reversed(upper), 2 * rings + 1, *upper]
         return cls(tuple(rows))
 
     @classmethod
-    def heap(cls, layers: int) -> Packing:
-        """Layers of wires on those that lie on the ground, and one on top."""
-        return cls(tuple(range(layers + 1, 0, -1)))
+    def heap(cls, rings: int) -> Packing:
+        """Rows of wires above those on the ground, the highest of a single one."""
+        return cls(tuple(range(rings + 1, 0, -1)))
 
     @cached_property
     def centres(self) -> Array:
