@@ -164,17 +164,19 @@ class BundleSettings(PlaneSettings):
         """Number of contacts."""
         rows = self.packing.rows
         between = sum(len(wires) for wires in self.packing.neighbours) // 2
-        return between + rows[0] + rows[-1] * self.has_plate
+        under_plate = rows[-1] if self.has_plate else 0
+        return between + rows[0] + under_plate
 
     @property
     def n_nodes(self) -> int:
         """Number of nodes of all bodies, nearly: most are about contacts."""
-        return (2 * self.n_interfaces + self.n_wires) * NODES * self.elements
+        zones = 2 * self.n_interfaces + self.n_wires
+        return zones * NODES * int(self.elements)
 
     @property
     def jumps(self) -> int:
         """Number of components of all contacts."""
-        return 2 * self.n_interfaces * (2 * self.elements + 1)
+        return 2 * self.n_interfaces * (2 * int(self.elements) + 1)
 
     @property
     def modulus(self) -> float:

@@ -141,7 +141,7 @@ def _coarse(graded: Array, radius: float) -> Array:
         circles.append(_polar(np.full(len(angles), COARSE * number * radius), angles))
     points = np.concatenate(circles)
     distance = np.linalg.norm(points[:, None] - graded, axis=2).min(axis=1)
-    return points[distance > 0.5 * COARSE * radius]
+    return np.asarray(points[distance > 0.5 * COARSE * radius])
 
 
 @dataclass(frozen=True, eq=False)
