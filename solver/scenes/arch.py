@@ -11,7 +11,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.plane.voussoirs import RIGHT, Arch, Ring
+from solver.discrete.plane.voussoirs import FILL, LIVE, RIGHT, Arch, Ring
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act
@@ -220,19 +220,12 @@ class ArchSettings(PlaneSettings):
     @property
     def jumps(self) -> int:
         """Number of components of all contacts."""
-        return 2 * self.n_interfaces * (2 * self.elements + 1)
+        return int(2 * self.n_interfaces * (2 * self.elements + 1))
 
     def structure(self) -> Arch:
         """Make the arch; one metre thick."""
-        return self._arch(self._filled + self._passing)
-
-    def unloaded(self) -> Arch:
-        """Make the arch without the load on its back, at the same instants."""
-        return self._arch(self._filled)
-
-    def _arch(self, downwards: Array) -> Arch:
-        """Arch under forces on its back, (voussoirs, n_nodes, n_instants), N."""
         ring = self.ring
+        loads = [*ring.loads(FILL, self._filled), *ring.loads(LIVE, self._passing)]
         weight = np.stack([np.zeros_like(self._hold), -self.unit_weight * self._hold])
         path = self.path("abutment_load")
         settles = self.abutment == "down"
@@ -245,7 +238,7 @@ class ArchSettings(PlaneSettings):
             bodies=ring.bodies(self.young, self.poisson, weight, self.substructures),
             joints=ring.joints(self.friction),
             held=ring.abutments(moved),
-            loads=tuple(ring.loads(downwards)),
+            loads=loads,
             instants=self.times(),
             duration=self.duration,
             state=self.plane,

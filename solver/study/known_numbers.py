@@ -334,7 +334,9 @@ def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
     weight = answer.settings.structure().downwards[-1]
     bounds = answer.settings.statics.thrusts()
     assert bounds is not None
-    known = bounds[0] if moved[-1] > 0.0 else bounds[1]
+    known, largest = bounds
+    if moved[-1] < 0.0:
+        known = largest
     yield "thrust over weight", "", known, float(thrust[-1] / weight)
 
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import linprog
 
 from solver import discrete
+from solver.discrete.plane.voussoirs import LIVE
 from solver.latin import Latin, iterations, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
@@ -175,12 +176,33 @@ def test_the_limit_of_a_load_is_that_of_rigid_stones(place):
     settings = settings_of(
         place=place, place_load=[[0.0, place]], displacement=0.0, instants=3, **changes
     )
-    bare = settings.unloaded()
+    bare = settings.structure().without(LIVE)
     factors = load_factors(discretise(settings), discrete.discretise(bare))
     ring = settings.ring
     weight = bare.downwards[-1]
     limit = rigid_factor(ring, ring.span * (place - 0.5), weight)
     assert factors[-1] * 100.0 / weight == pytest.approx(limit, rel=0.01)
+
+
+def test_a_load_that_passes_brings_down_at_its_factor_and_not_before():
+    changes = {"voussoirs": 15, "displacement": 0.0, "instants": 21}
+    factor = QUANTITIES["live_factor"](run_of(live=200.0, **changes))
+    assert factor > 1.0
+    for share, falls in ((0.99, False), (1.01, True)):
+        heavier = settings_of(live=200.0 * share * factor, **changes)
+        assert (collapse_of(discretise(heavier)) is not None) is falls
+
+
+def test_the_closed_form_is_the_thrust_of_an_arch_with_hinges():
+    settings = settings_of(voussoirs=15, instants=5, abutment_load=MOVED)
+    problem = discretise(settings)
+    (exact,) = settings.exact(problem)
+    moved, thrust = settings.structure().loop(problem).along(reference_of(problem))
+    assert exact.across[-1] == pytest.approx(moved[-1])
+    assert thrust[-1] == pytest.approx(exact.up[-1], rel=2e-3)
+    # An elastic arch has no hinges yet, and one under a passing load has others.
+    assert not list(settings_of().exact(problem))
+    assert not list(settings.replace(live=100.0).exact(problem))
 
 
 def test_a_load_acts_at_its_place_whatever_the_mesh():

@@ -19,6 +19,9 @@ from solver.discrete.structure import Act, Axes, Loop
 HAUNCH = 0.2
 """Share of the ring from a springing to its haunch: near there a semicircle under its
 own weight opens on its outer side."""
+FILL = "fill on voussoir"
+LIVE = "load on voussoir"
+"""Names of loads on the outer side, before the number of the voussoir."""
 LEFT = "left abutment"
 RIGHT = "right abutment"
 
@@ -176,7 +179,9 @@ class Ring:
         held = []
         for name, body in ((LEFT, 0), (RIGHT, self.voussoirs + 1)):
             for axis, path in enumerate(moved):
-                displacement = path if body else np.zeros_like(path)
+                displacement = path
+                if not body:
+                    displacement = np.zeros_like(path)
                 where = f"{name} {'xy'[axis]}"
                 held.append(Held(where, body, feet, axis, displacement))
         return held
@@ -202,16 +207,9 @@ class Ring:
         return np.asarray(shares * (top - points[:, :, 1]))
 
     def under_load(self, places: Array) -> Array:
-        """Shares of nodes of the outer side in a load at places over time.
+        """Shares of outer nodes in a load, (voussoirs, n_nodes, n_instants).
 
-        Parameters
-        ----------
-        places
-            Places as shares of the ring from its left end, shape (n_instants,).
-
-        Returns
-        -------
-        Shares of both neighbours, shape (voussoirs, n_nodes, n_instants).
+        `places` over time are shares of the ring from its left end, (n_instants,).
         """
         passed = self.voussoirs * np.clip(places, 0.0, 1.0)
         below = np.minimum(passed.astype(np.intp), self.voussoirs - 1)
@@ -221,12 +219,12 @@ class Ring:
         shares[below, :, np.arange(len(places))] = np.maximum(1.0 - distance, 0.0).T
         return shares
 
-    def loads(self, downwards: Array) -> Iterator[Load]:
+    def loads(self, name: str, downwards: Array) -> Iterator[Load]:
         """Loads of forces on the outer side, (voussoirs, n_nodes, n_instants), N."""
         for number, force in enumerate(downwards, start=1):
             if np.any(force):
                 both = np.stack([np.zeros_like(force), -force], axis=1)
-                yield Load(f"load on voussoir {number}", number, self.back, both)
+                yield Load(f"{name} {number}", number, self.back, both)
 
 
 def _mapped(corners: Array) -> Mesh:
@@ -255,11 +253,16 @@ class Arch(Bodies):
     settles: bool = False
     above: Sequence[Act] = ()
 
+    def without(self, name: str) -> Arch:
+        """The arch without the loads of a name on its outer side."""
+        loads = [load for load in self.loads if not load.name.startswith(name)]
+        return replace(self, loads=loads)
+
     @property
     def downwards(self) -> Array:
         """Weight of all, with the loads on the outer side, shape (n_instants,), N."""
         loads = [load.force[:, 1].sum(axis=0) for load in self.loads]
-        return -np.sum([self.weights[1], *loads], axis=0)
+        return np.asarray(-np.sum([self.weights[1], *loads], axis=0))
 
     @property
     def _movement(self) -> tuple[str, int]:
@@ -287,5 +290,6 @@ class Arch(Bodies):
         for act in self.above:
             yield replace(act, points=self._as_shares(act.points))
         for act in super()._acts():
-            if not act.where.startswith("load on"):
+            # Those on every voussoir are drawn together.
+            if not act.where.startswith((FILL, LIVE)):
                 yield act

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
+from solver.arrays import Flags
 from solver.discrete import discretise
-from solver.discrete.plane.voussoirs import Arch
-from solver.laws import OPEN
+from solver.discrete.plane.voussoirs import LIVE, Arch
+from solver.laws import OPEN, Contact
 from solver.reference.limit_analysis import load_factors
-from solver.scenes.arch import ArchSettings
 from solver.settings.scene import Settings
 from solver.study.quantities.contact_measures import AT, instant_at
 from solver.study.quantities.finished import FinishedRun
@@ -51,14 +51,22 @@ def hinges(run: FinishedRun, at: float | None) -> float:
     instant = _instant(run, at)
     count = 0
     for law, _, points, _ in run.problem.rubbing.stacks:
-        touches = run.iterate.status[points, instant] != OPEN
-        firsts = np.cumsum(law.sizes) - law.sizes
-        lasts = firsts + law.sizes - 1
-        touching = np.add.reduceat(touches.astype(np.intp), firsts)
-        is_at_edge = touches[firsts] | touches[lasts]
-        is_hinge = (touching == 1) & is_at_edge & (law.sizes > 1)
-        count += np.count_nonzero(is_hinge)
+        touches = run.iterate.status[points, instant, None] != OPEN
+        count += int(np.count_nonzero(are_hinges(law, touches)))
     return float(count)
+
+
+def are_hinges(law: Contact, touches: Flags) -> Flags:
+    """Check which joints of a law touch at one edge alone, (n_joints, n_instants).
+
+    `touches` says at which points there is contact, (n_points, n_instants).
+    """
+    firsts = np.cumsum(law.sizes) - law.sizes
+    lasts = firsts + law.sizes - 1
+    touching = np.add.reduceat(touches.astype(np.intp), firsts)
+    is_at_edge = touches[firsts] | touches[lasts]
+    has_edges = (law.sizes > 1)[:, None]
+    return np.asarray((touching == 1) & is_at_edge & has_edges)
 
 
 @quantity(
@@ -70,6 +78,7 @@ def live_factor(run: FinishedRun) -> float:
 
     At the worst place of its way, by limit analysis.
     """
-    assert isinstance(run.settings, ArchSettings)
-    unloaded = discretise(run.settings.unloaded())
+    structure = run.settings.structure()
+    assert isinstance(structure, Arch)
+    unloaded = discretise(structure.without(LIVE))
     return float(load_factors(run.problem, unloaded).min())
