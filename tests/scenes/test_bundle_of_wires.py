@@ -88,7 +88,7 @@ def test_wires_press_on_each_other_as_hertz_says(elements, error):
         force = reference.contact(curve.interface).normal_force
         found = force[:, -1] / law.by_point(law.weights[:, None])[:, 0]
         known = curve.up[:, -1]
-        assert found.max() == pytest.approx(known.max(), rel=0.02)
+        assert found.max() == pytest.approx(known.max(), rel=0.03)
         # At its ends the pressure is steep.
         middle = found > 0.7 * known.max()
         np.testing.assert_allclose(found[middle], known[middle], rtol=error)
