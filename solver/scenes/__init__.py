@@ -6,6 +6,7 @@ from solver import discrete
 from solver.discrete.problem import Problem
 from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
+from solver.scenes.belt import BeltSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.bundle import BundleSettings
 from solver.scenes.fault import FaultSettings
@@ -28,6 +29,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         StrandSettings,
         WallSettings,
         ArchSettings,
+        BeltSettings,
         BundleSettings,
     )
 }

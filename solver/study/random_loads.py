@@ -208,6 +208,8 @@ def _scales(
     """Pressing force, and the motion and strains by a load as large, by their units."""
     if "construction" in given:
         return _scales_of_rope(kind, given, generator)
+    if "wrap" in given:
+        return _scales_of_band(given, generator)
     if "section" in given:
         return _scales_of_rod(given)
     if "slack" in given:
@@ -256,6 +258,16 @@ def _scales_of_rope(
         "N/m": tension * inclined**2 / radius,
         "m": strain * radius,
     }
+
+
+def _scales_of_band(given: Mapping[str, Any], generator: Generator) -> dict[str, float]:
+    """Scales of a band on a guide by unit, with a random strain of its tension."""
+    strain = 10.0 ** generator.uniform(-6.0, -2.0)
+    length = given["length"]
+    if given["guide"] == "drum":
+        length = math.radians(given["wrap"]) * given["drum_radius"]
+    tension = strain * given["young"] * given["section"]
+    return {"N": tension, "m": strain * length}
 
 
 def _scales_of_rod(given: Mapping[str, Any]) -> dict[str, float]:

@@ -71,7 +71,7 @@ def test_wires_in_alike_places_share_operators():
     assert max(owners.count(owner) for owner in operators) == 7
 
 
-@pytest.mark.parametrize(("elements", "error"), [(8, 0.06), (16, 0.03)])
+@pytest.mark.parametrize(("elements", "error"), [(8, 0.06), (16, 0.01)])
 def test_wires_press_on_each_other_as_hertz_says(elements, error):
     """The closed form: half an ellipse, of the force that is found."""
     settings = settings_of(elements=elements, **PRESSED)
@@ -88,10 +88,11 @@ def test_wires_press_on_each_other_as_hertz_says(elements, error):
         force = reference.contact(curve.interface).normal_force
         found = force[:, -1] / law.by_point(law.weights[:, None])[:, 0]
         known = curve.up[:, -1]
-        assert found.max() == pytest.approx(known.max(), rel=0.03)
+        assert found.max() == pytest.approx(known.max(), rel=0.5 * error)
         # At its ends the pressure is steep.
         middle = found > 0.7 * known.max()
-        np.testing.assert_allclose(found[middle], known[middle], rtol=error)
+        apart = np.abs(found - known)[middle]
+        assert apart.max() < error * known.max()
 
 
 def test_forces_on_wires_balance_plate_band_and_weight():

@@ -119,6 +119,7 @@ SOFT = {
     "wall": {"young": 1e7},
     "rope": {"curvature": 30.0},
     "arch": {"young": 1e6},
+    "belt": {"young": 1e7},
     "bundle": {"displacement": 1e-3},
 }
 

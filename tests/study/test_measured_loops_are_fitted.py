@@ -79,7 +79,7 @@ def made(
 def test_what_a_run_finds_is_compared_with_or_without_times(scene: str) -> None:
     run = run_of(scene)
     finds_force = beside(run, loop_from(run)).finds_force
-    assert finds_force == (scene not in ("bar", "strand", "fault"))
+    assert finds_force == (scene not in ("bar", "strand", "fault", "belt"))
     if finds_force:
         name = "force"
     else:

@@ -10,6 +10,7 @@ import math
 from dataclasses import replace
 
 import solver.study.quantities.arch_measures as arches
+import solver.study.quantities.belt_measures as belts
 import solver.study.quantities.contact_measures as contacts
 import solver.study.quantities.cycle_measures as cyclic
 import solver.study.quantities.holding_measures as holding
@@ -59,6 +60,8 @@ QUANTITIES = by_name(
     arches.thrust,
     arches.hinges,
     arches.live_factor,
+    belts.tension_ratio,
+    belts.torque,
     contacts.end_displacement,
     contacts.residual_displacement,
     contacts.stiffness,
