@@ -11,7 +11,6 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Joint
 from solver.discrete.plane.bundle import Wires
 from solver.discrete.plane.wires import Packing, Zone
 from solver.discrete.probes import LoopFields
@@ -272,20 +271,13 @@ class BundleSettings(PlaneSettings):
             force = solution.contact(joint.name).normal_force
             if force is None or not force.any():
                 continue
-            radius, modulus = self.contact_with(joint)
+            rounder, softer = self.wires.contact_of(joint)
             if joint.below is None and self.friction and self.poisson < UNCOUPLED:
                 continue
             positions = problem.rubbing[joint.name].positions
-            pressure = hertz(positions, force, radius, modulus)
+            sizes = rounder * self.length, softer * self.modulus
+            pressure = hertz(positions, force, *sizes)
             yield ExactCurve("pressure", positions, pressure, interface=joint.name)
-
-    def contact_with(self, joint: Joint) -> tuple[float, float]:
-        """Radius, m, and modulus, Pa, of the contact of a joint in the closed form."""
-        if joint.below is None:
-            return self.length, self.modulus
-        if joint.above == self.n_wires:
-            return self.length, 0.5 * self.modulus
-        return 0.5 * self.length, 0.5 * self.modulus
 
     def sentence(self) -> str:
         """Describe the bundle in a sentence."""

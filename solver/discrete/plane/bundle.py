@@ -139,6 +139,14 @@ class Wires:
                 joints.append(self._under_plate(number, wire, friction))
         return joints
 
+    def contact_of(self, joint: Joint) -> tuple[float, float]:
+        """Radius and modulus of a contact in Hertz's formula, over those of a wire."""
+        if joint.below is None:
+            return 1.0, 1.0
+        if joint.above == len(self.centres):
+            return 1.0, 0.5
+        return 0.5, 0.5
+
     def _joint(
         self,
         name: str,
