@@ -91,7 +91,7 @@ class ContactForce(View):
         else:
             self.y.rename("force", "N/m")
         self.x.rename(run.x_title(name), "m")
-        exact = _closed_forms(run, has_pressure=fields.pressure is not None)
+        exact = _closed_forms(run, name, has_pressure=fields.pressure is not None)
         self._scale(frame, name, fields, [curve.up for curve in exact])
         self._show_forces(interface, fields, run.reference.get(name), column)
         self._show_strength(interface, fields, column)
@@ -189,12 +189,13 @@ class ContactForce(View):
         self.draw("beside", results.positions[rows], results.values[rows], title)
 
 
-def _closed_forms(run: Run, *, has_pressure: bool) -> list[ExactCurve]:
+def _closed_forms(run: Run, name: str, *, has_pressure: bool) -> list[ExactCurve]:
     """Closed forms of the contact forces along an interface at all instants."""
     curves = run.known("friction")
     if has_pressure:
         curves = curves + run.known("pressure")
-    fields = [curve for curve in curves if curve.up.ndim == 2]
+    of_interface = [curve for curve in curves if curve.interface in ("", name)]
+    fields = [curve for curve in of_interface if curve.up.ndim == 2]
     return [curve for curve in fields if curve.across.ndim == 1]
 
 

@@ -8,6 +8,7 @@ from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
 from solver.scenes.belt import BeltSettings
 from solver.scenes.block import BlockSettings
+from solver.scenes.bundle import BundleSettings
 from solver.scenes.fault import FaultSettings
 from solver.scenes.incline import InclineSettings
 from solver.scenes.layers import LayersSettings
@@ -29,6 +30,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         WallSettings,
         ArchSettings,
         BeltSettings,
+        BundleSettings,
     )
 }
 

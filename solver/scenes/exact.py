@@ -125,7 +125,7 @@ def exact_parabola(
     half_width = HalfPlane(largest, radius, modulus).half_width
     if half_width > SMALL * min(body.length, body.height):
         return
-    pressure = _hertz(positions, contact.normal_force, radius, modulus)
+    pressure = hertz(positions, contact.normal_force, radius, modulus)
     yield ExactCurve("pressure", positions, pressure)
     shear = contact.tangential_force.sum(axis=0)
     begins = _begins(shear, total, friction)
@@ -137,7 +137,7 @@ def exact_parabola(
         yield ExactCurve("friction", positions, traction)
 
 
-def _hertz(
+def hertz(
     positions: Array, normal_force: Array, radius: float, modulus: float
 ) -> Array:
     """Pressure of Hertz about the middle of the forces, (n_points, n_instants), Pa.

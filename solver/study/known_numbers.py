@@ -370,6 +370,28 @@ def tensions(answer: SolvedCase) -> Iterator[Number]:
     yield "largest tension", "N", float(known.max()), float(found.max())
 
 
+def pressed_wires(answer: SolvedCase) -> Iterator[Number]:
+    """Largest pressure, and half-width of contact, where two wires press the most."""
+    settings = answer.settings
+    joints = settings.structure().joints
+    forces = {}
+    for joint in joints:
+        if joint.below is not None and joint.above < settings.n_wires:
+            pressing = answer.fields.contact(joint.name).normal_force
+            assert pressing is not None
+            forces[joint.name] = pressing[:, -1]
+    name = max(forces, key=lambda name: float(forces[name].sum()))
+    force = forces[name]
+    law = answer.problem.rubbing[name]
+    exact = settings.hertz(float(force.sum()))
+    lengths = law.by_point(law.weights[:, None])[:, 0]
+    yield "largest pressure", "Pa", exact.peak, float((force / lengths).max())
+    distances = law.positions - law.positions @ force / force.sum()
+    # Half the width is twice the root of the second moment of an elliptic pressure.
+    second = float(force @ distances**2 / force.sum())
+    yield "half-width of contact", "m", exact.half_width, 2.0 * float(np.sqrt(second))
+
+
 def moved_end(answer: SolvedCase) -> Iterator[Number]:
     """Force that moves an end of a rod with a free other end: sqrt(2 E S mu p u)."""
     rods = answer.settings.structure()

@@ -26,7 +26,7 @@ LARGEST_ON_BRICKS = 0.5
 else holds, get smaller ones."""
 FORWARD = 0.7
 """Share of the loads in the positive direction."""
-PRESSING = "pressure", "normal_stress", "tension"
+PRESSING = "pressure", "normal_stress", "tension", "press"
 """Loads that are as large as the pressing force itself."""
 WITHOUT_PATH = (
     "normal_stress",
@@ -42,6 +42,8 @@ SPRINGS = 1.0, 1e4
 """Stiffness of contacts over that of bodies."""
 
 
+CONTACTS = -3.5, -1.6
+"""Decimal logarithms of half a contact of round wires over their radius."""
 OPENING = 100.0
 """Motion of the abutment of an arch, over its radius and the strain of its weight, that
 opens joints."""
@@ -215,6 +217,8 @@ def _scales(
         return {"Pa": weight / given["length"], "m": weight / given["spring"]}
     if "voussoirs" in given:
         return _scales_of_arch(given)
+    if "rings" in given:
+        return _scales_of_wires(given, generator)
     return _scales_in_plane(kind, given, generator)
 
 
@@ -224,6 +228,19 @@ def _scales_of_arch(given: Mapping[str, Any]) -> dict[str, float]:
     volume = math.radians(given["span"]) * given["thickness"] * radius**2
     strain = given["unit_weight"] * radius / given["young"]
     return {"N": given["unit_weight"] * volume, "m": OPENING * strain * radius}
+
+
+def _scales_of_wires(
+    given: Mapping[str, Any], generator: Generator
+) -> dict[str, float]:
+    """Force on round wires whose contacts have a random width, and motions, by unit."""
+    half_width = 10.0 ** generator.uniform(*CONTACTS)
+    force = half_width**2 * given["young"] * given["length"]
+    return {
+        "N": force,
+        "m": force / given["young"],
+        "N/m^3": force / given["length"] ** 2,
+    }
 
 
 def _scales_of_rope(

@@ -40,8 +40,11 @@ SIZES = (
     "bricks",
     "courses",
     "voussoirs",
+    "rings",
 )
 """Numbers of a mesh; all decades are equally likely."""
+FEWEST = {"rings": 1}
+"""Smallest of these numbers, where it is not 2."""
 WIDE = {
     "poisson": (0.0, 0.4999),
     "friction": (0.02, 2.0),
@@ -75,6 +78,8 @@ OFTEN = {
 }
 """The same share of settings that change the kind of problem, or the method: all kinds
 of ends, sides, laws and loads are to come together."""
+OF_HEAPS = 0.3, 2.0
+"""Coefficients of friction in heaps of round wires."""
 WITH_OPENING = 0.4
 """Share of the walls with room for an opening that have one."""
 TRIALS = 10_000
@@ -149,7 +154,9 @@ def _mesh(kind: Any, generator: Generator) -> dict[str, Any]:
     values: dict[str, Any] = {"instants": _count(generator, fewest, MOST_INSTANTS)}
     for name in SIZES:
         if name in definitions:
-            values[name] = _count(generator, 2, definitions[name].softbounds[1])
+            smallest = FEWEST.get(name, 2)
+            largest = definitions[name].softbounds[1]
+            values[name] = _count(generator, smallest, largest)
     for part, whole in kind.PARTS.items():
         if part != "broken":
             largest = min(values[whole], definitions[part].softbounds[1])
@@ -193,6 +200,9 @@ def _fit_together(kind: Any, values: dict[str, Any], generator: Generator) -> No
         if min(room) > 0:
             sizes = generator.integers(1, np.add(room, 1)).tolist()
             values["opening"], values["opening_height"] = sizes
+    if values.get("arrangement") == "heap":
+        # On less friction heaps of several rows roll apart at once.
+        values["friction"] = float(generator.uniform(*OF_HEAPS))
     if "cycles" in values:
         # Every cycle takes instants of its own.
         values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // 4, 1))

@@ -49,6 +49,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "top": "pulled",
     },
     "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
+    "bundle": {"press": 5e4, "band": 1.5, "unit_weight": 1e4, "displacement": 1e-6},
     "arch": {"live": 100.0, "fill": 1e4, "abutment": "down", "span": 120.0},
     "belt": {"wrap": 200.0, "drum_radius": 0.2, "pull": 1300.0, "tail": "held"},
 }

@@ -32,6 +32,7 @@ SMALL = {
     "fault": {"elements": 24},
     "incline": {},
     "arch": {},
+    "bundle": {"rings": 1, "elements": 4},
 }
 PLAIN = {
     "start": "zero",

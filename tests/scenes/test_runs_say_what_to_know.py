@@ -120,6 +120,7 @@ SOFT = {
     "rope": {"curvature": 30.0},
     "arch": {"young": 1e6},
     "belt": {"young": 1e7},
+    "bundle": {"displacement": 1e-3},
 }
 
 

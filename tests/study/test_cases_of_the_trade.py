@@ -62,6 +62,7 @@ CHANGED: list[tuple[str, dict[str, Any], str, float, float]] = [
     ("elastic-bond", {"cohesion": 0.8e6}, "slipped_share", 1e-9, 1.0),
     ("crate", {"height": 0.7}, "peak_friction", 0.399 * 840, 0.401 * 840),
     ("fault", {"shear_stress": 4.8e6}, "slipped_share", 0.51, 1.0),
+    ("heap-of-logs", {"unit_weight": 24e3}, "peak_pressure", 2.32e6, 2.46e6),
 ]
 """What the cases say of their first changes: settings, quantity, and both ends of its
 value."""

@@ -15,9 +15,9 @@ from solver.refusal import RefusedError, Words
 
 RESERVED = "contacts", "supports"
 """Names of the laws of all joints between bodies, and of all on supports."""
-APART = 1e-6
-"""Largest distance of the nodes of a pair beyond their gap, over the length of the
-joint."""
+APART = 0.05
+"""Largest distance of the nodes of a pair beyond their gap, over the distance to the
+next node: the middles of edges lie inside a round body."""
 
 
 def check_names(named: Sequence[Body | Joint | Held | Load]) -> None:
@@ -115,13 +115,13 @@ def _check_normals(above: Body, joint: Joint) -> None:
 def _check_opposite(bodies: Sequence[Body], joint: Joint) -> None:
     """Refuse nodes of a pair that are farther apart than their gap."""
     first, second = [bodies[number].nodes[nodes] for number, nodes in joint.sides]
-    length = bodies[joint.above].shape.shares(joint.nodes).sum()
+    step = np.linalg.norm(np.diff(first, axis=0), axis=1).min(initial=np.inf)
     apart = np.linalg.norm(first - second, axis=1) - np.abs(joint.gap)
-    if np.any(apart > APART * length):
+    if np.any(apart > APART * step):
         number = int(apart.argmax())
         raise RefusedError(
             f"{joint}.nodes_below",
             Words(f"nodes {number} of both chains {apart[number]:g} m too far apart"),
-            f"nodes that face each other, up to the gap and {APART:g} of the length",
+            f"nodes that face each other, up to the gap and {APART:g} of a step",
             "list both chains in the same order, and mesh both bodies alike there",
         )

@@ -26,8 +26,11 @@ class ExactCurve:
         Vertical axis. Of tractions, N/m or Pa, and of an axial force, N, shape
         (n_positions, n_instants); of a front the instants, s, of a loop its force, N,
         shape (n_instants,) both.
+    interface
+        Name of the interface of tractions, where the scene has several; else "".
     """
 
     of: Of
     across: Array
     up: Array
+    interface: str = ""
