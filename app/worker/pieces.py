@@ -267,7 +267,8 @@ class _Joints:
         self._components = np.zeros(len(self._rows), dtype=np.intp)
         if problem.inside is not None:
             dofs = problem.row_dofs[self._rows]
-            self._components = problem.inside.components[dofs]
+            along = problem.inside.directions[dofs, :2]
+            self._components = np.abs(along).argmax(axis=1)
         self._positions = positions[self._rows]
         self._measure()
         self.macro = self._macro()

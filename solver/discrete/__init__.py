@@ -5,6 +5,10 @@ from __future__ import annotations
 from functools import singledispatch
 
 from solver.discrete.plane import stack_problem
+from solver.discrete.plane.beams import Beam
+from solver.discrete.plane.bodies import Bodies
+from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.meshes import Mesh
 from solver.discrete.plane.sides import Given, Side, Spring, Support
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
@@ -16,8 +20,15 @@ from solver.discrete.structure import Structure
 from solver.refusal import RefusedError, Words
 
 __all__ = [
+    "Beam",
+    "Bodies",
+    "Body",
     "End",
     "Given",
+    "Held",
+    "Joint",
+    "Load",
+    "Mesh",
     "Problem",
     "Rods",
     "Rope",
@@ -45,7 +56,7 @@ def discretise(structure: Structure) -> Problem:
     raise RefusedError(
         "structure",
         Words(f"of type {type(structure).__name__}"),
-        "Rods, Rope, Stack, or a type whose mesher is registered",
+        "Bodies, Rods, Rope, Stack, or a type whose mesher is registered",
         "register a function that makes its problem by discretise.register",
     )
 
@@ -53,3 +64,12 @@ def discretise(structure: Structure) -> Problem:
 discretise.register(Rods, cut_rods.problem_of)
 discretise.register(Rope, cut_rope.problem_of)
 discretise.register(Stack, stack_problem.problem_of)
+
+
+@discretise.register
+def _of_bodies(structure: Bodies) -> Problem:
+    """Discrete problem of bodies of any shape."""
+    # Other structures do not pay for the import of finite elements.
+    from solver.discrete.plane import bodies_problem
+
+    return bodies_problem.problem_of(structure)

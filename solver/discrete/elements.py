@@ -216,10 +216,19 @@ def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> A
         slenderness = ratio
     else:
         slenderness = 1.0 / ratio
+    return legendre_basis(np.linspace(-1.0, 1.0, n_points), slenderness, degree)
+
+
+def legendre_basis(positions: Array, slenderness: float, degree: int) -> Array:
+    """Legendre polynomials at positions from -1 to 1, (n,): shape (n, n_macro).
+
+    `slenderness` is the length over the depth behind it, `degree` that of a line that
+    is not long.
+    """
     # A long side has many soft waves, which the macro forces have to balance.
     wanted = round(degree * max(LONG_SIDES * np.sqrt(slenderness), 1.0))
-    highest = min(wanted, max(HIGHEST_DEGREE, degree), n_points - 1)
-    return np.asarray(legvander(np.linspace(-1.0, 1.0, n_points), highest))
+    highest = min(wanted, max(HIGHEST_DEGREE, degree), len(positions) - 1)
+    return np.asarray(legvander(positions, highest))
 
 
 class SchurComplement:

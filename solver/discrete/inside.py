@@ -1,50 +1,96 @@
-"""Rectangular substructures of bodies in the plane, and the fields inside them."""
+"""Substructures of bodies in the plane, and the fields inside them."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
 from solver.arrays import Array, Indices, read_only
-from solver.discrete.elements import Rectangle, SchurComplement, dofs_of
+from solver.discrete.elements import SchurComplement
 from solver.discrete.scales import Scales
-from solver.discrete.substructure import Elasticity
+from solver.discrete.substructure import Elasticity, Substructure
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
 that of a translation."""
+MOVES = 1e-6
+"""Smallest share in a free motion, over its size, of a body that moves."""
+N_AXES = 3
+"""Ways in which a node may move: along x, along y, and turning."""
 
 
-@dataclass(frozen=True, eq=False)
-class RectangularSubstructure:
-    """A rectangular substructure.
+class CondensedPart(Protocol):
+    """A substructure whose inside is condensed: what `Inside` asks of it."""
 
-    Attributes
-    ----------
-    rectangle, condensed, elasticity
-        Mesh, stiffness condensed onto its boundary rows, and operator; equal parts
-        share them.
-    nodes
-        Numbers of its nodes among those of all bodies, shape (n_rows, n_columns).
-    body
-        Number of its body.
-    rows
-        Boundary rows by joint or by the span of an outer side, shape (n_nodes,
-        n_components) each.
-    force
-        Nodal forces, scaled, shape (2 n_nodes, n_instants), or None.
-    """
+    @property
+    def condensed(self) -> SchurComplement:
+        """Stiffness condensed onto some of its degrees of freedom."""
 
-    rectangle: Rectangle
-    condensed: SchurComplement
-    elasticity: Elasticity
-    nodes: Indices
-    body: int
-    rows: Mapping[Hashable, Indices]
-    force: Array | None
+    @property
+    def elasticity(self) -> Elasticity:
+        """Operator, which equal parts share."""
+
+    @property
+    def rows(self) -> Mapping[Hashable, Indices]:
+        """Boundary rows by what has them, shape (n_nodes, n_components) each."""
+
+    @property
+    def nodes(self) -> Indices:
+        """Numbers of its nodes among those of all bodies, of any shape."""
+
+    @property
+    def body(self) -> int:
+        """Number of its body."""
+
+    @property
+    def force(self) -> Array | None:
+        """Forces on all its degrees of freedom, (n, n_instants), scaled, or None."""
+
+    @property
+    def dofs(self) -> Indices:
+        """Numbers of its degrees of freedom among those of all nodes, shape (n,).
+
+        Each node has `N_AXES` of these numbers, whether it uses them or not.
+        """
+
+    @property
+    def directions(self) -> Array:
+        """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
+
+    @property
+    def elements(self) -> Indices:
+        """Corners of every element among its own nodes, shape (n_elements, 4).
+
+        Triangles have their last corner twice, beams both ends twice.
+        """
+
+    def motion(self, moved: Array) -> Array:
+        """Displacement of its nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
+
+    def forces(self, nodal: Array) -> Array:
+        """Forces on its degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
+
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled.
+
+        `displacement` is that of its nodes, (n_nodes, 2), scaled by the length.
+        """
+
+
+def substructure_of(part: CondensedPart, dofs: Indices) -> Substructure:
+    """Substructure of a condensed part, with its degrees of freedom, (n_kept,)."""
+    body_force = None
+    if part.force is not None:
+        body_force = part.condensed.condense(part.force)
+    return Substructure(
+        elasticity=part.elasticity,
+        dofs=dofs,
+        rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
+        body_force=body_force,
+    )
 
 
 class Inside:
@@ -58,25 +104,26 @@ class Inside:
         Corners of every element, counter-clockwise, (n_elements, 4), and number of the
         body of every element, (n_elements,).
     grids
-        Nodes of every substructure, row by row from below, shape (n_rows, n_columns)
-        each.
+        Nodes of every substructure: of a rectangle row by row from below, shape
+        (n_rows, n_columns), of others in any order, (n_nodes,).
     dofs
         Degrees of freedom of the problem that each substructure keeps, (n_kept,) each.
-    positions, components
+    positions, directions
         Position of every degree of freedom of the problem, (n_dofs, 2), scaled, and its
-        component: 0 along x and 1 along y, (n_dofs,).
+        motion along x and y and its turn, (n_dofs, 3): a unit vector.
     """
 
     def __init__(
         self,
-        parts: Sequence[RectangularSubstructure],
+        parts: Sequence[CondensedPart],
         positions: Array,
         scales: Scales,
         n_instants: int,
     ) -> None:
         length = scales.displacement
-        kept = [dofs_of(part.nodes.ravel())[part.condensed.kept] for part in parts]
-        skeleton = np.unique(np.concatenate(kept))
+        kept = [part.dofs[part.condensed.kept] for part in parts]
+        along = [part.directions[part.condensed.kept] for part in parts]
+        skeleton, first = np.unique(np.concatenate(kept), return_index=True)
         self._parts = parts
         self._length = length
         self._young = scales.force / length
@@ -84,12 +131,12 @@ class Inside:
         self.dofs = [np.searchsorted(skeleton, dofs) for dofs in kept]
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
-        self.positions = positions[skeleton // 2]
-        corners = [part.nodes.ravel()[part.rectangle.elements] for part in parts]
+        self.positions = positions[skeleton // N_AXES]
+        corners = [part.nodes.ravel()[part.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(elements) for elements in corners]
         self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
-        self.components: Indices = skeleton % 2
+        self.directions: Array = np.concatenate(along)[first]
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Displacement of all nodes at n instants, (n_nodes, 2, n), m.
@@ -104,7 +151,7 @@ class Inside:
             if part.force is not None:
                 force = part.force[:, instants]
             of_part = part.condensed.recover(kept[dofs], force)
-            whole[part.nodes.ravel()] = of_part.reshape(-1, 2, n_instants)
+            whole[part.nodes.ravel()] = part.motion(of_part)
         return whole * self._length
 
     def adjoint(self, weights: Array) -> tuple[Array, Array]:
@@ -120,9 +167,10 @@ class Inside:
         nodes = np.concatenate([part.nodes.ravel() for part in self._parts])
         shares = weights / np.bincount(nodes)[:, None]
         for part, dofs in zip(self._parts, self.dofs, strict=True):
-            share = shares[part.nodes.ravel()].reshape(-1, 1)
-            if not share.any():
+            of_nodes = shares[part.nodes.ravel()]
+            if not of_nodes.any():
                 continue
+            share = part.forces(of_nodes)[:, None]
             np.add.at(total, dofs, part.condensed.condense(share)[:, 0])
             if part.force is not None:
                 # With the boundary held, only loads inside move the inner nodes.
@@ -133,19 +181,20 @@ class Inside:
     def of_part(self, number: int, nodes: Indices) -> tuple[Array, Array | None]:
         """Map from a substructure's degrees of freedom to the motion of its nodes.
 
-        `nodes` are numbers among its own, row by row from below, (n,). The matrix has
+        `nodes` are numbers among its own in the order of its grid, (n,). The matrix has
         shape (2 n, n_kept). Loads inside add a displacement, shape (2 n, n_instants),
         scaled; None without them.
         """
         part = self._parts[number]
         condensed = part.condensed
         n_kept = len(condensed.kept)
-        dofs = dofs_of(nodes)
-        matrix = condensed.recover(np.eye(n_kept), None)[dofs]
+        moved = part.motion(condensed.recover(np.eye(n_kept), None))[nodes]
+        matrix = moved.reshape(-1, n_kept)
         if part.force is None:
             return matrix, None
         held = np.zeros((n_kept, part.force.shape[1]))
-        return matrix, condensed.recover(held, part.force)[dofs]
+        given = part.motion(condensed.recover(held, part.force))[nodes]
+        return matrix, given.reshape(-1, held.shape[1])
 
     def stress(self, displacement: Array) -> Array:
         """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
@@ -153,15 +202,13 @@ class Inside:
         `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
         """
         scaled = displacement / self._length
-        parts = [
-            part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts
-        ]
+        parts = [part.stress(scaled[part.nodes.ravel()]) for part in self._parts]
         return self._young * np.concatenate(parts)
 
     @cached_property
     def body_of_dofs(self) -> Indices:
         """Number of the body of every degree of freedom of the problem, (n_dofs,)."""
-        bodies = np.empty(len(self.components), dtype=np.intp)
+        bodies = np.empty(len(self.directions), dtype=np.intp)
         for part, dofs in zip(self._parts, self.dofs, strict=True):
             bodies[dofs] = part.body
         return bodies
@@ -176,7 +223,7 @@ class Inside:
         bodies = self.body_of_dofs
         for body in np.unique(bodies):
             dofs = np.flatnonzero(bodies == body)
-            modes = self._rigid_modes(dofs)
+            modes = self.rigid_modes(dofs)
             # Motions that vanish where displacements are prescribed are those that stay
             # free.
             at_fixed = modes[np.isin(dofs, fixed)]
@@ -190,10 +237,10 @@ class Inside:
             return None
         return read_only(together)
 
-    def hold_still(
+    def free_groups(
         self, groups: Indices, fixed: Indices, jumps: Sequence[tuple[Indices, Indices]]
-    ) -> bool:
-        """Check whether groups of bodies cannot move where some displacements vanish.
+    ) -> Indices:
+        """Numbers of the groups of bodies that can move, (n,).
 
         Parameters
         ----------
@@ -211,17 +258,23 @@ class Inside:
         motions = np.zeros((len(groups) + 1, 3 * len(moving)))
         for number, group in enumerate(moving):
             dofs = np.flatnonzero(groups == group)
-            motions[dofs, 3 * number : 3 * number + 3] = self._rigid_modes(dofs)
-        hindered = [motions[fixed]]
-        hindered += [motions[above] - motions[below] for above, below in jumps]
-        sizes = np.linalg.svd(np.concatenate(hindered), compute_uv=False)
-        return int(np.count_nonzero(sizes > HELD)) == motions.shape[1]
+            motions[dofs, 3 * number : 3 * number + 3] = self.rigid_modes(dofs)
+        rows = [motions[fixed]]
+        rows += [motions[above] - motions[below] for above, below in jumps]
+        hindered = np.concatenate(rows)
+        sizes = np.linalg.svd(hindered, compute_uv=False)
+        count = int(np.count_nonzero(sizes > HELD))
+        if count == motions.shape[1]:
+            return moving[:0]
+        free = np.linalg.svd(hindered, full_matrices=True)[2][count:]
+        largest = np.abs(free).reshape(-1, len(moving), 3).max(axis=(0, 2))
+        return np.asarray(moving[largest > MOVES], dtype=np.intp)
 
-    def _rigid_modes(self, dofs: Indices) -> Array:
+    def rigid_modes(self, dofs: Indices) -> Array:
         """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
-        is_along_x = self.components[dofs] == 0
+        along_x, along_y, turn = self.directions[dofs].T
         x, y = (self.positions[dofs] - self.positions[dofs].mean(axis=0)).T
-        # About the mean position, where translations and rotation are independent.
-        rotation = np.where(is_along_x, -y, x)
-        modes = np.stack([is_along_x, ~is_along_x, rotation], axis=1)
-        return np.asarray(modes.astype(float))
+        # About the mean position, where translations and rotation are independent. A
+        # turn is an angle, not over the unit of length as displacements are.
+        rotation = x * along_y - y * along_x + turn / self._length
+        return np.stack([along_x, along_y, rotation], axis=1)

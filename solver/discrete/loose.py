@@ -12,12 +12,17 @@ from solver.laws import Contact
 
 
 def is_loose(problem: Problem) -> bool:
-    """Check whether bodies can move though all contacts are closed and stick.
+    """Check whether bodies can move though all contacts are closed and stick."""
+    return len(loose_bodies(problem)) > 0
 
-    False along rods, and beside a user's law, which may hold what it likes.
+
+def loose_bodies(problem: Problem) -> Indices:
+    """Numbers of the bodies that can move though all contacts are closed and stick.
+
+    Shape (n,); empty along rods, and beside a user's law, which may hold what it likes.
     """
     if problem.inside is None or problem.own_laws:
-        return False
+        return np.zeros(0, dtype=np.intp)
     tied = [np.zeros((2, 0), dtype=np.intp)]
     jumps = list[tuple[Indices, Indices]]()
     for law in problem.rubbing.laws.values():
@@ -29,7 +34,8 @@ def is_loose(problem: Problem) -> bool:
     bodies = problem.inside.body_of_dofs
     groups = _groups(bodies, np.concatenate(tied, axis=1))
     fixed, _ = problem.prescribed
-    return not problem.inside.hold_still(groups, fixed, jumps)
+    free = problem.inside.free_groups(groups, fixed, jumps)
+    return np.unique(bodies[np.isin(groups, free)])
 
 
 def _groups(bodies: Indices, tied: Indices) -> Indices:

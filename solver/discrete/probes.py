@@ -89,7 +89,24 @@ def side_mean(problem: Problem, side: str, component: int) -> Probe:
     inside = _inside(problem)
     ends, _ = _edges(inside, side)
     whole = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1).sum()
-    return _integral(inside, ends, component, np.full(ends.shape, 1.0 / whole))
+    return _integral(problem, ends, component, np.full(ends.shape, 1.0 / whole))
+
+
+def mean_held(problem: Problem, name: str, axis: int) -> Probe:
+    """Mean displacement along an axis that an interface of held nodes prescribes.
+
+    In m along x (0) and y (1), in rad of a turn (2).
+    """
+    dofs = problem.held_dofs[name]
+    along = _inside(problem).directions[dofs, axis]
+    return Probe(dofs, along / len(dofs))
+
+
+def node_sum(problem: Problem, weights: Array) -> Probe:
+    """Sum of the displacements of all nodes times weights, (n_nodes, 2), m."""
+    kept, constant = _inside(problem).adjoint(weights)
+    dofs = np.flatnonzero(kept)
+    return Probe(dofs, kept[dofs], constant)
 
 
 def end_rotation(problem: Problem) -> Probe:
@@ -109,7 +126,7 @@ def end_rotation(problem: Problem) -> Probe:
     np.maximum.at(high, bodies, y.max(axis=0))
     lever = y - (0.5 * (low + high))[bodies]
     density = -12.0 / count / ((high - low) ** 3)[bodies] * lever
-    return _integral(inside, ends, 0, density)
+    return _integral(problem, ends, 0, density)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,13 +173,13 @@ class Reaction:
 def reaction(problem: Problem, name: str, component: int | None = None) -> Reaction:
     """Sum of the forces that hold an interface of prescribed displacements, N.
 
-    In the plane those of one component are counted, 0 along x and 1 along y, or of
-    both.
+    In the plane those of one component are counted, 0 along x, 1 along y and 2 the
+    moments, N m; along rods there is one.
     """
     held = np.zeros(problem.n_dofs)
     held[problem.held_dofs[name]] = 1.0
     if component is not None:
-        held[_inside(problem).components != component] = 0.0
+        held *= _inside(problem).directions[:, component]
     return _weighted_reaction(problem, held)
 
 
@@ -172,10 +189,10 @@ def reaction_moment(problem: Problem, name: str) -> Reaction:
     Counter-clockwise, for a metre of thickness.
     """
     x, y = problem.positions.T
-    components = _inside(problem).components
+    along_x, along_y, turn = _inside(problem).directions.T
     held = np.zeros(problem.n_dofs)
     dofs = problem.held_dofs[name]
-    held[dofs] = np.where(components == 0, -y, x)[dofs]
+    held[dofs] = (x * along_y - y * along_x + turn)[dofs]
     return _weighted_reaction(problem, held)
 
 
@@ -282,16 +299,15 @@ def _edges(inside: Inside, side: str) -> tuple[Indices, Indices]:
     return ends[:, along], inside.bodies[np.nonzero(along)[0]]
 
 
-def _integral(inside: Inside, ends: Indices, component: int, density: Array) -> Probe:
+def _integral(problem: Problem, ends: Indices, component: int, density: Array) -> Probe:
     """Integral over edges of a displacement component times a density linear on each.
 
     `ends` are the nodes at both ends of n edges, `density` the values there, (2, n).
     """
+    inside = _inside(problem)
     length = np.linalg.norm(np.subtract(*inside.nodes[ends]), axis=1)
     # Simpson's rule, exact for the product of two linear functions.
     shares = length / 6.0 * (density + density.sum(axis=0))
     weights = np.zeros_like(inside.nodes)
     np.add.at(weights[:, component], ends, shares)
-    kept, constant = inside.adjoint(weights)
-    dofs = np.flatnonzero(kept)
-    return Probe(dofs, kept[dofs], constant)
+    return node_sum(problem, weights)

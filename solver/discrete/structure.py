@@ -98,6 +98,26 @@ class Hold:
 
 
 @dataclass(frozen=True, eq=False)
+class Footing:
+    """Line of points at which bodies of any shape are supported or held.
+
+    Attributes
+    ----------
+    kind
+        A support is rigid and rough; rollers hold along their normal alone.
+    points
+        Points on the undeformed bodies, shape (n, 2), as shares of their length and
+        height.
+    outward
+        Unit vectors out of the bodies, into what holds them, shape (n, 2).
+    """
+
+    kind: Literal["rollers", "support"]
+    points: Array
+    outward: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Description:
     """Description of a structure for drawings, before anything is solved.
 
@@ -119,6 +139,8 @@ class Description:
     broken
         Number of the broken body, from 0, and position of the break, m; None where no
         body is broken.
+    footings
+        Supports and held nodes of bodies of any shape, whose sides have no names.
     """
 
     bodies: int
@@ -129,6 +151,7 @@ class Description:
     holds: Sequence[Hold]
     tilt: Array | None = None
     broken: tuple[int, float] | None = None
+    footings: Sequence[Footing] = ()
 
     def __post_init__(self) -> None:
         """Leave out loads and displacements that are always zero."""
@@ -177,7 +200,7 @@ class Loop:
 
 
 class Structure(Protocol):
-    """Bodies, supports and loads as plain data: `Rods`, `Rope`, `Stack`."""
+    """Bodies, supports and loads as plain data: `Rods`, `Rope`, `Stack`, `Bodies`."""
 
     @property
     def axes(self) -> Axes:

@@ -102,11 +102,15 @@ class BodyStiffness:
     depth
         Depth of the bodies across the interface at each pair, shape (n_pairs,), or one
         for all pairs, m; infinite where nothing limits it.
+    shares
+        Share of each pair in the k of its interface, shape (n_pairs,), where it is not
+        that in its area; None where it is.
     """
 
     above: Array | float = 1.0
     below: Array | float = float("inf")
     depth: Array | float = float("inf")
+    shares: Array | None = None
 
     elsewhere: ClassVar[float] = 8.0
     on_cuts: ClassVar[float] = 1.0
@@ -135,6 +139,8 @@ class BodyStiffness:
             pressing = CONTACT_STIFFNESS * self._slender(law, length)
             sliding = SLIDING_BETWEEN_BODIES * pressing
         share = law.weights / length
+        if self.shares is not None:
+            share = self.shares
         for component in law.components:
             stiffness = sliding if component is law.tangent else pressing
             for rows, modulus in zip(

@@ -193,10 +193,11 @@ def _collapse_at(
 def _tips(problem: Problem, mechanism: Array) -> bool:
     """Check whether points of a body move apart in a mechanism, shape (n_dofs,)."""
     assert problem.inside is not None
-    component = problem.inside.components
     for part in problem.substructures:
-        for axis in (0, 1):
-            dofs = part.dofs[component[part.dofs] == axis]
-            if len(dofs) and float(np.ptp(mechanism[dofs])) > TURNED:
-                return True
+        moved = mechanism[part.dofs]
+        modes = problem.inside.rigid_modes(part.dofs)
+        # All but what a translation explains.
+        shares, *_ = np.linalg.lstsq(modes[:, :2], moved)
+        if float(np.ptp(moved - modes[:, :2] @ shares)) > TURNED:
+            return True
     return False

@@ -190,15 +190,16 @@ def _of_wires(rope: Rope, displacement: Array) -> float:
 def _in_plane(inside: Inside, displacement: Array) -> float:
     """Largest derivative in the plane, from displacement, (n_dofs, n_instants), m."""
     corners = inside.nodes[inside.elements]
-    width, height = (corners[:, 2] - corners[:, 0]).T[:, :, None, None]
+    diagonals = corners[:, 2:] - corners[:, :2]
+    # Of a beam both diagonals are its axis, along which alone there is a derivative.
+    inverses = np.linalg.pinv(diagonals)
     # Displacements of all nodes at all instants may exceed the memory.
     step = max(1, AT_ONCE // len(inside.nodes))
     largest = 0.0
     for first in range(0, displacement.shape[1], step):
         moved = inside.displacement(displacement, slice(first, first + step))
-        # Corners of elements, counter-clockwise from the lower left one
-        a, b, c, d = (moved[corner] for corner in inside.elements.T)
-        along = 0.5 * (b - a + c - d) / width
-        up = 0.5 * (d - a + c - b) / height
-        largest = max(largest, float(np.abs([along, up]).max()))
+        of_corners = moved[inside.elements]
+        changes = of_corners[:, 2:] - of_corners[:, :2]
+        gradients = np.einsum("eij,ejct->eict", inverses, changes)
+        largest = max(largest, float(np.abs(gradients).max()))
     return largest

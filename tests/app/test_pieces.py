@@ -143,9 +143,8 @@ def unbalance_of_piece(
     at = [pieces.quarters[is_own].reshape(-1, 2)]
     part = problem.substructures[piece]
     if part.body_force is not None:
-        given = np.zeros((len(part.dofs), 2, problem.n_instants))
-        components = problem.inside.components[part.dofs]
-        given[np.arange(len(part.dofs)), components] = part.body_force
+        along = problem.inside.directions[part.dofs, :2]
+        given = along[:, :, None] * part.body_force[:, None]
         forces.append(given * problem.scales.force)
         at.append(problem.positions[part.dofs])
     force = np.concatenate(forces)

@@ -168,7 +168,7 @@ def by_place(problem: Problem) -> dict[tuple[Any, ...], int]:
     return {
         (int(body), *np.round(place, 9).tolist(), int(component)): dof
         for dof, (body, place, component) in enumerate(
-            zip(bodies, inside.positions, inside.components, strict=True)
+            zip(bodies, inside.positions, inside.directions[:, 1], strict=True)
         )
     }
 
@@ -198,12 +198,7 @@ def test_tractions_and_weight_add_up_to_their_resultants() -> None:
     problem = discretise(stack)
     inside = problem.inside
     assert inside is not None
-    total = np.stack(
-        [
-            external_force(problem)[inside.components == number].sum(axis=0)
-            for number in (0, 1)
-        ]
-    )
+    total = inside.directions[:, :2].T @ external_force(problem)
     assert stack.body_force is not None
     top = np.stack([given.mean for given in stack.sides["top"]])
     area = stack.length * stack.height
@@ -224,7 +219,7 @@ def test_a_side_is_loaded_where_bodies_reach_farthest_and_not_beside_them() -> N
     assert inside is not None
     top = stack.sides["top"].x.mean
     # Where the lower body stands out below the upper one its top lies open, too.
-    along = external_force(problem)[inside.components == 0].sum(axis=0)
+    along = inside.directions[:, 0] @ external_force(problem)
     wanted = pull * stack.height + top * stack.length
     assert close(along * problem.scales.force, wanted)
 

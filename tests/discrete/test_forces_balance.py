@@ -68,8 +68,9 @@ def loads_of(problem: Problem) -> tuple[Array, Array, Array]:
     assert problem.inside is not None
     force = external_force(problem) * problem.scales.force
     (x, y) = problem.positions.T
-    is_along = problem.inside.components == 0
-    return is_along @ force, ~is_along @ force, np.where(is_along, -y, x) @ force
+    along_x, along_y, turn = problem.inside.directions.T
+    moment = x * along_y - y * along_x + turn
+    return along_x @ force, along_y @ force, moment @ force
 
 
 def on_supports(

@@ -37,8 +37,8 @@ def reaction(iterate, side):
     problem = iterate.problem
     rows = problem.interfaces[side].rows
     force = iterate.boundary_force[rows] * problem.scales.force
-    components = problem.inside.components[problem.row_dofs[rows]]
-    return np.stack([force[components == number].sum(axis=0) for number in (0, 1)])
+    along = problem.inside.directions[problem.row_dofs[rows], :2]
+    return along.T @ force
 
 
 def stress(iterate, instant=-1):

@@ -150,7 +150,7 @@ def test_the_slope_of_a_sheared_body_is_its_shear_and_sliding_is_none():
     settings = CATALOGUE["block"].checked(SMALL["block"])
     structure = settings.structure()
     problem = discretise(settings)
-    along = np.where(problem.inside.components == 0, 1.0, 0.0)[:, None]
+    along = problem.inside.directions[:, :1]
     ones = np.ones((1, problem.n_instants))
     assert largest_strain(structure, problem, along * ones) < 1e-12
     settings = CATALOGUE["fault"].checked({**SMALL["fault"], "friction": 10.0})

@@ -27,7 +27,7 @@ class Brick(NamedTuple):
         return along, up
 
 
-class Joint(NamedTuple):
+class BrickJoint(NamedTuple):
     """Line along which two rectangles, or a rectangle and its support, touch.
 
     `above` is the number of the rectangle above or to the right, `below` that of the
@@ -136,14 +136,14 @@ def grouped(bricks: Sequence[Brick], size: tuple[int, int], count: int) -> Indic
     return groups
 
 
-def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
+def joints_of(bricks: Sequence[Brick]) -> list[BrickJoint]:
     """All joints of rectangles that do not overlap, also those on the support."""
     lying = np.array(bricks).T
     upright = lying[[1, 0, 3, 2]]
     joints = []
     for above, brick in enumerate(bricks):
         if brick.y == 0:
-            joints.append(Joint(above, None, brick.x, brick.x + brick.columns))
+            joints.append(BrickJoint(above, None, brick.x, brick.x + brick.columns))
         # Upright joints are lying ones with both axes exchanged.
         for is_upright, (x, y, columns, rows) in enumerate((lying, upright)):
             ends = x + columns
@@ -151,5 +151,7 @@ def joints_of(bricks: Sequence[Brick]) -> list[Joint]:
                 first = int(max(x[above], x[below]))
                 last = int(min(ends[above], ends[below]))
                 if last > first:
-                    joints.append(Joint(above, below, first, last, bool(is_upright)))
+                    joints.append(
+                        BrickJoint(above, below, first, last, bool(is_upright))
+                    )
     return joints

@@ -21,8 +21,8 @@ from solver.discrete.elements import (
     elastic_matrix,
     side_basis,
 )
-from solver.discrete.inside import RectangularSubstructure
-from solver.discrete.plane.bricks import Brick, Joint, joints_of
+from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
+from solver.discrete.plane.rectangular_parts import RectangularSubstructure
 from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import Stack
 from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
@@ -227,14 +227,14 @@ class CutStack:
             grids.append(np.stack(np.meshgrid(x[along], y[up]), axis=-1))
         return grids
 
-    def _joints(self) -> list[Joint]:
+    def _joints(self) -> list[BrickJoint]:
         """Joints of substructures; those with a support only where there is one."""
         joints = joints_of([piece.rectangle for piece in self._pieces])
         if self.stack.support is not None:
             return joints
         return [joint for joint in joints if joint.below is not None]
 
-    def _covered_by(self, joints: Sequence[Joint]) -> dict[tuple[int, str], Flags]:
+    def _covered_by(self, joints: Sequence[BrickJoint]) -> dict[tuple[int, str], Flags]:
         """Elements of each side of a substructure that joints cover, (elements,)."""
         covered = dict[tuple[int, str], Flags]()
         for joint in joints:
@@ -252,7 +252,9 @@ class CutStack:
             return rectangle.rows, rectangle.y
         return rectangle.columns, rectangle.x
 
-    def _paired(self, joints: Sequence[Joint]) -> dict[Joint, tuple[Indices, Array]]:
+    def _paired(
+        self, joints: Sequence[BrickJoint]
+    ) -> dict[BrickJoint, tuple[Indices, Array]]:
         """Pairs of nodes of those joints that have any, (n_pairs,) each, as `pairs`."""
         pairs = {joint: self._pairs_of(joint) for joint in joints}
         return {joint: found for joint, found in pairs.items() if len(found[0])}
@@ -339,19 +341,19 @@ class CutStack:
         """Number of the body of a substructure."""
         return self._pieces[number].body
 
-    def bodies(self, joint: Joint) -> tuple[int, int | None]:
+    def bodies(self, joint: BrickJoint) -> tuple[int, int | None]:
         """Body above or to the right of a joint, and the other one (None: support)."""
         above = self._pieces[joint.above].body
         if joint.below is None:
             return above, None
         return above, self._pieces[joint.below].body
 
-    def is_within_body(self, joint: Joint) -> bool:
+    def is_within_body(self, joint: BrickJoint) -> bool:
         """Check whether both sides of a joint are of one body, which is glued there."""
         above, below = self.bodies(joint)
         return above == below
 
-    def has_macro(self, joint: Joint) -> bool:
+    def has_macro(self, joint: BrickJoint) -> bool:
         """Check whether macro forces balance on a joint.
 
         They do on cuts and between bodies of different groups, not on the support.
@@ -362,7 +364,7 @@ class CutStack:
             return below is not None
         return bool(groups[above] != groups[below])
 
-    def name(self, joint: Joint) -> str:
+    def name(self, joint: BrickJoint) -> str:
         """Name of the interface to which a joint belongs."""
         above, below = self.bodies(joint)
         if joint.below is not None and above == below:
@@ -377,7 +379,7 @@ class CutStack:
             return f"support and brick {above + 1}"
         return f"brick {below + 1} and brick {above + 1}"
 
-    def basis(self, joint: Joint, which: int) -> Array:
+    def basis(self, joint: BrickJoint, which: int) -> Array:
         """Macro basis of one component on a joint, (n_points, n_macro).
 
         `which` is the side of the joint whose substructure gives the degree: 0 is the
@@ -387,7 +389,7 @@ class CutStack:
         part = self.parts[number]
         return self._basis(part.rectangle, side, len(part.rows[joint]))
 
-    def entries(self, joint: Joint) -> tuple[Indices, Indices, Array]:
+    def entries(self, joint: BrickJoint) -> tuple[Indices, Indices, Array]:
         """Macro basis of one component on a joint from above: rows, columns, values.
 
         Columns ascend; entries that are zero are left out.
@@ -406,14 +408,14 @@ class CutStack:
         columns, rows = np.nonzero(basis.T)
         return rows, columns, basis[rows, columns]
 
-    def _is_known(self, joint: Joint) -> bool:
+    def _is_known(self, joint: BrickJoint) -> bool:
         """Check whether a joint is with a support of known strength."""
         support = self.stack.support
         return (
             joint.below is None and support is not None and support.strength is not None
         )
 
-    def _pairs_of(self, joint: Joint) -> tuple[Indices, Array]:
+    def _pairs_of(self, joint: BrickJoint) -> tuple[Indices, Array]:
         """Nodes of a joint on the grid, and their scaled lengths, (n_pairs,) both."""
         before, after = self._left_out(joint)
         count = joint.last - joint.first
@@ -426,7 +428,7 @@ class CutStack:
         nodes = np.arange(joint.first, joint.last + 1)
         return nodes[paired], lengths[paired]
 
-    def _left_out(self, joint: Joint) -> tuple[bool, bool]:
+    def _left_out(self, joint: BrickJoint) -> tuple[bool, bool]:
         """Check whether the first, and the last, node of a joint has no pair.
 
         A lying joint has no pair at an end where the left or right side prescribes the

@@ -15,16 +15,16 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.inside import Inside, RectangularSubstructure
+from solver.discrete.inside import Inside, substructure_of
 from solver.discrete.loose import is_loose
-from solver.discrete.plane.bricks import Joint
+from solver.discrete.plane.bricks import BrickJoint
 from solver.discrete.plane.cut_stack import CutStack, Span
+from solver.discrete.plane.rectangular_parts import RectangularSubstructure
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.scales import Scales
-from solver.discrete.substructure import Substructure
 from solver.laws import (
     BodyStiffness,
     Component,
@@ -63,7 +63,7 @@ def problem_of(stack: Stack) -> Problem:
     )
     problem = Problem(
         substructures=tuple(
-            _substructure(part, dofs)
+            substructure_of(part, dofs)
             for part, dofs in zip(cut.parts, inside.dofs, strict=True)
         ),
         interfaces=dict(_interfaces(cut, contacts)),
@@ -93,19 +93,6 @@ def _is_moved(side: Side) -> bool:
     return any(component.prescribed for component in side)
 
 
-def _substructure(part: RectangularSubstructure, dofs: Indices) -> Substructure:
-    """Substructure of a rectangular part, with its degrees of freedom, (n_kept,)."""
-    body_force = None
-    if part.force is not None:
-        body_force = part.condensed.condense(part.force)
-    return Substructure(
-        elasticity=part.elasticity,
-        dofs=dofs,
-        rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
-        body_force=body_force,
-    )
-
-
 def _rest(stack: Stack, inside: Inside) -> Array | None:
     """Displacement of the body that rests on its support, (n_dofs, n_instants), scaled.
 
@@ -115,18 +102,18 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     if rigid is None:
         return None
     x, y = inside.positions.T
-    components = inside.components
-    modes = np.stack([components, np.where(components == 1, x, -y)], axis=1)
+    along_x, along_y, _ = inside.directions.T
+    modes = np.stack([along_y, x * along_y - y * along_x], axis=1)
     rest = np.asarray(modes @ (rigid / np.array([[stack.length], [1.0]])))
     if stack.spring is not None:
         slide = rigid_slide(stack, stack.spring) / stack.length
-        rest += np.outer(components == 0, slide)
+        rest += np.outer(along_x, slide)
     return rest
 
 
-def _contacts_of(cut: CutStack) -> dict[str, list[Joint]]:
+def _contacts_of(cut: CutStack) -> dict[str, list[BrickJoint]]:
     """Joints of each contact by its name, in the order of the joints."""
-    contacts = dict[str, list[Joint]]()
+    contacts = dict[str, list[BrickJoint]]()
     for joint in cut.pairs:
         if not cut.is_within_body(joint):
             contacts.setdefault(cut.name(joint), []).append(joint)
@@ -134,7 +121,7 @@ def _contacts_of(cut: CutStack) -> dict[str, list[Joint]]:
 
 
 def _interfaces(
-    cut: CutStack, contacts: Mapping[str, Sequence[Joint]]
+    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]
 ) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed sides."""
     stack = cut.stack
@@ -154,7 +141,7 @@ def _interfaces(
 
 
 def _laws_of_contact(
-    cut: CutStack, contacts: Mapping[str, Sequence[Joint]]
+    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]
 ) -> Iterator[tuple[str, Contact]]:
     """Yield a law for all contacts with the support, and one for those of bodies."""
     alike = dict[str, list[str]]()
@@ -168,7 +155,7 @@ def _laws_of_contact(
         yield key, _contact(cut, {name: contacts[name] for name in names})
 
 
-def _glued(cut: CutStack, joint: Joint) -> Perfect:
+def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
     """Perfect interface of two substructures of one body."""
     rows_above, rows_below = _rows_of(cut, [joint])
     macro = np.asarray(np.kron(cut.basis(joint, 1), np.eye(2)))
@@ -197,7 +184,7 @@ class _Pairs(NamedTuple):
         Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
     """
 
-    joints: Sequence[Joint]
+    joints: Sequence[BrickJoint]
     counts: Indices
     contacts: Indices
     bodies: Indices
@@ -207,7 +194,7 @@ class _Pairs(NamedTuple):
     areas: Array
 
 
-def _pairs_of(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> _Pairs:
+def _pairs_of(cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]) -> _Pairs:
     """Pairs of nodes of contacts."""
     joints = list(chain.from_iterable(contacts.values()))
     n_joints = [len(of_contact) for of_contact in contacts.values()]
@@ -231,7 +218,7 @@ def _pairs_of(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> _Pairs:
     )
 
 
-def _contact(cut: CutStack, contacts: Mapping[str, Sequence[Joint]]) -> Contact:
+def _contact(cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]) -> Contact:
     """Law of contacts by name: of bodies with the support, or with each other."""
     stack = cut.stack
     pairs = _pairs_of(cut, contacts)
@@ -371,7 +358,7 @@ def _macro_basis(cut: CutStack, pairs: _Pairs) -> sparse.csr_array | None:
     return sparse.csr_array((np.concatenate(values), entries), shape=shape)
 
 
-def _rows_of(cut: CutStack, joints: Sequence[Joint]) -> list[Indices]:
+def _rows_of(cut: CutStack, joints: Sequence[BrickJoint]) -> list[Indices]:
     """Boundary rows of each side of joints, the one above first.
 
     Each has shape (n_points, n_components); a support has no rows.

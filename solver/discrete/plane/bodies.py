@@ -1,0 +1,244 @@
+"""Bodies of any shape in the plane as a structure: checks, loop and description."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.checks import (
+    INSTANTS,
+    POSITIVE,
+    Choice,
+    Count,
+    Each,
+    Part,
+    check,
+    check_value,
+)
+from solver.discrete.plane.bodies_refused import (
+    check_held,
+    check_joint,
+    check_load,
+    check_names,
+    check_weight,
+)
+from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.probes import constant, mean_held, node_sum, reaction
+from solver.discrete.problem import Problem
+from solver.discrete.structure import Act, Axes, Description, Footing, Loop
+from solver.laws import FrictionLaw
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Bodies of any shape, joints between them, and what holds and loads them.
+
+    Attributes
+    ----------
+    bodies, joints, held, loads
+        Bodies, by whose numbers the others name them.
+    instants, duration
+        Times, shape (n_instants,), and the unit of time, s.
+    state
+        "strain" or "stress", of all meshes.
+    friction_law
+        Friction law of all joints, beside the coefficients.
+    macro_degree
+        Degree of the macro basis on every piece of a joint or cut.
+    shown
+        Name of what the loop shows: a Held or a Load; None is the first.
+
+    Raises
+    ------
+    RefusedError
+        For names that occur twice, numbers of bodies and nodes that do not exist, nodes
+        of a joint that follow no edges or do not face each other, and normals that
+        point into the body below.
+    """
+
+    bodies: Sequence[Body]
+    joints: Sequence[Joint]
+    held: Sequence[Held]
+    loads: Sequence[Load]
+    instants: Array
+    duration: float
+    state: str = "strain"
+    friction_law: FrictionLaw = field(default_factory=FrictionLaw)
+    macro_degree: int = 1
+    shown: str | None = None
+
+    def __post_init__(self) -> None:
+        check(
+            self,
+            bodies=Each(Part(Body)),
+            instants=INSTANTS,
+            duration=POSITIVE,
+            state=Choice(("strain", "stress")),
+            friction_law=Part(FrictionLaw),
+            macro_degree=Count(0),
+        )
+        # There may be none of these.
+        for name, kind in (("joints", Joint), ("held", Held), ("loads", Load)):
+            if getattr(self, name):
+                check_value(f"Bodies.{name}", getattr(self, name), Each(Part(kind)))
+        check_names(self.bodies)
+        # Joints and holds are interfaces of one problem.
+        check_names([*self.joints, *self.held, *self.loads])
+        if self.shown is not None:
+            shown = [each.name for each in self._given]
+            check_value("Bodies.shown", self.shown, Choice(tuple(shown)))
+        instants = len(self.instants)
+        for body in self.bodies:
+            check_weight(body, instants)
+        for joint in self.joints:
+            check_joint(self.bodies, joint)
+        for held in self.held:
+            check_held(self.bodies, held, instants)
+        for load in self.loads:
+            check_load(self.bodies, load, instants)
+
+    @cached_property
+    def first_nodes(self) -> Indices:
+        """Number of the first node of each body among those of all, (n_bodies + 1,).
+
+        Nodes of all bodies follow each other; the last number is how many there are.
+        """
+        sizes = [len(body.shape.nodes) for body in self.bodies]
+        return np.cumsum([0, *sizes])
+
+    @cached_property
+    def box(self) -> tuple[Array, Array]:
+        """Lower left corner of all bodies, and their size, shape (2,) both, m."""
+        nodes = np.concatenate([body.nodes for body in self.bodies])
+        return nodes.min(axis=0), np.ptp(nodes, axis=0)
+
+    @property
+    def _given(self) -> list[Held | Load]:
+        """Holds, and after them loads."""
+        return [*self.held, *self.loads]
+
+    @property
+    def _shown(self) -> Held | Load | None:
+        """Held or Load that the loop shows; None where nothing is held or loaded."""
+        for each in self._given:
+            if self.shown in (None, each.name):
+                return each
+        return None
+
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        shown = self._shown
+        if shown is None:
+            return ("Mean displacement along y", "m"), ("Weight along y", "N")
+        if isinstance(shown, Held) and shown.axis == 2:
+            return (f"Rotation of {shown.name}", "rad"), (
+                f"Moment on {shown.name}",
+                "N·m",
+            )
+        return (f"Displacement of {shown.name}", "m"), (f"Force on {shown.name}", "N")
+
+    def loop(self, problem: Problem) -> Loop:
+        """Loop of what is shown: the mean displacement that its force works on."""
+        shown = self._shown
+        if isinstance(shown, Held):
+            force = reaction(problem, shown.name, shown.axis).of
+            return Loop(*self.axes, mean_held(problem, shown.name, shown.axis), force)
+        weights = np.zeros((self.first_nodes[-1], 2))
+        if shown is None:
+            weights[:, 1] = 1.0 / len(weights)
+            return Loop(
+                *self.axes, node_sum(problem, weights), constant(self.weights[1]).of
+            )
+        pattern = shown.pattern
+        sizes = np.linalg.norm(pattern, axis=1)
+        towards = pattern / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+        nodes = self.first_nodes[shown.body] + shown.nodes
+        weights[nodes] = pattern / (sizes.sum() or 1.0)
+        force = np.einsum("na,nat->t", towards, shown.force)
+        return Loop(*self.axes, node_sum(problem, weights), constant(force).of)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weight of all bodies together, shape (2, n_instants), N."""
+        whole = np.zeros((2, len(self.instants)))
+        for body in self.bodies:
+            if body.weight is not None:
+                whole += body.shape.volume * body.weight
+        return whole
+
+    def description(self) -> Description:
+        """Description of the bodies for drawings."""
+        _, (length, height) = self.box
+        return Description(
+            bodies=len(self.bodies),
+            length=float(length),
+            height=float(height),
+            instants=self.instants,
+            acts=tuple(self._acts()),
+            holds=(),
+            footings=tuple(self._footings()),
+        )
+
+    def _acts(self) -> Iterator[Act]:
+        """Loads, prescribed displacements, and the weight."""
+        for held in self.held:
+            if held.axis == 2:
+                yield self._act(held, "φ", (0.0, 1.0), held.mean, "rad")
+                continue
+            towards = ((1.0, 0.0), (0.0, 1.0))[held.axis]
+            yield self._act(held, f"u_{'xy'[held.axis]}", towards, held.mean, "m")
+        for load in self.loads:
+            whole = load.force.sum(axis=0)
+            yield self._act(load, "F", *_directed(whole), "N")
+        middle = np.array([[0.5, 0.5]])
+        yield Act("body", "W", middle, *_directed(self.weights), "N")
+
+    def _act(
+        self,
+        given: Held | Load,
+        symbol: str,
+        towards: tuple[float, float] | Array,
+        values: Array,
+        unit: str,
+    ) -> Act:
+        """Act at the middle one of the nodes of what is given."""
+        middle = given.nodes[len(given.nodes) // 2 : len(given.nodes) // 2 + 1]
+        points = self._as_shares(self.bodies[given.body].nodes[middle])
+        return Act(given.name, symbol, points, towards, values, unit)
+
+    def _footings(self) -> Iterator[Footing]:
+        """Rigid supports, and nodes that are held without being moved."""
+        for joint in self.joints:
+            if joint.below is None:
+                points = self.bodies[joint.above].nodes[joint.nodes]
+                feet = points - joint.normals * np.reshape(joint.gap, (-1, 1))
+                yield Footing("support", self._as_shares(feet), -joint.normals)
+        for held in self.held:
+            if held.axis == 2 or np.any(held.displacement):
+                continue
+            points = self._as_shares(self.bodies[held.body].nodes[held.nodes])
+            outward = np.zeros_like(points)
+            # Away from the middle of the body, along the axis that is held.
+            middle = self.bodies[held.body].nodes.mean(axis=0)
+            beyond = self.bodies[held.body].nodes[held.nodes].mean(axis=0) - middle
+            outward[:, held.axis] = np.sign(beyond[held.axis]) or 1.0
+            yield Footing("rollers", points, outward)
+
+    def _as_shares(self, points: Array) -> Array:
+        """Points, (n, 2), m, as shares of the length and height of all bodies."""
+        corner, size = self.box
+        return np.asarray((points - corner) / np.where(size > 0.0, size, 1.0))
+
+
+def _directed(force: Array) -> tuple[Array, Array]:
+    """Direction, (2, n_instants), and size, (n_instants,), of a force, (2, n_instants).
+
+    Where the force is zero the direction is, too.
+    """
+    size = np.hypot(*force)
+    return force / np.where(size > 0.0, size, 1.0), size

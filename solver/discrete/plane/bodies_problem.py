@@ -1,0 +1,122 @@
+"""Discrete problem of bodies of any shape: interface laws at joints, cuts and holds.
+
+Parts of one body are glued where they were cut. Contact forces are lumped at the nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.discrete.elements import legendre_basis
+from solver.discrete.inside import Inside, substructure_of
+from solver.discrete.loose import loose_bodies
+from solver.discrete.plane.bodies import Bodies
+from solver.discrete.plane.cut_bodies import CutBodies
+from solver.discrete.plane.cut_shapes import Seam
+from solver.discrete.plane.joint_laws import law_of_joints
+from solver.discrete.problem import Problem
+from solver.discrete.scales import Scales
+from solver.laws import Dirichlet, Interface, Perfect
+from solver.refusal import RefusedError, Words
+
+
+def problem_of(structure: Bodies) -> Problem:
+    """Discrete problem of bodies: their parts, interfaces and inside.
+
+    Raises
+    ------
+    RefusedError
+        If bodies can move though all contacts are closed and stick.
+    """
+    cut = CutBodies(structure)
+    scales = Scales(cut.length, cut.young * cut.length, structure.duration)
+    nodes = np.concatenate([body.nodes for body in structure.bodies]) / cut.length
+    inside = Inside(cut.parts, nodes, scales, len(structure.instants))
+    n_pairs = sum(len(piece.places) for piece in cut.pieces)
+    n_steps = sum(len(joint.nodes) for joint in structure.joints)
+    problem = Problem(
+        substructures=tuple(
+            substructure_of(part, dofs)
+            for part, dofs in zip(cut.parts, inside.dofs, strict=True)
+        ),
+        interfaces=dict(_interfaces(cut)),
+        positions=inside.positions * scales.displacement,
+        instants=structure.instants,
+        scales=scales,
+        inside=inside,
+        has_short_joints=n_pairs < n_steps,
+        order=tuple(joint.name for joint in structure.joints),
+    )
+    loose = loose_bodies(problem)
+    if len(loose):
+        names = ", ".join(structure.bodies[number].name for number in loose)
+        raise RefusedError(
+            "Bodies.held",
+            Words(f"displacements that leave free: {names}"),
+            "holds and joints that leave no body free to move or to turn, where all "
+            "contacts are closed and stick",
+            "hold one more node or axis, or add a joint",
+        )
+    return problem
+
+
+def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
+    """All interfaces by name: contacts, then cuts, then prescribed displacements."""
+    kinds = dict[str, list[int]]()
+    for number, joint in enumerate(cut.structure.joints):
+        kind = "supports" if joint.below is None else "contacts"
+        kinds.setdefault(kind, []).append(number)
+    for kind, numbers in kinds.items():
+        name = kind
+        if len(numbers) == 1:
+            name = cut.structure.joints[numbers[0]].name
+        yield name, law_of_joints(cut, numbers)
+    for body, of_body in enumerate(cut.structure.bodies):
+        for number, seam in enumerate(cut.cuts[body].seams):
+            first, second = seam.parts
+            name = f"cut {first + 1} to {second + 1} of {of_body.name}"
+            yield name, _glued(cut, body, number, seam)
+    for number, held in enumerate(cut.structure.held):
+        yield held.name, _prescribed(cut, number)
+
+
+def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
+    """Perfect interface of two parts of one body.
+
+    Macro forces are polynomials along the seam in both directions of the body's axes.
+    """
+    first, second = [cut.parts[cut.owner(body, part)] for part in seam.parts]
+    rows = first.rows["first", body, number]
+    opposite = second.rows["second", body, number]
+    if rows.shape[1] == 2:
+        reach = np.abs(seam.positions).max()
+        length = seam.weights.sum()
+        slenderness = (length / first.of_shape.size) ** 2
+        along = legendre_basis(
+            seam.positions / reach, slenderness, cut.structure.macro_degree
+        )
+        frames = cut.local_frames(body, seam.nodes)
+        macro = (frames[:, :, None, :] * along[:, None, :, None]).reshape(rows.size, -1)
+    else:
+        macro = np.eye(rows.size)
+    return Perfect(rows.ravel(), opposite.ravel(), macro)
+
+
+def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
+    """Dirichlet law of prescribed displacements."""
+    held = cut.structure.held[number]
+    rows = list[Indices]()
+    values = list[Array]()
+    shape = len(held.nodes), len(cut.structure.instants)
+    given = np.broadcast_to(held.displacement, shape)
+    _, signs = cut.axes_held(held, held.nodes)
+    scaled = signs[:, None] * given / cut.length
+    for part in range(cut.structure.bodies[held.body].substructures):
+        own = cut.parts[cut.owner(held.body, part)]
+        if ("held", number) in own.rows:
+            rows.append(own.rows["held", number].ravel())
+            values.append(scaled[np.isin(held.nodes, own.of_shape.nodes)])
+    return Dirichlet(np.concatenate(rows), np.concatenate(values))

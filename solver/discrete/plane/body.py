@@ -1,0 +1,257 @@
+"""Bodies of any shape, joints, holds and loads as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.checks import (
+    ANY_NUMBER,
+    NON_NEGATIVE,
+    POSITIVE,
+    Count,
+    Either,
+    Kind,
+    Number,
+    Numbers,
+    Part,
+    check_value,
+)
+from solver.discrete.plane.beams import Beam
+from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.stack import MOST_POISSON
+from solver.refusal import RefusedError, Words
+
+UNIT = 1e-9
+"""Largest difference of the length of a normal from 1."""
+Shape = Mesh | Beam
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """An elastic body: its shape, turned by the angle and put at the origin.
+
+    Bodies with the same shape object and material, which are cut and joined alike in
+    their own axes, share operators.
+
+    Attributes
+    ----------
+    name
+        Name in messages.
+    shape
+        Mesh, one metre thick, or line of beams.
+    young, poisson
+        Young's modulus, Pa, and Poisson's ratio, which beams do not read.
+    origin
+        Position of the origin of the shape's axes, shape (2,), m.
+    angle
+        Counter-clockwise angle by which the shape is turned, rad.
+    weight
+        Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
+    substructures
+        Number of parts into which the body is cut along edges of its elements.
+
+    Raises
+    ------
+    RefusedError
+        For fields out of range, elements of no or negative area, and a mesh of several
+        pieces.
+    """
+
+    name: str
+    shape: Shape
+    young: float
+    poisson: float = 0.0
+    origin: Array = field(default_factory=lambda: np.zeros(2))
+    angle: float = 0.0
+    weight: Array | None = None
+    substructures: int = 1
+
+    def __post_init__(self) -> None:
+        kinds: dict[str, Kind] = {
+            "shape": Part(Mesh, Beam),
+            "young": POSITIVE,
+            "poisson": Number(-1.0, MOST_POISSON, above=True),
+            "origin": Numbers(((2,),)),
+            "angle": ANY_NUMBER,
+        }
+        for name, kind in kinds.items():
+            check_value(f"{self}.{name}", getattr(self, name), kind)
+        if self.shape.flaw:
+            raise RefusedError(
+                f"{self}.shape",
+                Words(self.shape.flaw),
+                "one piece of elements whose corners run counter-clockwise round them",
+                "mend the mesh there",
+            )
+        parts = Count(1, len(self.shape.centres))
+        check_value(f"{self}.substructures", self.substructures, parts)
+
+    def __str__(self) -> str:
+        return f"Body {self.name!r}"
+
+    @cached_property
+    def rotation(self) -> Array:
+        """Matrix from the axes of the shape to the global ones, shape (2, 2)."""
+        c = np.cos(self.angle)
+        s = np.sin(self.angle)
+        return np.array([[c, -s], [s, c]])
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Global coordinates of the nodes of the shape, shape (n_nodes, 2), m."""
+        return np.asarray(self.shape.nodes @ self.rotation.T + self.origin)
+
+    def outward(self, chain: Indices) -> Array:
+        """Unit normals out of the body along a chain of nodes, shape (n, 2)."""
+        normals = self.shape.outward(chain) @ self.rotation.T
+        return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """Pairs of nodes of two bodies in contact, or of a body and a rigid support.
+
+    Attributes
+    ----------
+    name
+        Name of the interface.
+    above, nodes
+        Number of the body above, and a chain of its nodes, (n,).
+    below, nodes_below
+        Number of the body below and the chain of its nodes opposite, (n,); None for a
+        rigid rough support.
+    normals
+        Unit normals out of what is below into the body above, shape (n, 2), in global
+        axes. The tangent is the normal turned clockwise by a right angle.
+    gap
+        Opening of each pair, shape (n,), m, negative where the bodies overlap; or one.
+    friction
+        Coefficient of friction, or that of each pair, shape (n,).
+    """
+
+    name: str
+    above: int
+    nodes: Indices
+    below: int | None
+    nodes_below: Indices | None
+    normals: Array
+    gap: Array | float = 0.0
+    friction: Array | float = 0.0
+
+    def __post_init__(self) -> None:
+        size = len(self.nodes)
+        chain = Numbers(((size,),), low=0, whole=True)
+        check_value(f"{self}.nodes", self.nodes, chain)
+        if self.below is not None:
+            check_value(f"{self}.nodes_below", self.nodes_below, chain)
+        check_value(f"{self}.normals", self.normals, Numbers(((size, 2),)))
+        along = Numbers(((size,),))
+        check_value(f"{self}.gap", self.gap, Either(ANY_NUMBER, along))
+        along = Numbers(((size,),), low=0.0)
+        check_value(f"{self}.friction", self.friction, Either(NON_NEGATIVE, along))
+        lengths = np.linalg.norm(self.normals, axis=1)
+        number = int(np.abs(lengths - 1.0).argmax())
+        if abs(lengths[number] - 1.0) > UNIT:
+            raise RefusedError(
+                f"{self}.normals",
+                Words(f"normal {number} of length {lengths[number]:g}"),
+                "vectors of length 1",
+                "divide each by its length",
+            )
+
+    def __str__(self) -> str:
+        return f"Joint {self.name!r}"
+
+    @property
+    def sides(self) -> list[tuple[int, Indices]]:
+        """Bodies and their chains of nodes; the one above first."""
+        sides = [(self.above, self.nodes)]
+        if self.below is not None and self.nodes_below is not None:
+            sides.append((self.below, self.nodes_below))
+        return sides
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Nodes of a body whose displacement is prescribed along one axis.
+
+    Attributes
+    ----------
+    name, body, nodes
+        Name, number of the body, and numbers of its nodes, (n,).
+    axis
+        0 along x, 1 along y, 2 turn of a beam.
+    displacement
+        Displacement over time, m (rad of a turn), of all nodes, shape (n_instants,), or
+        of each, (n, n_instants).
+    """
+
+    name: str
+    body: int
+    nodes: Indices
+    axis: int
+    displacement: Array
+
+    def __post_init__(self) -> None:
+        check_value(f"{self}.nodes", self.nodes, Numbers(((None,),), low=0, whole=True))
+        check_value(f"{self}.axis", self.axis, Count(0, 2))
+        kind = Numbers(((None,), (len(self.nodes), None)))
+        check_value(f"{self}.displacement", self.displacement, kind)
+
+    def __str__(self) -> str:
+        return f"Held {self.name!r}"
+
+    @property
+    def mean(self) -> Array:
+        """Mean displacement of the nodes over time, shape (n_instants,), m or rad."""
+        return np.asarray(np.atleast_2d(self.displacement).mean(axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """Nodal forces on a body, shape (n, 2, n_instants), N, at its nodes, (n,)."""
+
+    name: str
+    body: int
+    nodes: Indices
+    force: Array
+
+    def __post_init__(self) -> None:
+        check_value(f"{self}.nodes", self.nodes, Numbers(((None,),), low=0, whole=True))
+        kind = Numbers(((len(self.nodes), 2, None),))
+        check_value(f"{self}.force", self.force, kind)
+
+    def __str__(self) -> str:
+        return f"Load {self.name!r}"
+
+    @classmethod
+    def of_traction(
+        cls, name: str, number: int, body: Body, chain: Indices, traction: Array
+    ) -> Load:
+        """Load of a uniform traction along a chain of nodes of the body of that number.
+
+        `traction` is along x and y, shape (2, n_instants), Pa.
+        """
+        force = np.multiply.outer(body.shape.shares(chain), traction)
+        return cls(name, number, chain, force)
+
+    @classmethod
+    def of_pressure(
+        cls, name: str, number: int, body: Body, chain: Indices, pressure: Array
+    ) -> Load:
+        """Load of a pressure, (n_instants,), Pa, against the edges along a chain.
+
+        On beams, whose line has no inside, from its left.
+        """
+        inward = -body.shape.outward(chain) @ body.rotation.T
+        return cls(name, number, chain, np.multiply.outer(inward, pressure))
+
+    @cached_property
+    def pattern(self) -> Array:
+        """Forces at the instant of the largest ones, shape (n, 2), N."""
+        sizes = np.abs(self.force).sum(axis=(0, 1))
+        return self.force[:, :, int(sizes.argmax())]

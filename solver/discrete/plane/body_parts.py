@@ -1,0 +1,243 @@
+"""Parts of bodies of any shape: their elasticity, and the fields inside them.
+
+Forces are scaled by E L and displacements by L, so that a stiffness is scaled by E.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+
+from solver.arrays import Array, Indices
+from solver.discrete.elements import SchurComplement, elastic_matrix
+from solver.discrete.inside import N_AXES
+from solver.discrete.plane.beams import Beam
+from solver.discrete.plane.body import Body
+from solver.discrete.plane.mesh_elasticity import (
+    mesh_stiffness,
+    mesh_strains,
+    mesh_volumes,
+)
+from solver.discrete.plane.meshes import Mesh
+from solver.discrete.substructure import Elasticity
+
+
+@dataclass(frozen=True, eq=False)
+class ShapePart:
+    """A part of a shape of one material, in the axes of the shape.
+
+    Attributes
+    ----------
+    body
+        A body of this shape and material.
+    chosen, nodes
+        Numbers of its elements and of its nodes among those of the shape, ascending.
+    young, state
+        Unit of stress, Pa, and "strain" or "stress".
+    """
+
+    body: Body
+    chosen: Indices
+    nodes: Indices
+    young: float
+    state: str
+
+    @property
+    def n_axes(self) -> int:
+        """Number of degrees of freedom of a node: x, y, and the turn of beams."""
+        if isinstance(self.body.shape, Mesh):
+            return 2
+        return 3
+
+    @cached_property
+    def size(self) -> float:
+        """Side of a square of the same area, or length of beams, m."""
+        shape = self.body.shape
+        if isinstance(shape, Mesh):
+            return float(np.sqrt(shape.areas[self.chosen].sum()))
+        return float(shape.lengths[self.chosen].sum())
+
+    @cached_property
+    def density(self) -> float:
+        """Search direction E / l_sub of a length, scaled, 1/m."""
+        body = self.body
+        if isinstance(body.shape, Mesh):
+            return body.young / self.young / self.size
+        return self.at_a_point / self.size
+
+    @cached_property
+    def at_a_point(self) -> float:
+        """Search direction E A / l_sub at a node of beams, scaled."""
+        assert isinstance(self.body.shape, Beam)
+        return self.body.young * self.body.shape.area / self.young / self.size
+
+    @cached_property
+    def of_turn(self) -> float:
+        """Search direction E I / l_sub of the turn of a node of beams, scaled."""
+        shape = self.body.shape
+        assert isinstance(shape, Beam)
+        return self.body.young * shape.second_moment / self.young / self.size
+
+    @cached_property
+    def stiffness(self) -> sparse.csr_array:
+        """Stiffness, shape (n_nodes n_axes, n_nodes n_axes), scaled."""
+        shape = self.body.shape
+        if isinstance(shape, Mesh):
+            whole = mesh_stiffness(shape, self.chosen, self._elastic)
+        else:
+            whole = shape.stiffness(self.body.young / self.young, self.chosen)
+        dofs = np.add.outer(self.n_axes * self.nodes, np.arange(self.n_axes)).ravel()
+        return sparse.csr_array(whole[dofs][:, dofs])
+
+    @cached_property
+    def _elastic(self) -> Array:
+        """Matrix from strains to stresses, shape (3, 3), scaled."""
+        body = self.body
+        return elastic_matrix(body.young / self.young, body.poisson, self.state)
+
+    @cached_property
+    def volumes(self) -> Array:
+        """Volume that belongs to each node, shape (n_nodes,), m^3."""
+        shape = self.body.shape
+        if isinstance(shape, Mesh):
+            return mesh_volumes(shape, self.chosen)[self.nodes]
+        return shape.volumes(self.chosen)[self.nodes]
+
+    def force(self, weight: Array | None, load: Array | None) -> Array | None:
+        """Forces of weight and loads, (n_nodes, 2, n_instants), N; None without any.
+
+        The weight is per volume along x and y, (2, n_instants), N/m^3; loads are on its
+        nodes, of the shape of the forces, N.
+        """
+        force = load
+        if weight is not None:
+            force = np.multiply.outer(self.volumes, weight)
+            if load is not None:
+                force = force + load
+        if force is None or not force.any():
+            return None
+        return force
+
+    @cached_property
+    def elements(self) -> Indices:
+        """Corners of its elements among its own nodes, shape (n_elements, 4)."""
+        corners = self.body.shape.element_corners[self.chosen]
+        return np.searchsorted(self.nodes, corners)
+
+    @cached_property
+    def stresses(self) -> sparse.csr_array:
+        """Matrix from displacements of nodes to stresses, scaled by E over metres.
+
+        Stresses xx, yy, xy of each element in turn, (3 n_elements, 2 n_nodes).
+        """
+        shape = self.body.shape
+        if isinstance(shape, Mesh):
+            strains = mesh_strains(shape, self.chosen)
+            elastic = self._elastic
+        else:
+            strains = shape.strains(self.chosen)
+            # A beam has the stress of its axis, and half of 2 xy.
+            elastic = np.diag([1.0, 1.0, 0.5]) * self.body.young / self.young
+        dofs = np.add.outer(2 * self.nodes, np.arange(2)).ravel()
+        blocks = sparse.kron(sparse.eye_array(len(self.chosen)), elastic)
+        return sparse.csr_array(blocks @ strains[:, dofs])
+
+    def condensed(self, frames: Array, kept: Indices) -> SchurComplement:
+        """Stiffness condensed onto some degrees of freedom, (n_kept,).
+
+        `frames` are the directions of those of each node in the axes of the shape,
+        (n_nodes, 2, 2).
+        """
+        stiffness = self.stiffness
+        if np.any(frames != np.eye(2)):
+            turn = self._turn(frames)
+            stiffness = turn @ stiffness @ turn.T
+        return SchurComplement(sparse.csc_array(stiffness), kept)
+
+    def _turn(self, frames: Array) -> sparse.csr_array:
+        """Matrix from x, y (and turn) of all nodes to their degrees of freedom."""
+        n_axes = self.n_axes
+        blocks = np.zeros((len(frames), n_axes, n_axes))
+        blocks[:, :2, :2] = frames
+        blocks[:, 2:, 2:] = 1.0
+        dofs = np.arange(len(frames) * n_axes).reshape(-1, n_axes)
+        rows = np.repeat(dofs, n_axes, axis=1).ravel()
+        columns = np.tile(dofs, n_axes).ravel()
+        return sparse.csr_array((blocks.ravel(), (rows, columns)))
+
+
+@dataclass(frozen=True, eq=False)
+class BodyPart:
+    """A part of a body of any shape, as `CondensedPart`.
+
+    Attributes
+    ----------
+    of_shape
+        The part of the shape, which bodies of one shape share.
+    condensed, elasticity
+        Stiffness condensed onto its boundary rows, and operator; equal parts share
+        them.
+    nodes
+        Numbers of its nodes among those of all bodies, shape (n_nodes,).
+    body
+        Number of its body.
+    rows
+        Boundary rows by what has them, shape (n_nodes, n_components) each.
+    force
+        Forces on its degrees of freedom, (n, n_instants), scaled, or None.
+    frames
+        Motion of the degrees of freedom of each node along x and y, and its turn,
+        (n_nodes, n_axes, 3).
+    rotation
+        Matrix from the axes of the body to the global ones, (2, 2).
+    length
+        Unit of length, m.
+    """
+
+    of_shape: ShapePart
+    condensed: SchurComplement
+    elasticity: Elasticity
+    nodes: Indices
+    body: int
+    rows: Mapping[Hashable, Indices]
+    force: Array | None
+    frames: Array
+    rotation: Array
+    length: float
+
+    @property
+    def dofs(self) -> Indices:
+        """Numbers of its degrees of freedom among those of all nodes, shape (n,)."""
+        axes = np.arange(self.of_shape.n_axes)
+        return np.add.outer(N_AXES * self.nodes, axes).ravel()
+
+    @property
+    def directions(self) -> Array:
+        """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
+        return self.frames.reshape(-1, N_AXES)
+
+    @property
+    def elements(self) -> Indices:
+        """Corners of every element among its own nodes, shape (n_elements, 4)."""
+        return self.of_shape.elements
+
+    def motion(self, moved: Array) -> Array:
+        """Displacement of its nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
+        own = moved.reshape(*self.frames.shape[:2], -1)
+        return np.asarray(self.frames[:, :, :2].swapaxes(1, 2) @ own)
+
+    def forces(self, nodal: Array) -> Array:
+        """Forces on its degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
+        return np.asarray((self.frames[:, :, :2] @ nodal[:, :, None]).ravel())
+
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled."""
+        own = self.length * (displacement @ self.rotation).ravel()
+        xx, yy, xy = (self.of_shape.stresses @ own).reshape(-1, 3).T
+        tensors = np.moveaxis(np.array([[xx, xy], [xy, yy]]), -1, 0)
+        turned = self.rotation @ tensors @ self.rotation.T
+        return np.stack([turned[:, 0, 0], turned[:, 1, 1], turned[:, 0, 1]], axis=1)
