@@ -25,7 +25,7 @@ from solver.laws import FrictionLaw
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
-from solver.scenes.plane import PlaneSettings
+from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
     BODY,
     CONTACT,
@@ -135,7 +135,7 @@ def problem_of(fault: Fault) -> Problem:
     return discretise(fault.body)
 
 
-class FaultSettings(PlaneSettings):
+class FaultSettings(RectangleSettings):
     """Settings of the fault; by default the fluid's pressure is constant in time."""
 
     scene = "fault"
@@ -173,7 +173,7 @@ class FaultSettings(PlaneSettings):
         places=("top x",),
     )
     duration = redefined(
-        PlaneSettings.param["duration"],
+        RectangleSettings.param["duration"],
         86400.0,
         (3600.0, 2.6e6),
         doc="Length of the time interval. Friction does not feel the rate, but a fluid "
@@ -197,29 +197,29 @@ class FaultSettings(PlaneSettings):
         title="Diffusivity α",
         unit="m^2/s",
     )
-    friction = redefined(PlaneSettings.param["friction"], 0.6)
+    friction = redefined(RectangleSettings.param["friction"], 0.6)
     friction_profile = shared.profile("μ", "the fault", PROFILES, bounds=POSITIVE)
     tangential_stiffness = redefined(
-        PlaneSettings.param["tangential_stiffness"],
+        RectangleSettings.param["tangential_stiffness"],
         0.0,
         doc="Stiffness of the fault as a joint, in series with friction: shear stress "
         "over the slip between both of its sides. 0: rigid.",
     )
     contact_stiffness = redefined(
-        PlaneSettings.param["contact_stiffness"],
+        RectangleSettings.param["contact_stiffness"],
         100.0,
         doc="Stiffness of that spring, shear stress over the slip between both sides "
         "of the fault, as a multiple of E / L.",
     )
     strength = redefined(
-        PlaneSettings.param["strength"],
+        RectangleSettings.param["strength"],
         "constant",
         doc="Factor on the largest friction force over the accumulated slip between "
         "both sides of the fault: a preset, or points (m, factor), the first (0, 1), "
         "such as a peak, softening and a residual; the last one stays.",
     )
     slip_length = redefined(
-        PlaneSettings.param["slip_length"],
+        RectangleSettings.param["slip_length"],
         1e-4,
         doc="Accumulated slip between both sides of the fault at which its friction is "
         "the last.",
@@ -235,7 +235,7 @@ class FaultSettings(PlaneSettings):
         600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", BODY
     )
     young = shared.young(BODY, 6e10, (1e9, 1e12))
-    poisson = redefined(PlaneSettings.param["poisson"], 0.25)
+    poisson = redefined(RectangleSettings.param["poisson"], 0.25)
 
     def changed_meanings(self) -> Mapping[str, str]:
         """Describe settings over the slip, which was one side's in the first format."""

@@ -23,13 +23,13 @@ from solver.laws import FrictionLaw
 from solver.laws.play import play
 from solver.reference.closed_forms import ExactCurve
 from solver.refusal import plain
-from solver.scenes.plane import PlaneSettings
+from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import BODY, CONTACT, LOAD, redefined
 from solver.settings.load_paths import PULLS
 from solver.settings.scene import Icon
 
 
-class InclineSettings(PlaneSettings):
+class InclineSettings(RectangleSettings):
     """Settings of the block on a slope; by default the spring pulls it back."""
 
     scene = "incline"
@@ -92,8 +92,8 @@ class InclineSettings(PlaneSettings):
         BODY,
     )
     young = shared.young(BODY, 1e7, (1e6, 1e12))
-    elements = redefined(PlaneSettings.param["elements"], 24)
-    elements_up = redefined(PlaneSettings.param["elements_up"], 12)
+    elements = redefined(RectangleSettings.param["elements"], 24)
+    elements_up = redefined(RectangleSettings.param["elements_up"], 12)
 
     def check_together(self) -> None:
         """Refuse slopes on which nothing holds the block."""

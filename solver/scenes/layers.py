@@ -19,7 +19,7 @@ from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve
 from solver.scenes.exact import exact_layers
-from solver.scenes.plane import PlaneSettings
+from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import BODY, LOAD, Rows, TablePreset, redefined
 from solver.settings.load_paths import PRESETS
 from solver.settings.profiles import UNSEEN
@@ -32,7 +32,7 @@ def _graduated(settings: LayersSettings) -> Rows:
     return tuple((layer + 1.0, 1.0 - layer / count) for layer in range(count))
 
 
-class LayersSettings(PlaneSettings):
+class LayersSettings(RectangleSettings):
     """Settings of the stack; by default it is pressed, then bent up and down."""
 
     scene = "layers"
@@ -153,9 +153,9 @@ class LayersSettings(PlaneSettings):
         "among them.",
         title="Stiffness contrast",
     )
-    elements_up = redefined(PlaneSettings.param["elements_up"], 2)
-    substructures_up = redefined(PlaneSettings.param["substructures_up"], 1)
-    macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
+    elements_up = redefined(RectangleSettings.param["elements_up"], 2)
+    substructures_up = redefined(RectangleSettings.param["substructures_up"], 1)
+    macro_degree = redefined(RectangleSettings.param["macro_degree"], 2)
 
     @property
     def n_bodies(self) -> int:

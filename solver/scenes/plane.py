@@ -1,4 +1,4 @@
-"""Settings that the scenes of rectangular bodies in the plane share."""
+"""Settings that scenes in the plane share: of all bodies, and of rectangles."""
 
 from __future__ import annotations
 
@@ -34,13 +34,8 @@ at 1e5 none beside a search direction k of a millionth (measured)."""
 
 
 class PlaneSettings(Settings):
-    """Settings of elastic rectangles with frictional contact; one metre thick."""
+    """Settings of elastic bodies with frictional contact; one metre thick."""
 
-    across = "height"
-    PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
-    MESH = ("elements", "elements_up")
-    SMALL: ClassVar = {"elements": 16, "elements_up": 6, "instants": 13}
-    GROWS = (*MESH, *PARTS)
     kind = "plane"
     opens = True
 
@@ -93,6 +88,40 @@ class PlaneSettings(Settings):
         "Poisson's ratio.",
         title="Poisson's ratio ν",
     )
+
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`, N/m^3."""
+        return float(self.young / self.length)
+
+    @property
+    def law(self) -> FrictionLaw:
+        """Law of friction without mu, with the stiffness across the interface."""
+        stiffness = np.inf
+        if self.applies("normal_stiffness") and self.normal_stiffness:
+            stiffness = self.normal_stiffness
+        return replace(super().law, normal_stiffness=stiffness)
+
+    @property
+    def is_rough(self) -> bool:
+        """Return whether there is any friction."""
+        return bool(self.friction or self.law.cohesion)
+
+    @property
+    def n_interfaces(self) -> int:
+        """Number of interfaces: between bodies, or of one body with its support."""
+        return max(self.n_bodies - 1, 1)
+
+
+class RectangleSettings(PlaneSettings):
+    """Settings of elastic rectangles with frictional contact; one metre thick."""
+
+    across = "height"
+    PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
+    MESH = ("elements", "elements_up")
+    SMALL: ClassVar = {"elements": 16, "elements_up": 6, "instants": 13}
+    GROWS = (*MESH, *PARTS)
+
     elements = BODY.count(
         48,
         (2, 5000),
@@ -134,24 +163,6 @@ class PlaneSettings(Settings):
     )
 
     @property
-    def contact_unit(self) -> float:
-        """Unit of `contact_stiffness`, N/m^3."""
-        return float(self.young / self.length)
-
-    @property
-    def law(self) -> FrictionLaw:
-        """Law of friction without mu, with the stiffness across the interface."""
-        stiffness = np.inf
-        if self.applies("normal_stiffness") and self.normal_stiffness:
-            stiffness = self.normal_stiffness
-        return replace(super().law, normal_stiffness=stiffness)
-
-    @property
-    def is_rough(self) -> bool:
-        """Return whether there is any friction."""
-        return bool(self.friction or self.law.cohesion)
-
-    @property
     def places(self) -> Array:
         """Positions of the nodes along a body, (n_nodes,), m."""
         return np.linspace(0.0, self.length, self.nodes[0])
@@ -172,11 +183,6 @@ class PlaneSettings(Settings):
     def n_nodes(self) -> int:
         """Number of nodes of all bodies."""
         return self.n_bodies * math.prod(self.nodes)
-
-    @property
-    def n_interfaces(self) -> int:
-        """Number of interfaces: between bodies, or of one body with its support."""
-        return max(self.n_bodies - 1, 1)
 
     @property
     def n_substructures(self) -> int:

@@ -11,7 +11,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.discrete.plane.sides import Given, Side
-from solver.scenes.plane import PlaneSettings
+from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
     CurveParameter,
     SettingGroup,
@@ -177,7 +177,7 @@ TOP_NORMAL = SideLoad("top", "normal")
 TOP_TANGENTIAL = SideLoad("top", "tangential")
 
 
-class SideSettings(PlaneSettings):
+class SideSettings(RectangleSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
     left = _kind_of("left")

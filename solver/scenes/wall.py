@@ -13,7 +13,7 @@ from solver.arrays import Indices
 from solver.discrete.plane.bricks import Brick, bonded, grouped, with_opening
 from solver.discrete.plane.sides import Given, Side, Support
 from solver.discrete.plane.stack import Stack
-from solver.scenes.plane import PlaneSettings
+from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import BODY, DECOMPOSITION, LOAD, redefined
 from solver.settings.load_paths import PRESETS
 from solver.settings.scene import Icon
@@ -22,7 +22,7 @@ MOST_BRICKS = 1500
 """Largest number of bricks: with their joints they take some 2 GB."""
 
 
-class WallSettings(PlaneSettings):
+class WallSettings(RectangleSettings):
     """Settings of the wall; by default it is pressed, and its top moves to and fro."""
 
     scene = "wall"
@@ -144,23 +144,23 @@ class WallSettings(PlaneSettings):
         unit="N/m^3",
         places=("body",),
     )
-    friction = redefined(PlaneSettings.param["friction"], 0.6)
-    plane = redefined(PlaneSettings.param["plane"], "stress")
-    young = redefined(PlaneSettings.param["young"], 1e10)
-    poisson = redefined(PlaneSettings.param["poisson"], 0.2)
-    instants = redefined(PlaneSettings.param["instants"], 41)
+    friction = redefined(RectangleSettings.param["friction"], 0.6)
+    plane = redefined(RectangleSettings.param["plane"], "stress")
+    young = redefined(RectangleSettings.param["young"], 1e10)
+    poisson = redefined(RectangleSettings.param["poisson"], 0.2)
+    instants = redefined(RectangleSettings.param["instants"], 41)
     elements = redefined(
-        PlaneSettings.param["elements"], 6, title="Elements of a brick along"
+        RectangleSettings.param["elements"], 6, title="Elements of a brick along"
     )
     elements_up = redefined(
-        PlaneSettings.param["elements_up"], 3, title="Elements of a brick up"
+        RectangleSettings.param["elements_up"], 3, title="Elements of a brick up"
     )
-    macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
+    macro_degree = redefined(RectangleSettings.param["macro_degree"], 2)
     substructures = redefined(
-        PlaneSettings.param["substructures"], 1, applies=lambda _: False
+        RectangleSettings.param["substructures"], 1, applies=lambda _: False
     )
     substructures_up = redefined(
-        PlaneSettings.param["substructures_up"], 1, applies=lambda _: False
+        RectangleSettings.param["substructures_up"], 1, applies=lambda _: False
     )
     brick_groups = DECOMPOSITION.count(
         MOST_BRICKS,
@@ -173,7 +173,7 @@ class WallSettings(PlaneSettings):
         applies=lambda settings: settings.multiscale,
     )
     friction_profile = redefined(
-        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
+        RectangleSettings.param["friction_profile"], "uniform", applies=lambda _: False
     )
 
     @property
