@@ -402,7 +402,10 @@ class Problem:
         inside = self.inside
         if inside is None:
             return b""
-        return content_of(inside.positions, inside.components, inside.body_of_dofs)
+        # Turns of beams are not over the unit of length as positions are.
+        unit = np.array([self.scales.displacement])
+        bodies = inside.body_of_dofs
+        return content_of(inside.positions, inside.directions, bodies, unit)
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
