@@ -9,6 +9,7 @@ from solver.scenes.block import BlockSettings
 from solver.scenes.fault import FaultSettings
 from solver.scenes.incline import InclineSettings
 from solver.scenes.layers import LayersSettings
+from solver.scenes.mesh import MeshSettings
 from solver.scenes.rope import RopeSettings
 from solver.scenes.strand import StrandSettings
 from solver.scenes.wall import WallSettings
@@ -25,6 +26,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         RopeSettings,
         StrandSettings,
         WallSettings,
+        MeshSettings,
     )
 }
 

@@ -1,0 +1,434 @@
+"""A mesh of one's own: bodies of any shape in frictional contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache, cached_property
+from typing import ClassVar
+
+import numpy as np
+
+import solver.scenes.shared as shared
+from solver.discrete.plane.bodies import Bodies
+from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.named_mesh import NamedMesh, OuterLine
+from solver.discrete.problem import Problem
+from solver.refusal import RefusedError, Words
+from solver.scenes.mesh_files import from_text, read_example
+from solver.scenes.named_sides import ALLOWED, deeds_of, taken_apart
+from solver.scenes.plane import PlaneSettings, RectangleSettings
+from solver.settings.definitions import (
+    BODY,
+    LOAD,
+    Rows,
+    SettingError,
+    TablePreset,
+    redefined,
+)
+from solver.settings.load_paths import PRESETS, PRESSURES
+from solver.settings.scene import Icon
+
+EXAMPLES = {
+    "dovetail": "the root of a blade in the groove of a disk, pulled outwards",
+    "bolted": "a plate between two covers that a bolt presses together, pulled",
+}
+"""Meshes that come with the scene."""
+LARGEST_BODY = 4_000
+"""Largest number of corners of a part: its inside is condensed by dense matrices."""
+HELD = {
+    "held": (0, 1),
+    "held x": (0,),
+    "held y": (1,),
+    "moved x": (0,),
+    "moved y": (1,),
+}
+"""Axes along which a side is held or moved."""
+
+
+@cache
+def mesh_of(text: str) -> NamedMesh:
+    """Checked mesh of the setting: one that comes with the scene, or of a file."""
+    if text in EXAMPLES:
+        mesh = read_example(text)
+    else:
+        mesh = from_text(text)
+    mesh.check()
+    return mesh
+
+
+def _same_for_all(settings: MeshSettings) -> Rows:
+    """Rows of the materials of all bodies where they have the same."""
+    row = settings.young, settings.poisson, settings.unit_weight
+    return tuple((number, *row) for number in range(1, settings.n_bodies + 1))
+
+
+class MeshSettings(PlaneSettings):
+    """Settings of a mesh; by default a dovetail that is pulled and let go."""
+
+    scene = "mesh"
+    title = "Mesh of one's own"
+    source = "from first principles; meshes by Gmsh and what else meshio reads"
+    icon = Icon(
+        ground="M4 29H44",
+        body="M18 3H30V10L35 17H13L18 10ZM6 12H12L9 19V22H39V19L36 12H42V28H6Z",
+        load="M24 1V8M22 3L24 1L26 3",
+    )
+    CHIEF = ("mesh", "displacement", "traction", "pressure", "load")
+    ALSO_CHIEF = ("friction", "substructures", "multiscale")
+    GROWS = ("substructures",)
+    MESH = ()
+    PARTS: ClassVar = {}
+    SMALL: ClassVar = {"mesh": "bolted", "instants": 7, "substructures": 1}
+    has_joints = True
+
+    mesh = BODY.text(
+        "dovetail",
+        EXAMPLES,
+        "a file that meshio reads, as .msh of Gmsh",
+        "Mesh of all bodies: one that comes with Slipfront, or a file. Names of its "
+        "surfaces are bodies. Named lines between two bodies are contacts, those "
+        "outside are sides; behind the name of a side may stand what happens to it, as "
+        "in “left held”.",
+        is_file=True,
+        title="Mesh",
+    )
+    scale = BODY.quantity(
+        1.0,
+        (1e-9, 1e9),
+        (1e-3, 1.0),
+        "Length of a unit of the coordinates in the mesh: 0.001 m where it is in mm.",
+        title="Unit of the mesh",
+        unit="m",
+    )
+    sides = LOAD.text(
+        "",
+        {"": "as the names of the sides say: bottom and fixed are held, top is moved"},
+        ALLOWED,
+        "What happens to sides, between commas, as in “left held, right moved x”: "
+        "free, held, held x, held y, moved x, moved y, pulled (by the traction), "
+        "pressed (by the pressure). Sides that are left out do as their names say.",
+        title="Sides",
+    )
+    displacement = LOAD.quantity(
+        2e-5,
+        (-1e6, 1e6),
+        (-1e-4, 1e-4),
+        "Largest displacement of sides that are moved.",
+        unit="m",
+        applies=lambda settings: settings.has_deed("moved"),
+        path="load",
+        places=("body",),
+    )
+    traction = LOAD.quantity(
+        1e7,
+        (-1e15, 1e15),
+        (0.0, 1e8),
+        "Largest traction on sides that are pulled, outwards.",
+        unit="Pa",
+        applies=lambda settings: settings.has_deed("pulled"),
+        path="load",
+        places=("body",),
+    )
+    load = LOAD.curve(
+        "triangle",
+        PRESETS,
+        {"time": "s", "value": "m or Pa"},
+        "Displacement or traction over time: a preset of the largest value, or points "
+        "(s, m or Pa).",
+        title="Path of the load",
+        applies=lambda settings: settings.has_deed("moved", "pulled"),
+    )
+    pressure, pressure_load = shared.sized_path(
+        "pressure_load",
+        "pressure",
+        "Pa",
+        5e7,
+        (0.0, 1e15),
+        (0.0, 2e8),
+        "Pressure on sides that are pressed.",
+        "steady",
+        PRESSURES,
+        applies=lambda settings: settings.has_deed("pressed"),
+    )
+    unit_weight = LOAD.quantity(
+        0.0,
+        (0.0, 1e12),
+        (0.0, 1e5),
+        "Weight per volume of all bodies, which begins to act in the first quarter.",
+        unit="N/m^3",
+        places=("body",),
+        applies=lambda settings: settings.materials == "same",
+    )
+    materials = BODY.curve(
+        "same",
+        {"same": TablePreset("E, ν and weight of all bodies", _same_for_all)},
+        {"body": "", "modulus": "Pa", "ratio": "", "weight": "N/m^3"},
+        "Material of each body: a preset, or rows (body, Young's modulus, Poisson's "
+        "ratio, weight per volume), one for each in the order of the mesh, numbered "
+        "from 1 on.",
+        bounds=((1, 100_000), (1.0, 1e18), (0.0, 0.4999), (0.0, 1e12)),
+        title="Materials",
+    )
+    friction_factors = shared.friction_factors("of the mesh, in its order")
+    friction_profile = redefined(
+        PlaneSettings.param["friction_profile"], "uniform", applies=lambda _: False
+    )
+    young = redefined(
+        PlaneSettings.param["young"],
+        110e9,
+        applies=lambda settings: settings.materials == "same",
+    )
+    poisson = redefined(
+        PlaneSettings.param["poisson"],
+        0.3,
+        applies=lambda settings: settings.materials == "same",
+    )
+    instants = redefined(PlaneSettings.param["instants"], 41)
+    substructures = redefined(
+        RectangleSettings.param["substructures"],
+        1,
+        doc="Number of pieces (substructures) of each body.",
+        title="Substructures of a body",
+    )
+    macro_degree = redefined(RectangleSettings.param["macro_degree"], 1)
+    start = redefined(RectangleSettings.param["start"], "zero")
+
+    @cached_property
+    def parts(self) -> NamedMesh:
+        """The mesh taken apart; coordinates in metres.
+
+        Raises
+        ------
+        SettingError
+            For a mesh that is refused.
+        """
+        try:
+            return mesh_of(self.mesh).scaled(self.scale)
+        except RefusedError as refusal:
+            raise _of_setting("mesh", refusal) from None
+
+    @cached_property
+    def deeds(self) -> Mapping[str, tuple[str, ...]]:
+        """What happens to each side, by the name of its line."""
+        lines = dict.fromkeys(side.name for side in self.parts.sides)
+        return deeds_of(list(lines), self.sides)
+
+    def has_deed(self, *verbs: str) -> bool:
+        """Return whether any side is "moved", "pulled" or "pressed"."""
+        try:
+            every = [deed for deeds in self.deeds.values() for deed in deeds]
+        except RefusedError:
+            # Settings that are refused show all of their controls.
+            return True
+        return any(deed.startswith(verbs) for deed in every)
+
+    @property
+    def n_bodies(self) -> int:
+        """Number of bodies."""
+        return len(self.parts.names)
+
+    @property
+    def n_interfaces(self) -> int:
+        """Number of contacts."""
+        return len(self.parts.contacts)
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes of all bodies."""
+        return sum(len(shape.nodes) for shape in self.parts.shapes)
+
+    @property
+    def jumps(self) -> int:
+        """Number of components of all contacts."""
+        return 2 * sum(len(contact.nodes) for contact in self.parts.contacts)
+
+    @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`, N/m^3."""
+        return float(self.young / self.parts.size)
+
+    @property
+    def ends(self) -> dict[str, int]:
+        """Largest number of parts of each body."""
+        counts = [len(shape.elements) for shape in self.parts.shapes]
+        return {"substructures": min(counts)}
+
+    def coarser(self) -> Iterator[Problem]:
+        """No coarser mesh: that of a file is what it is."""
+        return iter(())
+
+    def check_together(self) -> None:
+        """Refuse a mesh, sides or materials that do not fit together."""
+        try:
+            deeds = self.deeds
+        except RefusedError as refusal:
+            raise _of_setting(refusal.name, refusal) from None
+        every = {deed.split()[0] for found in deeds.values() for deed in found}
+        if not every & {"held", "moved"}:
+            names = ", ".join(taken_apart(line)[0] for line in deeds) or "no name"
+            raise self.refusal(
+                "sides",
+                "at least one side that is held or moved",
+                f"write what holds one of the sides of the mesh: {names}",
+            )
+        if {"moved", "pulled"} <= every:
+            raise self.refusal(
+                "sides",
+                "sides that are moved or pulled, as both have one path",
+                "take pressed for one of them",
+            )
+        super().check_together()
+        self._check_tables()
+        largest = self.ends["substructures"]
+        if self.substructures > largest:
+            raise self.refusal(
+                "substructures",
+                f"at most {largest}, the elements of the smallest body",
+                "lower it, or make the mesh finer",
+            )
+        corners = max(shape.n_corners for shape in self.parts.shapes)
+        if corners > LARGEST_BODY * self.substructures:
+            raise self.refusal(
+                "substructures",
+                f"parts of at most {LARGEST_BODY} corners of elements",
+                f"a body has {corners}: give more, or make the mesh coarser",
+            )
+
+    def _check_tables(self) -> None:
+        """Refuse tables that do not number all bodies and contacts."""
+        if self.n_interfaces:
+            shared.factors_of(self)
+        numbers = [row[0] for row in self.points("materials")]
+        if numbers != list(range(1, self.n_bodies + 1)):
+            names = ", ".join(self.parts.names)
+            raise self.refusal(
+                "materials",
+                f"{self.n_bodies} rows, one for each body, numbered from 1",
+                f"there are {len(numbers)}: give those of {names}, in this order",
+            )
+
+    @cached_property
+    def bodies(self) -> Bodies:
+        """The bodies; one metre thick."""
+        bodies = list(self._bodies())
+        held = list(self._held())
+        shown = [each.name for each in held if np.any(each.displacement)]
+        loads = list(self._loads(bodies))
+        shown += [each.name for each in loads]
+        return Bodies(
+            bodies=bodies,
+            joints=list(self._joints()),
+            held=held,
+            loads=loads,
+            instants=self.times(),
+            duration=self.duration,
+            state=self.plane,
+            friction_law=self.law,
+            macro_degree=self.macro_degree,
+            shown=shown[0] if shown else None,
+        )
+
+    def _bodies(self) -> Iterator[Body]:
+        """Bodies with their materials."""
+        hold = PRESETS["hold"].value(self.times() / self.duration, 1)
+        rows = self.points("materials")
+        for name, shape, row in zip(
+            self.parts.names, self.parts.shapes, rows, strict=True
+        ):
+            _, young, poisson, weight = row
+            yield Body(
+                name,
+                shape,
+                young,
+                poisson,
+                weight=np.stack([np.zeros_like(hold), -weight * hold]),
+                substructures=self.substructures,
+            )
+
+    def _joints(self) -> Iterator[Joint]:
+        """Contacts with their mu."""
+        factors = shared.factors_of(self) if self.n_interfaces else ()
+        for contact, factor in zip(self.parts.contacts, factors, strict=True):
+            yield Joint(
+                contact.name,
+                contact.above,
+                contact.nodes,
+                contact.below,
+                contact.nodes_below,
+                contact.normals,
+                friction=float(self.friction * factor),
+            )
+
+    def _acted(self) -> Iterator[tuple[str, str, OuterLine]]:
+        """A name of its own, what happens, and the line, of all that is done to sides.
+
+        Where several lines of a body have a name, they have numbers.
+        """
+        counts: dict[str, int] = {}
+        for side in self.parts.sides:
+            for deed in self.deeds[side.name]:
+                where = taken_apart(side.name)[0]
+                if len({each.body for each in self._of_name(side.name)}) > 1:
+                    where = f"{where} of {self.parts.names[side.body]}"
+                name = f"{where} {deed}"
+                counts[name] = counts.get(name, 0) + 1
+                if counts[name] > 1:
+                    name = f"{name} {counts[name]}"
+                yield name, deed, side
+
+    def _of_name(self, name: str) -> list[OuterLine]:
+        """Lines of a name."""
+        return [side for side in self.parts.sides if side.name == name]
+
+    def _held(self) -> Iterator[Held]:
+        """Sides that are held or moved; each node once along each axis."""
+        taken: set[tuple[int, int, int]] = set()
+        for name, deed, side in self._acted():
+            for axis in HELD.get(deed, ()):
+                nodes = [
+                    node
+                    for node in side.nodes.tolist()
+                    if (side.body, node, axis) not in taken
+                ]
+                taken.update((side.body, node, axis) for node in nodes)
+                path = np.zeros(self.n_instants)
+                if deed.startswith("moved"):
+                    path = self.path("load")
+                label = f"{name} along {'xy'[axis]}" if deed == "held" else name
+                if nodes:
+                    yield Held(label, side.body, np.array(nodes), axis, path)
+
+    def _loads(self, bodies: list[Body]) -> Iterator[Load]:
+        """Sides that are pulled or pressed."""
+        for name, deed, side in self._acted():
+            if deed == "pulled":
+                pressure = -self.path("load")
+            elif deed == "pressed":
+                pressure = self.path("pressure_load")
+            else:
+                continue
+            body = bodies[side.body]
+            yield Load.of_pressure(name, side.body, body, side.nodes, pressure)
+
+    def sentence(self) -> str:
+        """Describe the bodies in a sentence."""
+        names = [f"{name!r}" for name in self.parts.names]
+        bodies = f"{len(names)} bodies"
+        if len(names) == 1:
+            bodies = "One body"
+        touch = "slide freely on each other"
+        if self.is_rough:
+            touch = "rub on each other"
+        if not self.n_interfaces:
+            touch = "touch nothing"
+        parts = []
+        for line, deeds in self.deeds.items():
+            if deeds and deeds != ("free",):
+                parts.append(f"{taken_apart(line)[0]} is {' and '.join(deeds)}")
+        return f"{bodies} of a mesh {touch}; {shared.listed(parts)}."
+
+
+def _of_setting(name: str, refusal: RefusedError) -> SettingError:
+    """Refusal of a setting by what is refused in it."""
+    found = Words(f"{refusal.name} {refusal.value}")
+    return SettingError(name, found, refusal.allowed, refusal.remedy)
