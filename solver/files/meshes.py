@@ -47,8 +47,9 @@ def read_meshes(kind: type[Settings], values: dict[str, Any], folder: Path) -> N
         value = values.get(name)
         if not isinstance(definition, TextParameter) or not definition.is_file:
             continue
-        is_name = isinstance(value, str) and not value.startswith(HEAD)
-        if is_name and value not in definition.presets:
+        if not isinstance(value, str) or value.startswith(HEAD):
+            continue
+        if value not in definition.presets:
             can = allowed(definition)
             data = read_bytes(folder / value, partial(SettingError, name, value, can))
             values[name] = text_of_mesh(data, value, name)

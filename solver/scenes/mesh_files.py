@@ -203,7 +203,7 @@ def as_text(mesh: NamedMesh) -> str:
                 )
             arrays[head + name] = np.searchsorted(used, cells).astype(kind)
     file = io.BytesIO()
-    np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
+    np.savez_compressed(file, **arrays)
     return HEAD + base64.b64encode(file.getvalue()).decode("ascii")
 
 
@@ -211,12 +211,7 @@ def from_text(text: str) -> NamedMesh:
     """Mesh of a text that `as_text` made."""
     try:
         data = base64.b64decode(text.removeprefix(HEAD), validate=True)
-        with zipfile.ZipFile(io.BytesIO(data)) as content:
-            size = sum(entry.file_size for entry in content.infolist())
-        if size > LARGEST:
-            raise ValueError("it is too large")
-        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            found = dict(arrays)
+        found = _arrays_in(data)
         points = found.pop(POINTS)
     except (binascii.Error, zipfile.BadZipFile, ValueError, KeyError) as problem:
         raise RefusedError(
@@ -230,3 +225,13 @@ def from_text(text: str) -> NamedMesh:
         else:
             lines[key.removeprefix(LINE)] = cells.astype(np.intp)
     return NamedMesh(points, surfaces, lines)
+
+
+def _arrays_in(data: bytes) -> dict[str, Array]:
+    """Arrays by name in a file of NumPy; larger ones than are allowed are refused."""
+    with zipfile.ZipFile(io.BytesIO(data)) as content:
+        size = sum(entry.file_size for entry in content.infolist())
+    if size > LARGEST:
+        raise ValueError("it is too large")
+    with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
+        return dict(arrays)

@@ -77,7 +77,10 @@ def _walk(
     ends: set[int],
     left: set[frozenset[int]],
 ) -> list[int]:
-    """Places from a start over its neighbour to an end; takes their edges off `left`."""
+    """Places from a start over its neighbour to an end.
+
+    The edges on the way are taken off those `left`.
+    """
     places = [start, second]
     left.discard(frozenset((start, second)))
     while places[-1] not in ends:

@@ -197,9 +197,9 @@ class NamedMesh:
         for (name, bodies), edges in self._groups.items():
             self._check_line(name, bodies, edges)
             named.update(map(tuple, edges.tolist()))
-        for edge, bodies in self._owners.items():
-            if len(bodies) > 1 and edge not in named:
-                names = " and ".join(repr(self.names[body]) for body in bodies)
+        for edge, owners in self._owners.items():
+            if len(owners) > 1 and edge not in named:
+                names = " and ".join(repr(self.names[body]) for body in owners)
                 raise RefusedError(
                     f"bodies {names}",
                     Words(f"with a common edge at {self._at(np.array([edge]))}"),
