@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from solver.discrete.plane.named_mesh_refused import check_named
 from solver.files.disk import read_bytes
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import HEAD, as_text, read_mesh
@@ -26,7 +27,7 @@ def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
     """
     try:
         mesh = read_mesh(data, source)
-        mesh.check()
+        check_named(mesh)
         return as_text(mesh)
     except RefusedError as refusal:
         value = refusal.value

@@ -40,7 +40,7 @@ class _Cells(NamedTuple):
 
 
 def check_plane(inside: Inside | None, path: Path) -> Inside:
-    """What lies inside bodies; refuse structures of rods, which have no plane."""
+    """Return the inside of plane bodies; refuse structures of rods."""
     if inside is None:
         raise SettingError(
             "--out",
@@ -67,7 +67,7 @@ def write_series(path: Path, iterate: Iterate) -> None:
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
     listed = ElementTree.SubElement(root, "Collection")
     displacement = inside.displacement(iterate.displacement, slice(None))
-    parts = {
+    parts: dict[str, _Bodies | _Contacts] = {
         "bodies": _Bodies(inside, displacement),
         "contacts": _Contacts(iterate),
     }

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
+from itertools import chain
 from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.body import Body, Held, Joint, Load
-from solver.discrete.plane.named_mesh import NamedMesh, OuterLine
+from solver.discrete.plane.body import Body, Joint
+from solver.discrete.plane.named_mesh import NamedMesh
+from solver.discrete.plane.named_mesh_refused import check_named
 from solver.discrete.problem import Problem
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import from_text, read_example
-from solver.scenes.named_sides import ALLOWED, deeds_of, taken_apart
+from solver.scenes.named_sides import ALLOWED, Sides, deeds_of, taken_apart
 from solver.scenes.plane import PlaneSettings, RectangleSettings
 from solver.settings.definitions import (
     BODY,
@@ -29,20 +31,12 @@ from solver.settings.load_paths import PRESETS, PRESSURES
 from solver.settings.scene import Icon
 
 EXAMPLES = {
-    "dovetail": "the root of a blade in the groove of a disk, pulled outwards",
-    "bolted": "a plate between two covers that a bolt presses together, pulled",
+    "bolted": "a plate between two covers that a bolt presses together, moved along",
+    "dovetail": "the root of a blade in the groove of a disk, pulled out of it",
 }
 """Meshes that come with the scene."""
 LARGEST_BODY = 4_000
 """Largest number of corners of a part: its inside is condensed by dense matrices."""
-HELD = {
-    "held": (0, 1),
-    "held x": (0,),
-    "held y": (1,),
-    "moved x": (0,),
-    "moved y": (1,),
-}
-"""Axes along which a side is held or moved."""
 
 
 @cache
@@ -52,7 +46,7 @@ def mesh_of(text: str) -> NamedMesh:
         mesh = read_example(text)
     else:
         mesh = from_text(text)
-    mesh.check()
+    check_named(mesh)
     return mesh
 
 
@@ -63,7 +57,7 @@ def _same_for_all(settings: MeshSettings) -> Rows:
 
 
 class MeshSettings(PlaneSettings):
-    """Settings of a mesh; by default a dovetail that is pulled and let go."""
+    """Settings of a mesh; by default plates that a bolt presses together."""
 
     scene = "mesh"
     title = "Mesh of one's own"
@@ -78,11 +72,12 @@ class MeshSettings(PlaneSettings):
     GROWS = ("substructures",)
     MESH = ()
     PARTS: ClassVar = {}
-    SMALL: ClassVar = {"mesh": "bolted", "instants": 7, "substructures": 1}
+    SMALL: ClassVar = {"instants": 9}
+    across = "length"
     has_joints = True
 
     mesh = BODY.text(
-        "dovetail",
+        "bolted",
         EXAMPLES,
         "a file that meshio reads, as .msh of Gmsh",
         "Mesh of all bodies: one that comes with Slipfront, or a file. Names of its "
@@ -110,7 +105,7 @@ class MeshSettings(PlaneSettings):
         title="Sides",
     )
     displacement = LOAD.quantity(
-        2e-5,
+        3e-5,
         (-1e6, 1e6),
         (-1e-4, 1e-4),
         "Largest displacement of sides that are moved.",
@@ -130,7 +125,7 @@ class MeshSettings(PlaneSettings):
         places=("body",),
     )
     load = LOAD.curve(
-        "triangle",
+        "sine",
         PRESETS,
         {"time": "s", "value": "m or Pa"},
         "Displacement or traction over time: a preset of the largest value, or points "
@@ -175,7 +170,7 @@ class MeshSettings(PlaneSettings):
     )
     young = redefined(
         PlaneSettings.param["young"],
-        110e9,
+        210e9,
         applies=lambda settings: settings.materials == "same",
     )
     poisson = redefined(
@@ -213,10 +208,15 @@ class MeshSettings(PlaneSettings):
         lines = dict.fromkeys(side.name for side in self.parts.sides)
         return deeds_of(list(lines), self.sides)
 
+    @property
+    def _every_deed(self) -> list[str]:
+        """What happens to any of the sides."""
+        return list(chain.from_iterable(self.deeds.values()))
+
     def has_deed(self, *verbs: str) -> bool:
         """Return whether any side is "moved", "pulled" or "pressed"."""
         try:
-            every = [deed for deeds in self.deeds.values() for deed in deeds]
+            every = self._every_deed
         except RefusedError:
             # Settings that are refused show all of their controls.
             return True
@@ -254,7 +254,7 @@ class MeshSettings(PlaneSettings):
         return {"substructures": min(counts)}
 
     def coarser(self) -> Iterator[Problem]:
-        """No coarser mesh: that of a file is what it is."""
+        """Yield no problem: a mesh of a file has no coarser one."""
         return iter(())
 
     def check_together(self) -> None:
@@ -263,7 +263,7 @@ class MeshSettings(PlaneSettings):
             deeds = self.deeds
         except RefusedError as refusal:
             raise _of_setting(refusal.name, refusal) from None
-        every = {deed.split()[0] for found in deeds.values() for deed in found}
+        every = {deed.split()[0] for deed in self._every_deed}
         if not every & {"held", "moved"}:
             names = ", ".join(taken_apart(line)[0] for line in deeds) or "no name"
             raise self.refusal(
@@ -311,10 +311,14 @@ class MeshSettings(PlaneSettings):
     def bodies(self) -> Bodies:
         """The bodies; one metre thick."""
         bodies = list(self._bodies())
-        held = list(self._held())
-        shown = [each.name for each in held if np.any(each.displacement)]
-        loads = list(self._loads(bodies))
-        shown += [each.name for each in loads]
+        sides = Sides(self.parts, self.deeds)
+        drive = np.zeros(self.n_instants)
+        if self.has_deed("moved", "pulled"):
+            drive = self.path("load")
+        held = list(sides.held(drive))
+        loads = list(sides.loads(bodies, drive, self.path("pressure_load")))
+        moved = [each.name for each in held if np.any(each.displacement)]
+        shown = [*moved, *[load.name for load in loads], None]
         return Bodies(
             bodies=bodies,
             joints=list(self._joints()),
@@ -325,7 +329,7 @@ class MeshSettings(PlaneSettings):
             state=self.plane,
             friction_law=self.law,
             macro_degree=self.macro_degree,
-            shown=shown[0] if shown else None,
+            shown=shown[0],
         )
 
     def _bodies(self) -> Iterator[Body]:
@@ -347,7 +351,9 @@ class MeshSettings(PlaneSettings):
 
     def _joints(self) -> Iterator[Joint]:
         """Contacts with their mu."""
-        factors = shared.factors_of(self) if self.n_interfaces else ()
+        factors = np.ones(0)
+        if self.n_interfaces:
+            factors = shared.factors_of(self)
         for contact, factor in zip(self.parts.contacts, factors, strict=True):
             yield Joint(
                 contact.name,
@@ -358,57 +364,6 @@ class MeshSettings(PlaneSettings):
                 contact.normals,
                 friction=float(self.friction * factor),
             )
-
-    def _acted(self) -> Iterator[tuple[str, str, OuterLine]]:
-        """A name of its own, what happens, and the line, of all that is done to sides.
-
-        Where several lines of a body have a name, they have numbers.
-        """
-        counts: dict[str, int] = {}
-        for side in self.parts.sides:
-            for deed in self.deeds[side.name]:
-                where = taken_apart(side.name)[0]
-                if len({each.body for each in self._of_name(side.name)}) > 1:
-                    where = f"{where} of {self.parts.names[side.body]}"
-                name = f"{where} {deed}"
-                counts[name] = counts.get(name, 0) + 1
-                if counts[name] > 1:
-                    name = f"{name} {counts[name]}"
-                yield name, deed, side
-
-    def _of_name(self, name: str) -> list[OuterLine]:
-        """Lines of a name."""
-        return [side for side in self.parts.sides if side.name == name]
-
-    def _held(self) -> Iterator[Held]:
-        """Sides that are held or moved; each node once along each axis."""
-        taken: set[tuple[int, int, int]] = set()
-        for name, deed, side in self._acted():
-            for axis in HELD.get(deed, ()):
-                nodes = [
-                    node
-                    for node in side.nodes.tolist()
-                    if (side.body, node, axis) not in taken
-                ]
-                taken.update((side.body, node, axis) for node in nodes)
-                path = np.zeros(self.n_instants)
-                if deed.startswith("moved"):
-                    path = self.path("load")
-                label = f"{name} along {'xy'[axis]}" if deed == "held" else name
-                if nodes:
-                    yield Held(label, side.body, np.array(nodes), axis, path)
-
-    def _loads(self, bodies: list[Body]) -> Iterator[Load]:
-        """Sides that are pulled or pressed."""
-        for name, deed, side in self._acted():
-            if deed == "pulled":
-                pressure = -self.path("load")
-            elif deed == "pressed":
-                pressure = self.path("pressure_load")
-            else:
-                continue
-            body = bodies[side.body]
-            yield Load.of_pressure(name, side.body, body, side.nodes, pressure)
 
     def sentence(self) -> str:
         """Describe the bodies in a sentence."""

@@ -124,10 +124,12 @@ def named(mesh: Any) -> NamedMesh:
                 "triangles, quadrilaterals, and edges with names",
                 "save the surfaces of a mesh in the plane alone",
             )
-        found, size = (lines, LINES) if kind in LINES else (surfaces, SURFACES)
+        found = surfaces
+        if kind in LINES:
+            found = lines
         for name in np.unique(names).tolist():
             if name:
-                corners = cells[names == name, : size[kind]]
+                corners = cells[names == name, : (SURFACES | LINES)[kind]]
                 found.setdefault(name, []).append(corners.astype(np.intp))
             elif kind in SURFACES:
                 raise RefusedError(

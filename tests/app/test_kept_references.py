@@ -48,6 +48,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "slope": 5.0,
         "top": "pulled",
     },
+    "mesh": {"mesh": "dovetail", "displacement": 1e-5, "young": 1e11, "pressure": 1e7},
     "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
 }
 

@@ -118,6 +118,7 @@ SOFT = {
     "layers": {"deflection": 0.2},
     "wall": {"young": 1e7},
     "rope": {"curvature": 30.0},
+    "mesh": {"young": 1e7},
 }
 
 

@@ -26,8 +26,6 @@ from solver.refusal import RefusedError, Words
 
 SAME = 1e-7
 """Largest distance of points of two bodies that are one, over the size of the mesh."""
-CONTACT = "contact"
-"""Beginning of the names of edges that must lie between two bodies."""
 
 
 class ContactLine(NamedTuple):
@@ -77,9 +75,8 @@ class NamedMesh:
     Raises
     ------
     RefusedError
-        If there is no body; for elements without area; for edges with a name that
-        follow no element or run through a body; where bodies have common edges without
-        a name, or touch with nodes that do not match.
+        If there is no body. What bodies, contacts and sides must be to each other
+        `check_named` in `named_mesh_refused` tells.
     """
 
     points: Array
@@ -140,7 +137,7 @@ class NamedMesh:
         return [np.unique(elements) for elements in self.surfaces.values()]
 
     @cached_property
-    def _places(self) -> Indices:
+    def places(self) -> Indices:
         """Number of the place of every point, (n_points,); bodies may share one.
 
         Points of one body at the same place, as of a crack, stay apart.
@@ -158,30 +155,30 @@ class NamedMesh:
         )
 
     @cached_property
-    def _edges(self) -> list[Array]:
+    def edges(self) -> list[Array]:
         """Edges of every body as sorted places of their ends, (n_edges, 2) each."""
         edges = []
         for shape, used in zip(self.shapes, self._used, strict=True):
-            ends = self._places[used][shape.grid.facets.T]
+            ends = self.places[used][shape.grid.facets.T]
             edges.append(np.sort(ends, axis=1))
         return edges
 
     @cached_property
-    def _owners(self) -> dict[tuple[int, int], list[int]]:
+    def owners(self) -> dict[tuple[int, int], list[int]]:
         """Bodies that have an edge, by the places of its ends."""
         owners: dict[tuple[int, int], list[int]] = {}
-        for body, edges in enumerate(self._edges):
+        for body, edges in enumerate(self.edges):
             for low, high in edges.tolist():
                 owners.setdefault((low, high), []).append(body)
         return owners
 
     @cached_property
-    def _groups(self) -> dict[tuple[str, tuple[int, ...]], Array]:
+    def groups(self) -> dict[tuple[str, tuple[int, ...]], Array]:
         """Edges with a name, by the name and the bodies that have them."""
         groups: dict[tuple[str, tuple[int, ...]], list[tuple[int, int]]] = {}
         for name, ends in self.lines.items():
-            for low, high in np.sort(self._places[ends], axis=1).tolist():
-                bodies = tuple(self._owners.get((low, high), ()))
+            for low, high in np.sort(self.places[ends], axis=1).tolist():
+                bodies = tuple(self.owners.get((low, high), ()))
                 groups.setdefault((name, bodies), []).append((low, high))
         return {key: np.unique(edges, axis=0) for key, edges in groups.items()}
 
@@ -191,104 +188,11 @@ class NamedMesh:
             return self
         return NamedMesh(factor * self.points, self.surfaces, self.lines)
 
-    def check(self) -> None:
-        """Refuse edges that are neither contact nor side, and bodies that are glued."""
-        named: set[tuple[int, int]] = set()
-        for (name, bodies), edges in self._groups.items():
-            self._check_line(name, bodies, edges)
-            named.update(map(tuple, edges.tolist()))
-        for edge, owners in self._owners.items():
-            if len(owners) > 1 and edge not in named:
-                names = " and ".join(repr(self.names[body]) for body in owners)
-                raise RefusedError(
-                    f"bodies {names}",
-                    Words(f"with a common edge at {self._at(np.array([edge]))}"),
-                    "edges with a name where bodies meet, which makes them a contact",
-                    "name the line between them, or give both the same name if they "
-                    "are one body",
-                )
-        for first, second in combinations(range(len(self.names)), 2):
-            self._check_overlap(first, second)
-
-    def _check_line(self, name: str, bodies: tuple[int, ...], edges: Array) -> None:
-        """Refuse edges of a name that are neither a contact nor a side."""
-        allowed = "edges between two bodies, or on the outside of one"
-        if not bodies:
-            raise RefusedError(
-                f"line {name!r}",
-                Words(f"off the bodies at {self._at(edges)}"),
-                allowed,
-                "leave out its name, or name the elements beside it, too",
-            )
-        if len(bodies) > 1:
-            return
-        # An edge inside a body lies between two of its elements.
-        shape = self.shapes[bodies[0]]
-        inner = self._edges[bodies[0]][shape.grid.f2t[1] >= 0]
-        if set(map(tuple, inner.tolist())) & set(map(tuple, edges.tolist())):
-            raise RefusedError(
-                f"line {name!r}",
-                Words(f"inside body {self.names[bodies[0]]!r}"),
-                allowed,
-                "leave out its name",
-            )
-        if name.lower().startswith(CONTACT):
-            raise RefusedError(
-                f"line {name!r}",
-                Words(f"on body {self.names[bodies[0]]!r} alone, {self._at(edges)}"),
-                "a contact, along which two bodies have nodes at the same places",
-                "mesh both bodies alike there, or give another name to a side",
-            )
-
-    def _check_overlap(self, first: int, second: int) -> None:
-        """Refuse outer edges of two bodies that lie on each other and do not match."""
-        for one, other in ((first, second), (second, first)):
-            starts, ends = self._outer(other, ())
-            from_ends = self._outer(one, (one, other))
-            if not len(from_ends[0]) or not len(starts):
-                continue
-            middles = 0.5 * (from_ends[0] + from_ends[1])
-            along = ends - starts
-            beyond = middles[:, None] - starts
-            lengths = np.square(along).sum(axis=1)
-            share = np.clip(np.einsum("mea,ea->me", beyond, along) / lengths, 0.0, 1.0)
-            apart = np.linalg.norm(beyond - share[..., None] * along, axis=2).min(
-                axis=1
-            )
-            if apart.min() <= SAME * self.size:
-                x, y = middles[apart.argmin()]
-                raise RefusedError(
-                    f"bodies {self.names[one]!r} and {self.names[other]!r}",
-                    Words(f"that touch at ({x:.4g}, {y:.4g})"),
-                    "bodies that have nodes at the same places where they touch",
-                    "mesh both alike there",
-                )
-
-    def _outer(self, body: int, without: tuple[int, ...]) -> tuple[Array, Array]:
-        """Ends of the outer edges of a body, (n, 2) each, m.
-
-        Those that both bodies of `without` have are left out.
-        """
-        shape = self.shapes[body]
-        is_outer = shape.grid.f2t[1] < 0
-        if without:
-            edges = self._edges[body].tolist()
-            shared = [self._owners[low, high] == sorted(without) for low, high in edges]
-            is_outer &= ~np.array(shared)
-        first, last = shape.corners[shape.grid.facets[:, is_outer]]
-        return first, last
-
-    def _at(self, edges: Array) -> str:
-        """Words on the middle of the first of some edges, (n, 2)."""
-        first = [int((self._places == place).argmax()) for place in edges[0]]
-        x, y = self.points[first].mean(axis=0)
-        return f"({x:.4g}, {y:.4g})"
-
     @cached_property
     def contacts(self) -> list[ContactLine]:
         """Lines along which bodies touch."""
         found = list[ContactLine]()
-        for (name, bodies), edges in self._groups.items():
+        for (name, bodies), edges in self.groups.items():
             for body, other in combinations(bodies, 2):
                 found += self._contacts_of(name, (body, other), edges)
         return _numbered(found)
@@ -309,18 +213,20 @@ class NamedMesh:
             is_below = mean[1] > 0.0
             if abs(mean[1]) <= 1e-6 * abs(mean[0]):
                 is_below = mean[0] > 0.0
-            order = (1, 0) if is_below else (0, 1)
-            above, below = [bodies[side] for side in order]
-            nodes, nodes_below = [chains[side] for side in order]
-            normals = outward if is_below else -outward
-            normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+            normals = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+            sides = list(zip(bodies, chains, strict=True))
+            if is_below:
+                sides.reverse()
+            else:
+                normals = -normals
+            (above, nodes), (below, nodes_below) = sides
             yield ContactLine(name, above, below, nodes, nodes_below, normals)
 
     @cached_property
     def sides(self) -> list[OuterLine]:
         """Lines on the outside of bodies."""
         found = []
-        for (name, bodies), edges in self._groups.items():
+        for (name, bodies), edges in self.groups.items():
             if len(bodies) == 1:
                 for line in chains_of(edges, self._position_of):
                     chain = self._along(bodies[0], line.own)
@@ -330,13 +236,13 @@ class NamedMesh:
     @cached_property
     def _position_of(self) -> Array:
         """Position of every place, shape (n_places, 2), m."""
-        positions = np.empty((self._places.max() + 1, 2))
-        positions[self._places] = self.points
+        positions = np.empty((self.places.max() + 1, 2))
+        positions[self.places] = self.points
         return positions
 
     def _along(self, body: int, places: Sequence[int]) -> Indices:
         """Chain of nodes of a body along places in turn."""
-        own = self._places[self._used[body]]
+        own = self.places[self._used[body]]
         order = np.argsort(own)
         corners = order[np.searchsorted(own, places, sorter=order)]
         return self.shapes[body].along(corners)
