@@ -133,7 +133,7 @@ class SettingControl:
         if not definition.is_file:
             field = pmui.TextInput(variant="standard", **more)
             return field, field
-        options = [*definition.presets]
+        options = list(definition.presets)
         field = pmui.Select(options=options, variant="standard", **more)
         return field, field
 
@@ -192,10 +192,11 @@ class SettingControl:
                 self._dialog.update()
         elif isinstance(self._definition, TextParameter) and self._definition.is_file:
             presets = list(self._definition.presets)
-            is_own = value not in presets
             # A file is there to be chosen only while it is open.
-            options = [*presets, *[OWN] * is_own]
-            self.field.param.update(options=options, value=OWN if is_own else value)
+            if value not in presets:
+                presets.append(OWN)
+                value = OWN
+            self.field.param.update(options=presets, value=value)
         elif self.slider is None:
             self.field.value = value
         else:

@@ -204,13 +204,13 @@ class MeshSettings(PlaneSettings):
 
     @cached_property
     def deeds(self) -> Mapping[str, tuple[str, ...]]:
-        """What happens to each side, by the name of its line."""
+        """Deeds on each side, by the name of its line."""
         lines = dict.fromkeys(side.name for side in self.parts.sides)
         return deeds_of(list(lines), self.sides)
 
     @property
     def _every_deed(self) -> list[str]:
-        """What happens to any of the sides."""
+        """Deeds on any of the sides."""
         return list(chain.from_iterable(self.deeds.values()))
 
     def has_deed(self, *verbs: str) -> bool:
@@ -318,7 +318,8 @@ class MeshSettings(PlaneSettings):
         held = list(sides.held(drive))
         loads = list(sides.loads(bodies, drive, self.path("pressure_load")))
         moved = [each.name for each in held if np.any(each.displacement)]
-        shown = [*moved, *[load.name for load in loads], None]
+        pulled = [load.name for load in loads]
+        shown = [*moved, *pulled, None]
         return Bodies(
             bodies=bodies,
             joints=list(self._joints()),

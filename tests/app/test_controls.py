@@ -18,7 +18,7 @@ from app.units import Unit, typed, unit_of
 from solver.files.saved import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import CurveParameter
+from solver.settings.definitions import CurveParameter, TextParameter
 
 
 @cache
@@ -64,6 +64,10 @@ def test_the_widget_of_every_setting_shows_its_value_and_takes_another(
         elif isinstance(definition, param.Boolean):
             control.field.value = not value
             assert held(state, name) is not value
+        elif isinstance(definition, TextParameter) and not definition.is_file:
+            control.field.value = "nowhere held"
+            assert state.refusal
+            assert held(state, name) == value
         elif others := [
             one for one in control.field.options if one not in (value, POINTS)
         ]:

@@ -339,7 +339,11 @@ def test_a_dovetail_rubs_one_way_when_pulled_and_the_other_when_let_go() -> None
 def test_a_bolted_plate_is_held_by_friction_on_both_of_its_faces() -> None:
     pressed = 5e7 * 0.03
     settings = MESH.checked(
-        {"displacement": 2e-4, "load": "triangle", "sides": "left held x, right moved x and held y"}
+        {
+            "displacement": 2e-4,
+            "load": "triangle",
+            "sides": "left held x, right moved x and held y",
+        }
     )
     problem = discretise(settings)
     solution = reference_of(problem)
