@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import chain
 from typing import Any
 
@@ -42,6 +42,9 @@ if (link) {
 """
 MET = "localStorage.setItem('slipfront', 'met')"
 """Script that notes that this browser has met the page."""
+SPEAK = "document.getElementById('spoken').textContent = browser.spoken"
+"""Script that has a text spoken: in one element, of which screen readers follow the
+text. A pane of Panel makes its content anew, which they may pass over."""
 GO = "if (browser.destination) { location.search = browser.destination }"
 """Script that opens the page of another address, also one that is there already."""
 LISTEN = """
@@ -50,6 +53,12 @@ const measure = () => {
 }
 measure()
 addEventListener("resize", measure)
+const spoken = document.createElement("div")
+spoken.id = "spoken"
+spoken.setAttribute("role", "status")
+spoken.style = "position: fixed; top: 0; overflow: hidden; clip-path: inset(50%)"
+document.body.append(spoken)
+spoken.textContent = browser.spoken
 // A property that keeps its value tells nothing: the same address may come back twice,
 // and an address may be empty.
 addEventListener("popstate", () => {
@@ -108,12 +117,12 @@ class Display:
             lambda *events: self._update(), ["frame", "selection", "ghost", "is_new"]
         )
 
-    def look_at(self, views: list[View]) -> None:
-        """Set the views in sight."""
+    def look_at(self, views: list[View], also: Iterable[str] = ()) -> None:
+        """Set the views in sight, and needs of frames beside theirs."""
+        needs = chain.from_iterable(view.needs for view in views)
+        self._state.needs = frozenset([*needs, *also])
         if views != self.views:
             self.views = views
-            needs = chain.from_iterable(view.needs for view in views)
-            self._state.needs = frozenset(needs)
             self._update()
 
     def catch_up(self) -> None:
@@ -189,8 +198,9 @@ class Browser(DataModel):
 
     The window has a `height` in px and may be narrow. `pressed` is the last key, and
     `count` grows with every key. `search` is the address to which the browser went back
-    or on, `copied` a link that it is to copy, `destination` an address whose page it is
-    to open. A browser is new until somebody has done something on a page.
+    or on, `copied` a link that it is to copy, `spoken` a text for screen readers,
+    `destination` an address whose page it is to open. A browser is new until somebody
+    has done something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -199,6 +209,7 @@ class Browser(DataModel):
     count: int = Int(default=0)  # type: ignore[assignment]
     search: str = String(default="")  # type: ignore[assignment]
     copied: str = String(default="")  # type: ignore[assignment]
+    spoken: str = String(default="")  # type: ignore[assignment]
     is_new: bool = Bool(default=False)  # type: ignore[assignment]
     destination: str = String(default="")  # type: ignore[assignment]
 
@@ -216,6 +227,7 @@ class Browser(DataModel):
         self.on_change("count", lambda name, old, new: actions[self.pressed]())
         args = {"browser": self, "names": list(actions), "taken": TAKEN}
         self.js_on_change("copied", CustomJS(args=args, code=COPY))
+        self.js_on_change("spoken", CustomJS(args=args, code=SPEAK))
         self.js_on_change("is_new", CustomJS(code=f"if (!cb_obj.is_new) {{ {MET} }}"))
         self.js_on_change("destination", CustomJS(args=args, code=GO))
         document.add_root(self)

@@ -58,6 +58,9 @@ class InterfaceFields:
     """Pressure, same shape, Pa; None where it is given."""
     status: Bytes
     """Status of the points: -1, 0, +1 or `OPEN`, same shape."""
+    slip: Floats | None = None
+    """Tangential displacement over the body below, same shape, m; None where nobody
+    takes it away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,6 +201,8 @@ class Frame:
     """Energy lost in the whole interval, J."""
     residual: float | None = None
     """KKT residual of a certified solution; None for all other iterates."""
+    is_followed: bool = False
+    """Whether the states of the run before led to the answer, without an iteration."""
     remarks: tuple[str, ...] = ()
     """Remarks on the answer, in plain sentences."""
     extras: Mapping[str, Any] = field(default_factory=dict)
@@ -212,8 +217,9 @@ class Frame:
         arrays = [moved.nodes, moved.points, moved.status, self.loop]
         for fields in self.contact.values():
             arrays += [fields.friction, fields.status]
-            if fields.pressure is not None:
-                arrays.append(fields.pressure)
+            for more in (fields.pressure, fields.slip):
+                if more is not None:
+                    arrays.append(more)
         return sum(array.nbytes for array in arrays) + _size(self.extras)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.browser import Display
+from app.messages import TABLE
 from app.state import TABS, PageState
 from app.status import figures_line, status_line
 from app.transport import Transport
@@ -23,7 +25,7 @@ STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding=
 LARGE = 0.026
 """Type size of plots on a projector over the window's height."""
 LOW = 60
-HIGH = 0.1
+HIGH = 0.12
 """Height of the time line: px on the page, share of the window's on a projector."""
 ROOM = 900
 """Height of a window, px, from which all cards have room."""
@@ -72,6 +74,7 @@ class Live:
             margin=0,
         )
         self._is_open = False
+        self._also: list[str] = []
         look = {"css_classes": ["words"], "sizing_mode": "stretch_width"}
         styles = {"flex-wrap": "wrap", "justify-content": "space-between"}
         below = wrapped(self._sentence, self._figures, styles=styles, **look)
@@ -186,10 +189,19 @@ class Live:
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
-        if self._is_open and self.state.tab == TABS[0]:
-            self.display.look_at(self._in_sight())
-        else:
-            self.display.look_at([])
+        if not self._is_open:
+            return
+        views: list[View] = []
+        if self.state.tab == TABS[0]:
+            views = self._in_sight()
+        self.display.look_at(views, self._also)
+
+    def offer(self, is_offered: bool) -> None:
+        """Have frames with all that is taken away, as long as files are offered."""
+        self._also = []
+        if is_offered:
+            self._also.append(TABLE)
+        self.look()
 
     def _in_sight(self) -> list[View]:
         seen = [card.seen for card in self._cards if card.seen is not None]
@@ -239,7 +251,8 @@ class Card:
         self.kinds: Kinds = tuple([type(view) for view in views])
         self.seen: View | None = None
         self._offered: list[View] = []
-        look = {"margin": (0, 20, 0, 0), **looks("small-tabs")}
+        # Beside them is the mark of what the plot shows.
+        look = {"margin": (0, 28, 0, 0), **looks("small-tabs")}
         look["sizing_mode"] = "stretch_width"
         self.tabs = pmui.TabMenu(items=[], **look)
         self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
@@ -252,11 +265,9 @@ class Card:
         """Offer the views that apply to the settings; show the one in the state."""
         state = self._state
         offered = [view for view in self.views if view.applies(state.settings)]
-        names = [view.name for view in offered]
-        named = [names.index(name) for name in state.plots if name in names]
         seen = None
         if offered:
-            seen = offered[next(iter(named), 0)]
+            seen = offered[on_top(offered, state)]
         if offered == self._offered and seen == self.seen:
             return
         is_turned = seen is not self.seen
@@ -298,6 +309,29 @@ class Card:
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
         return pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=0)
+
+
+def first_needs(state: PageState, kinds: Kinds | None) -> frozenset[str]:
+    """Extras for the views that a browser shows first, of all cards or of a lesson.
+
+    It has not told yet how many cards its window has room for.
+    """
+    groups: Iterable[Kinds] = (*LARGE_CARDS, *CARDS)
+    if kinds is not None:
+        groups = [(kind,) for kind in kinds]
+    needs = set(Scene.needs)
+    for group in groups:
+        offered = [kind for kind in group if kind.applies(state.settings)]
+        if offered:
+            needs |= offered[on_top(offered, state)].needs
+    return frozenset(needs)
+
+
+def on_top(offered: Sequence[View] | Sequence[type[View]], state: PageState) -> int:
+    """Number of the view, of those that a card offers, that the state names; or 0."""
+    names = [view.name for view in offered]
+    named = [names.index(name) for name in state.plots if name in names]
+    return next(iter(named), 0)
 
 
 def column(role: str, *parts: Any) -> pn.Column:

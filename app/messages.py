@@ -49,6 +49,10 @@ class Show:
     iteration: int
 
 
+TABLE = "table"
+"""Need of a frame with the contact of all interfaces, and with slip."""
+
+
 @dataclass(frozen=True)
 class Needs:
     """Extras and quantities that frames shall carry, and the selection."""

@@ -17,11 +17,12 @@ from app.experiments.fit import FitTab
 from app.experiments.reports import Reports
 from app.experiments.whatif import WhatIf
 from app.files.export import LOOK, offers
-from app.lessons.guide import Guide
+from app.lessons.guide import Guide, kinds_beside
 from app.link import Link, read, show
-from app.live import LARGE, STYLE, Live, column
+from app.live import LARGE, STYLE, Live, column, first_needs
 from app.server import PAGES
 from app.state import TABS, PageState
+from app.status import spoken_status
 from app.supervisor import Supervisor
 from app.transport import TOUCHED
 from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
@@ -88,6 +89,7 @@ class Page:
         self._supervisor = Supervisor(state, document)
         if not state.room:
             # The first picture is there once the browser is.
+            state.needs = first_needs(state, kinds_beside(state))
             self._supervisor.begin()
             state.reset(iteration or 1)
             state.running = not iteration
@@ -125,6 +127,7 @@ class Page:
         ]
         for each in dialogs:
             each.param.watch(self._put, "open")
+        self._away.param.watch(lambda event: self._live.offer(event.new), "open")
 
     def _framed(self) -> pmui.Page:
         """The template, with header, controls and main area."""
@@ -150,6 +153,11 @@ class Page:
         acts = [*TOUCHED, "plots", "view"]
         watch = self.state.param.watch
         watch(lambda *events: self._browser.update(is_new=False), acts)
+        told = ["newest", "frame", "running", "message", "refusal"]
+        watch(
+            lambda *events: self._browser.update(spoken=spoken_status(self.state)),
+            told,
+        )
         watch(lambda event: self._turn(event.new), "tab")
         watch(lambda event: self._dress(), "view")
         watch(lambda event: self._show_controls(), "is_narrow")
@@ -158,7 +166,7 @@ class Page:
     def loaded(self) -> None:
         """Show the figures once a browser is there, and go on or follow a class."""
         self._supervisor.open()
-        self._live.open(self._guide.kinds)
+        self._live.open(kinds_beside(self.state))
         if not self.state.room:
             self._live.display.pulse.on_change("painted", self._go_on)
         elif not self._member.enter(self.state.room):
@@ -212,7 +220,7 @@ class Page:
 
     def _on_height(self) -> None:
         self._read()
-        self._live.arrange(self._guide.kinds)
+        self._live.arrange(kinds_beside(self.state))
 
     def _read(self) -> None:
         """Have the text beside the plots as large as they are."""
@@ -286,7 +294,7 @@ class Page:
         """
         self._place()
         self._read()
-        self._live.arrange(self._guide.kinds)
+        self._live.arrange(kinds_beside(self.state))
         self.template.sx = COMPACT if self.state.view == "page" else BARE
         self._show_controls()
 
@@ -310,7 +318,7 @@ def follow_itself(template: pmui.Page) -> None:
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     # Without notifications: each page's would stay in Panel's table of views for good.
-    pn.extension(reconnect=True, respect_explicit_sizing=True)
+    pn.extension("katex", reconnect=True, respect_explicit_sizing=True)
     # Panel sets this as it sends a page. One that is made anew by the socket, as its
     # session had ended while a slow browser was still loading, is not sent: its style
     # sheets would be asked from the internet.

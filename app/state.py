@@ -437,8 +437,12 @@ class PageState(param.Parameterized):
             self.brought,
         )
         if is_news or needs != self._sent:
+            is_more = not is_news and self._sent is not None
             self._sent = needs
             self.send(needs)
+            # The newest frame comes by itself, an earlier one when it is asked for.
+            if is_more and self.iteration is not None:
+                self.send(Show(self.iteration))
 
     def turn(self, step: int) -> None:
         """Select the interface that is a number of interfaces further."""

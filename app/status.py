@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -47,6 +48,8 @@ TERMS = (
 """Words of the glossary in the status and its details."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
+OWNER = "after the linear stage that follows:"
+"""Words before the figures of an iteration that is shown up to its local stage."""
 
 
 def status_line(state: PageState) -> str:
@@ -69,36 +72,52 @@ def status_line(state: PageState) -> str:
         rest=explained(rest, *TERMS),
         details=[explained(sentence, *TERMS) for sentence in details],
         said=" ".join(said),
-        is_running=state.running and not state.is_over,
     )
+
+
+def spoken_status(state: PageState) -> str:
+    """Text for screen readers: messages, and the status of a run that rests."""
+    sentences = _said(state)
+    frame = state.frame
+    newest = state.newest
+    goes_on = state.running and not state.is_over
+    if frame is not None and newest is not None and not goes_on:
+        sentences.insert(0, "".join(_progress(state, frame, newest)))
+    return " ".join(sentences)
 
 
 def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     """State of the run in bold, and its iterations and error."""
     if state.is_stale:
         return "solving …", ""
-    wrong = percent(frame.error)
+    # Before the first estimate nobody knows.
+    wrong = ""
+    if math.isfinite(frame.error):
+        wrong = f" · {percent(frame.error)} wrong"
     counted = f"iteration {frame.iteration}"
     if state.selection.stage == LOCAL:
         return counted, " · local stage, paused"
     if frame is not newest:
-        return counted, f" of {newest.iteration} · {wrong} wrong"
+        return counted, f" of {newest.iteration}{wrong}"
     if newest.status is None:
         paused = "" if state.running else " · paused"
-        return counted, f" · {wrong} wrong{paused}"
-    iterations = f"{newest.iteration} iterations"
-    if newest.iteration == 1:
+        return counted, f"{wrong}{paused}"
+    count = newest.iteration
+    if newest.is_followed:
+        count = 0
+    iterations = f"{count} iterations"
+    if count == 1:
         iterations = "1 iteration"
     if frame.run.is_idle:
         hint = "nothing acts here; give a load, or move a side"
         return "at rest", f" · {iterations}: {hint}"
     search = "search"
-    end = f"{wrong} wrong"
+    end = wrong
     if newest.residual is not None:
-        end = "certified"
+        end = " · certified"
         if not newest.is_answer:
             search = "answer"
-    return ENDINGS[newest.status.ending], f" · {search}: {iterations} · {end}"
+    return ENDINGS[newest.status.ending], f" · {search}: {iterations}{end}"
 
 
 def _details(frame: Frame) -> list[str]:
@@ -146,7 +165,8 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     """Key figures of the structure at the selected instant, in a line (HTML).
 
     The largest and the last value appear over each of them. A run that is known to have
-    no solution at some instants has dashes in place of values.
+    no solution at some instants has dashes in place of values. Figures are those of a
+    whole iteration: at its local stage bodies have no displacement of their own.
     """
     run = frame.run
     column = run.column(selection.phase)
@@ -174,7 +194,10 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     if _is_lost(frame):
         figures = dict.fromkeys(figures, "–")
         hints = dict.fromkeys(figures, LOST)
-    return html("figures.html", figures=figures, hints=hints)
+    owner = ""
+    if selection.stage == LOCAL:
+        owner = OWNER
+    return html("figures.html", figures=figures, hints=hints, owner=owner)
 
 
 def _is_lost(frame: Frame) -> bool:

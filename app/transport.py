@@ -112,6 +112,7 @@ class Transport:
             size="small",
             width=136,
             margin=(6, 4),
+            **looks("large"),
         )
         self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
 
@@ -322,6 +323,8 @@ class Transport:
     def _name(self) -> str:
         """Name of the iterate that is shown, among all."""
         frame = self._state.frame
+        if frame.is_followed:
+            return "Answer"
         if frame.is_answer:
             return f"Answer after {frame.iteration} iterations"
         return f"Iteration {frame.iteration} of {self._state.newest.iteration}"

@@ -29,6 +29,9 @@ GLOSSARY = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
 """Keys, words and plots of the page, in Markdown."""
 ROW = re.compile(r"^\| (.+) \| (.+) \|$", re.MULTILINE)
 
+FOCUS = {"&:focus-within": {"outline": "2px solid", "outlineOffset": "2px"}}
+"""Look of a file button while keys go to it: its focus lies on a field within it."""
+
 
 def _meanings() -> dict[str, str]:
     """Meanings of the glossary by word."""
@@ -112,6 +115,29 @@ def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:
     return pmui.Dialog(
         *objects, title=title, show_close_button=True, close_on_click=True, **look
     )
+
+
+def file_button(
+    label: str, accept: str, take: Callable[[bytes, str], object], **look: Any
+) -> pmui.FileInput:
+    """A button that opens a file, whose content and name a function takes.
+
+    It keeps its label: a message tells what became of the file.
+    """
+    file = pmui.FileInput(
+        label=label, uploaded_label=label, accept=accept, sx=FOCUS, **look
+    )
+
+    def pass_on(event: Any) -> None:
+        # An empty file is one, too, and has its message.
+        if event.new is not None:
+            name = file.filename
+            # The same file may be opened once more.
+            file.clear()
+            take(event.new, name)
+
+    file.param.watch(pass_on, "value")
+    return file
 
 
 def download(

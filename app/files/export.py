@@ -88,24 +88,37 @@ def history_table(frame: Frame) -> str:
     return table.to_csv(index=False)
 
 
-def contact_table(frame: Frame, selection: Selection) -> str:
-    """Contact at all points and instants of the selected interface.
+def contact_table(frame: Frame) -> str:
+    """Contact at all points and instants of the interfaces that a frame has.
 
-    CSV with one line of heads, in SI: position x, time t, friction force on the body
-    above, pressure where it is found, and status. It can be opened as the results of
-    another program.
+    CSV with one line of heads, in SI: of several interfaces the name, position x, time
+    t, friction force on the body above, pressure where it is found, slip, and status.
+    It can be opened as the results of another program.
     """
     run = frame.run
-    name = selection.interface_of(run)
-    fields = frame.contact[name]
     unit = PER[run.settings.kind]
-    x, t = np.meshgrid(run.interfaces[name].positions, run.instants, indexing="ij")
-    columns = {"x, m": x, "t, s": t, f"friction force, {unit}": fields.friction}
-    if fields.pressure is not None:
-        columns["pressure, Pa"] = fields.pressure
-    table = pd.DataFrame({head: field.ravel() for head, field in columns.items()})
-    table["status"] = pd.Series(fields.status.ravel()).map(STATUSES)
-    return table.to_csv(index=False)
+    tables = []
+    for name, fields in frame.contact.items():
+        x, t = np.meshgrid(run.interfaces[name].positions, run.instants, indexing="ij")
+        columns = {
+            "x, m": x,
+            "t, s": t,
+            f"friction force, {unit}": fields.friction,
+            "pressure, Pa": fields.pressure,
+            "slip, m": fields.slip,
+        }
+        table = pd.DataFrame(
+            {
+                head: field.ravel()
+                for head, field in columns.items()
+                if field is not None
+            }
+        )
+        table["status"] = pd.Series(fields.status.ravel()).map(STATUSES)
+        if len(run.interfaces) > 1:
+            table.insert(0, "contact", name)
+        tables.append(table)
+    return pd.concat(tables).to_csv(index=False)
 
 
 def plot_table(view: View) -> str:
@@ -295,12 +308,15 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
     page = partial(offline_page, state, views)
     files = {
         "The run as one page (.html)": (".html", page),
-        "The run as a program (.py)": (".py", partial(program, frame.run.settings)),
+        "The run as a program (.py)": (
+            ".py",
+            lambda: program(state.frame.run.settings),
+        ),
     }
-    tables = {"All iterations": partial(history_table, frame)}
-    if state.selection.interface_of(frame.run) in frame.contact:
-        contact = partial(contact_table, frame, state.selection)
-        tables["Contact over x and t"] = contact
+    tables = {
+        "All iterations": lambda: history_table(state.frame),
+        "Contact over x and t": lambda: contact_table(state.frame),
+    }
     # A picture of bodies has no curves.
     plots = [view for view in views if not isinstance(view, Scene)]
     tables |= {view.name: partial(plot_table, view) for view in plots}

@@ -22,7 +22,7 @@ from app.files.tables import (
 )
 from app.refusals import message_of
 from app.state import PageState, default_settings
-from app.widgets import PlainText, button, dialog, download
+from app.widgets import PlainText, button, dialog, download, file_button
 from solver.files.meshes import MESHES, text_of_mesh
 from solver.files.saved import dump, read_settings
 from solver.files.tables import Table
@@ -44,8 +44,6 @@ HEADS = (
     "[mm], force [kN]`. Others are passed over; one name more is that of the row's "
     "number."
 )
-FOCUS = {"&:focus-within": {"outline": "2px solid", "outlineOffset": "2px"}}
-"""Look of a file button while keys go to it: its focus lies on a field within it."""
 SHOWN = 5
 """Number of rows of a table that are shown."""
 
@@ -89,6 +87,7 @@ class TableOpener:
         self._state = state
         self._is_updating = False
         self._table: Table | None = None
+        self._source = ""
         self._make_buttons(label, accept, width)
         self._make_dialog()
         buttons = self.file, self.columns_button, self.remove_button
@@ -98,7 +97,6 @@ class TableOpener:
             self.dialog,
             margin=0,
         )
-        self.file.param.watch(lambda event: self._open(), "value")
         for field in (self.use, self.heads):
             field.param.watch(lambda event: self._reread(), "value")
         state.param.watch(lambda event: self._on_brought(), "brought")
@@ -112,14 +110,12 @@ class TableOpener:
             "width": width,
             "variant": "outlined",
         }
-        # The button keeps its name: the message tells what became of a file.
-        self.file = pmui.FileInput(
-            label=label,
-            uploaded_label=label,
+        self.file = file_button(
+            label,
+            accept,
+            self._open,
             icon="upload_file",
-            accept=accept,
             description=HELP,
-            sx=FOCUS,
             **outlined,
         )
         self.message = PlainText(margin=0)
@@ -157,13 +153,12 @@ class TableOpener:
         self._offer(self.use.value)
         self.dialog.open = True
 
-    def _open(self) -> None:
+    def _open(self, data: bytes, source: str) -> None:
         """Use a file by its content; for a measured loop show the columns, too."""
-        if not self.file.value:
-            return
         self._table = None
+        self._source = source
         self._say("")
-        content = self._take(partial(self._read, self.file.filename, self.file.value))
+        content = self._take(partial(self._read, source, data))
         self.columns_button.visible = self._table is not None
         if isinstance(content, MeasuredLoop):
             self.show()
@@ -217,7 +212,7 @@ class TableOpener:
             content, message = read()
         except RefusedError as refused:
             reason = message_of(refused, self._state.settings)
-            message = f"{self.file.filename} was refused. {reason}"
+            message = f"{self._source} was refused. {reason}"
             self._state.refusal = reason
         if isinstance(content, Settings):
             self._state.adopt(content)

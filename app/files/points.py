@@ -16,7 +16,7 @@ from app.refusals import message_of
 from app.state import PageState
 from app.units import units_of_points
 from app.views.colors import LATIN
-from app.widgets import PlainText, dialog
+from app.widgets import PlainText, dialog, file_button
 from solver.arrays import Array
 from solver.refusal import RefusedError
 from solver.settings.definitions import title_of
@@ -60,16 +60,13 @@ class CurveDialog:
             margin=(10, 5),
         )
         self.text.param.watch(lambda event: self._take(event.new, "the text"), "value")
-        self._file = pmui.FileInput(label="Open a table (.csv, .xlsx)", accept=TABLES)
-        self._file.param.watch(
-            lambda event: self._take(event.new, self._file.filename), "value"
-        )
+        self.file = file_button("Open a table (.csv, .xlsx)", TABLES, self._take)
         self._message = PlainText(margin=(0, 5))
         self.view = dialog(
             f"{title_of(definition)}: {rows.lower()}",
             *plot,
             self.text,
-            self._file,
+            self.file,
             self._message,
             width_option="sm",
         )
@@ -142,7 +139,7 @@ class CurveDialog:
 
     def _take(self, table: str | bytes, source: str) -> None:
         """Use a table as the path; a refused one stays there to be mended."""
-        if self._is_updating or not table:
+        if self._is_updating or table == "":
             return
         settings = self._state.settings
         try:
@@ -150,6 +147,8 @@ class CurveDialog:
         except RefusedError as refused:
             self._state.refusal = text = message_of(refused, settings, self._name)
             self.text.param.update(error_state=True, helper_text=text)
+            # What was said of a table before is no longer so.
+            self._message.object = ""
             return
         self._state.adopt(changed)
         self._message.object = message

@@ -6,13 +6,14 @@ import math
 import re
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import panel as pn
 
 from app.lessons.catalogue import CASES, PENDING
 from app.state import PageState
 from app.units import number, unit_for
-from app.widgets import button, looks, mask_of
+from app.widgets import PlainText, button, looks, mask_of
 from solver.study.quantities.quantity import Quantity
 from solver.study.trade_case import Case
 
@@ -36,15 +37,28 @@ def gallery(begin: Callable[[str], None]) -> pn.FlexBox:
 def texts_of(case: Case, state: PageState) -> list[Callable[[], str]]:
     """Parts of the text of a case (Markdown), called again with each frame.
 
-    They are its question, its known value beside that of the run, and its source.
+    They are its question, its known value beside that of the run, and the reason of
+    that value with its source. Before the last one stands the formula.
     """
     head = f"## {case.title}\n\n**{_raised(case.question)}**"
-    known = (
-        f"*{_raised(case.formula)}*. {_raised(case.how)}"
-        f"\n\n<small>{case.source}</small>"
+    change = (
+        f"{_raised(case.how)}\n\n<small>{case.source}</small>"
+        f"\n\n### What to change first\n\n{case.change}"
     )
-    change = f"{known}\n\n### What to change first\n\n{case.change}"
     return [lambda: head, lambda: _known_beside_found(case, state), lambda: change]
+
+
+def formula_of(case: Case) -> Any:
+    """Pane of the formula of a case: typeset, or as it is written."""
+    if not case.typeset:
+        plain = PlainText(margin=0)
+        plain.object = case.formula
+        return plain
+    # KaTeX is among Panel's own files: nothing is asked from another address.
+    formula = rf"$\displaystyle {case.typeset}$"
+    return pn.pane.LaTeX(
+        formula, renderer="katex", margin=(4, 0, 10, 0), styles={"font-size": "16px"}
+    )
 
 
 def _known_beside_found(case: Case, state: PageState) -> str:

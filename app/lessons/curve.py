@@ -12,6 +12,9 @@ from app.views.view import FONT, legend
 from solver.settings.definitions import title_of
 from solver.study.lessons import Lesson
 
+HIGHEST = 0.6
+"""Height of a value that is never reached, over the top of the axis."""
+
 
 class DrawnCurve:
     """A figure over a setting for the expected curve, and then the measured one.
@@ -68,7 +71,7 @@ class DrawnCurve:
         heights = []
         words = []
         for _, value in self.lesson.curve:
-            heights.append(min(value, 0.85 * self._top))
+            heights.append(min(value, HIGHEST * self._top))
             words.append("" if math.isfinite(value) else "never")
         positions = [position for position, _ in self.lesson.curve]
         self.measured.data = {"x": positions, "y": heights, "text": words}

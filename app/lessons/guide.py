@@ -14,7 +14,7 @@ import param
 from app.browser import fade_first
 from app.controls import SettingControl
 from app.frame import Selection
-from app.lessons.cases import gallery, texts_of
+from app.lessons.cases import formula_of, gallery, texts_of
 from app.lessons.catalogue import (
     CASES,
     KNOWN,
@@ -103,14 +103,6 @@ class Guide:
         for pane, text in self._texts:
             pane.object = text()
 
-    @property
-    def kinds(self) -> tuple[type[View], ...] | None:
-        """The plots that stand beside the lesson; None without a lesson."""
-        lesson = LESSONS.get(self._state.lesson)
-        if lesson:
-            return kinds_of(lesson, is_answered=not self._state.is_asked)
-        return None
-
     def predict(self, choice: int) -> None:
         """Take a prediction; outside a class, or from its leader, show the answer."""
         self._state.prediction = choice
@@ -179,7 +171,7 @@ class Guide:
         )
         texts = [self._markdown(text) for text in texts_of(case, self._state)]
         controls = [self._control(name) for name in case.controls]
-        return [*texts, *controls, buttons]
+        return [*texts[:-1], formula_of(case), texts[-1], *controls, buttons]
 
     def _look(self, lesson: Lesson) -> None:
         """Select the instant of the answer, or play the picture of the question."""
@@ -308,3 +300,11 @@ def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
         heading = pn.pane.Markdown(title, margin=(0, 8))
         columns.append(pn.Column(heading, *buttons, width=380, margin=0))
     return pn.FlexBox(*columns, gap="8px 32px", margin=0)
+
+
+def kinds_beside(state: PageState) -> tuple[type[View], ...] | None:
+    """The plots that stand beside the lesson; None without a lesson."""
+    lesson = LESSONS.get(state.lesson)
+    if lesson:
+        return kinds_of(lesson, is_answered=not state.is_asked)
+    return None

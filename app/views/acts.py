@@ -192,7 +192,8 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         return _anchor_above(arrows, layout, side)
     if side == "body":
         length, height = layout.size * layout.scale
-        if length < 0.5 * layout.width:
+        # Beside a body that tilts they would meet its corners.
+        if length < 0.5 * layout.width and layout.description.tilt is None:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
         above = height + layout.arrow + 6.0 + layout.letter
         return np.array([0.0, above]), "center"
@@ -218,7 +219,8 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     nearest = arrows.points[0 if is_left else -1]
     ends = np.append(arrows.lines[:, :, 0], nearest[0])
     if is_aside(act):
-        above = beside(layout.description, side)
+        # Large words are higher than their arrow stands above the bodies.
+        above = max(beside(layout.description, side), 0.5 * layout.row)
     else:
         above = 0.75 * layout.arrow
     if not _has_room(act, layout, is_left):
@@ -228,8 +230,29 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
         return np.array([middle, top + up * (6.0 + layout.letter)]), "center"
     y = nearest[1] + above * up
     if is_left:
-        return np.array([ends.min() - 10.0, y]), "right"
-    return np.array([ends.max() + 10.0, y]), "left"
+        x = ends.min() - 10.0
+        if _meets_arrows(act, layout, x):
+            x = -0.5 * float(layout.size[0] * layout.scale[0]) - 16.0
+        return np.array([x, y]), "right"
+    x = ends.max()
+    surroundings = layout.surroundings
+    if surroundings is not None and surroundings.place == "around":
+        # Beside the ground, in which the arrows stand.
+        x = max(x, 0.5 * float(layout.size[0] * layout.scale[0]))
+    return np.array([x + 10.0, y]), "left"
+
+
+def _meets_arrows(act: Act, layout: Layout, right: float) -> bool:
+    """Check whether words of a load that end at the right, px, meet other arrows."""
+    side = act.where.partition(" ")[0]
+    left = right - layout.letter * (len(act.symbol) + WORD)
+    for other in layout.description.acts:
+        if other is act or not other.where.startswith(side):
+            continue
+        across = layout.local(other.points * layout.size)[:, 0]
+        if np.any((across > left) & (across < right)):
+            return True
+    return False
 
 
 def _has_aside(layout: Layout, side: str) -> bool:
@@ -247,7 +270,9 @@ def _has_room(act: Act, layout: Layout, is_left: bool) -> bool:
         room = layout.width - across.max()
     if is_aside(act):
         room -= LONGEST * layout.arrow
-    return bool(room > layout.letter * (len(act.symbol) + WORD))
+    # A load that varies along its side has the values at both ends.
+    values = 2 if act.values.ndim > 1 else 1
+    return bool(room > layout.letter * (len(act.symbol) + values * WORD))
 
 
 def text_of(act: Act, column: int) -> str:

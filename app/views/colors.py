@@ -18,7 +18,7 @@ FORCE = "#D55E00"
 STICK = "#8E979F70"
 FORWARD = "#E69F00"
 BACKWARD = "#0072B2"
-OPENED = "#CC79A7"
+OPENED = "#CC79A760"
 HALO = "#D55E0066"
 """Colour round the selected interface."""
 STATUS = {-1: BACKWARD, 0: STICK, 1: FORWARD, 2: OPENED}

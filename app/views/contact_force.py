@@ -178,7 +178,8 @@ class ContactForce(View):
     def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at its instant nearest to a time, s."""
         results = (frame.extras.get("beside") or {}).get("brought")
-        if not isinstance(results, OtherResults) or results.quantity != FRICTION:
+        is_shown = isinstance(results, OtherResults) and results.quantity == FRICTION
+        if not is_shown or not len(results.times):
             self.draw("beside", [], [])
             return
         near = results.times[np.abs(results.times - time).argmin()]

@@ -28,6 +28,9 @@ LEAST = 1e-14
 NAMED = 1.25
 """Length of the axis of iterations over that of the curves, at whose ends their names
 stand."""
+UNNAMED = 0.65
+"""Largest length of curves over that of the axis for which the right end is free of
+these names."""
 APART = 1.05
 """Least distance of two of these names over their type size."""
 SEEN_IN_TIME = (1e-2, 2.0)
@@ -86,6 +89,14 @@ class Convergence(ErrorPlot):
         whole(plot.xaxis[0])
         self.add("shown", "VSpan", "x", color=REFERENCE, line_width=1.5)
         self.add("goal", "HSpan", "y", color=ERROR, line_dash="dashed", line_alpha=0.6)
+        self.add(
+            "goal name",
+            "Text",
+            "x y text text_align",
+            text_color=ERROR,
+            text_baseline="bottom",
+            text_font_size=self.words,
+        )
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         lines = []
         for column, (_, color, width, dash) in reversed(CURVES.items()):
@@ -103,7 +114,8 @@ class Convergence(ErrorPlot):
             text_font_size=self.words,
         )
         self.mark({"stage": REFERENCE}, marker="dash", angle=0.5 * np.pi)
-        self.legend(stage="local stage", ghost="ghost")
+        titles = {column: title for column, (title, *_) in CURVES.items()}
+        self.legend(**titles, stage="local stage", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
         self._inner_height = HEIGHT
@@ -131,7 +143,18 @@ class Convergence(ErrorPlot):
             answers = [newest.iteration]
         foot = 1.6 * self.figure.y_range.reset_start
         self.draw("answer", answers, [foot] * len(answers))
-        self.fill("goal", y=[newest.run.settings.accuracy])
+        goal = newest.run.settings.accuracy
+        self.fill("goal", y=[goal])
+        # At an end of its line: the right one, unless the names of curves are there.
+        end = float(self.figure.x_range.reset_end)
+        is_left = newest.iteration > UNNAMED * end
+        self.fill(
+            "goal name",
+            x=[0.0 if is_left else end],
+            y=[goal],
+            text=[f" goal {percent(goal)} "],
+            text_align=["left" if is_left else "right"],
+        )
         self._show_names(newest)
 
     def _scale(self, newest: Frame) -> None:
@@ -146,7 +169,7 @@ class Convergence(ErrorPlot):
         self.x.hold(number, [0.0, rounded_up(NAMED * max(*ends, SHORTEST))])
 
     def _show_names(self, newest: Frame) -> None:
-        """Write the names of curves at their ends, one above the other, and the goal.
+        """Write the names of curves at their ends, one above the other.
 
         Heights are logarithms, over the height of the axis.
         """
@@ -159,9 +182,6 @@ class Convergence(ErrorPlot):
             if len(data["x"]):
                 height = (np.log10(data["y"][-1]) - low) / (high - low)
                 names.append((height, float(data["x"][-1]), title, color))
-        goal = newest.run.settings.accuracy
-        height = (np.log10(goal) - low) / (high - low)
-        names.append((height, float(newest.iteration), f"goal {percent(goal)}", ERROR))
         for iteration in self.sources["answer"].data["x"]:
             names.append((0.04, float(iteration), "exact", ERROR))
         names.sort()

@@ -12,9 +12,9 @@ PULLED = "pulled here"
 RUBS = "↑ rubs here"
 SOLVER = "the solver corrects a guess\nof the whole motion"
 ASIDE = 8.0
-ABOVE = 16.0
+UNDER = 26.0
 BELOW = 26.0
-"""Distances of marks from a side of the bodies, above them, and below the contact,
+"""Distances of marks from a side of the bodies, under an arrow, and below the contact,
 px."""
 BROAD = 420.0
 """Length of bodies from which two marks have room beside each other, px."""
@@ -36,10 +36,11 @@ def hints_of(picture: Picture) -> Columns:
         if length > BROAD:
             texts.append(f"{PULLED} →")
             anchors.append(np.array([x - ASIDE, 0.5 * top]))
+            aligns.append("right")
         else:
-            texts.append(f"{PULLED} ↘")
-            anchors.append(np.array([x - ASIDE, top + ABOVE]))
-        aligns.append("right")
+            texts.append(f"↖ {PULLED}")
+            anchors.append(np.array([x + ASIDE, 0.5 * top - UNDER]))
+            aligns.append("left")
     texts.append(RUBS)
     aligns.append("center")
     foot = np.nanmin(picture.points[:, 1])

@@ -13,7 +13,7 @@ from bokeh.events import Tap
 
 from app.frame import LINEAR, LOCAL, Frame, Selection
 from app.units import number, unit_for
-from app.views.acts import gapped
+from app.views.acts import gapped, hatched
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
 from app.views.parts import bare
@@ -81,9 +81,10 @@ class PiecesView(ExtraView):
         self._figure = plot
         look = {"fill_color": BODY, "fill_alpha": 0.4, "line_color": EDGE}
         self.add("pieces", "Patch", **look)
+        self.add("supports", color=EDGE, width=1.2)
         self.add("selected", color=GHOST, width=8, alpha=0.3)
         for side in SIDES:
-            self.add(f"micro {side}", color=MICRO[side], width=1.6)
+            self.add(f"micro {side}", color=MICRO[side], width=2.0)
         for side in SIDES:
             self.add(f"macro {side}", color=MACRO[side], width=2.2)
             self.add(f"heads {side}", "Patches", "xs ys", color=MACRO[side])
@@ -102,8 +103,8 @@ class PiecesView(ExtraView):
             "pale: micro part": MICRO["above"],
         }
         self.mark(marks)
-        self._keys = self.legend(*marks, place="center")
-        self._keys.location = "bottom_left"
+        keys = self.legend(*marks, place="center")
+        keys.location = "bottom_left"
         self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         self._scales: dict[str, float] = {}
         self._scene = ""
@@ -134,6 +135,7 @@ class PiecesView(ExtraView):
         self._scale(extra, frame)
         placed.move(stage, column, self._scales)
         self._line("pieces", placed.outlines)
+        self._line("supports", placed.supports())
         self._show_forces(extra, stage, column)
         self._show_selected(extra, frame, selection)
         sentence = _sentence(extra, stage, column, selection.stage)
@@ -146,10 +148,10 @@ class PiecesView(ExtraView):
         self._figure.y_range.end = height
         size = float(self._type.removesuffix("px"))
         letter = LETTER * size
-        self._keys.nrows = math.ceil(min(KEYS * letter / width, 2.0))
+        below = math.ceil(min(KEYS * letter / width, 2.0))
         above = math.ceil(LETTERS * letter / width)
         line = FOOT * size
-        low = self._keys.nrows * line
+        low = below * line
         return np.array([[0.0, low], [width, height - above * line]])
 
     def _write(self, text: str) -> None:
@@ -226,6 +228,8 @@ class PiecesView(ExtraView):
         if extra.left_out:
             count = len(extra.names)
             texts.append(f"forces of {count} of {count + extra.left_out} joints")
+        if len(extra.points) and not placed.is_plane:
+            texts.append("micro forces drawn across")
         return ", ".join(texts)
 
     def _resize(self, name: str, old: float, new: float) -> None:
@@ -257,11 +261,14 @@ class _Placed:
     The pieces fill a box, of two corners, (2, 2), px. Each shrinks about its middle, so
     that pieces that fit are a little apart.
     `outlines` are the moved corners, (n_corners, 2), and `quarters` the moved quarter
-    points of sides, (n_sides, 2, 2); the longest arrow is `arrow` long.
+    points of sides, (n_sides, 2, 2); the longest arrow is `arrow` long. Micro forces of
+    rods, which act along them, are drawn across, as otherwise they would hide in the
+    outlines.
     """
 
     def __init__(self, extra: Pieces, box: Array, is_plane: bool) -> None:
         self._extra = extra
+        self.is_plane = is_plane
         room = np.ptp(box, axis=0) - 2.0 * ROOM
         low = np.nanmin(extra.corners, axis=0)
         high = np.nanmax(extra.corners, axis=0)
@@ -327,6 +334,8 @@ class _Placed:
         extra = self._extra
         longest = np.hypot(*spans.T) / (HAIR * self.arrow)
         spans = spans / np.maximum(longest, 1.0)[:, None]
+        if not self.is_plane:
+            spans = spans[:, :1] * self._outward[extra.sides]
         roots = self.on_pieces(extra.points, extra.owners[extra.sides])
         return np.stack([roots, roots + spans], axis=1)
 
@@ -345,13 +354,34 @@ class _Placed:
         sides = np.repeat(np.arange(len(lengths)), 2)
         return tails.reshape(-1, 2), shown.reshape(-1, 2), sides
 
+    def supports(self) -> Array:
+        """Hatched lines along the joints of pieces with a support, (n, 2), px."""
+        extra = self._extra
+        is_held = np.bincount(extra.joints)[extra.joints] == 1
+        quarters = extra.quarters[is_held] * self._pixels + self._origin
+        middles = quarters.mean(axis=1, keepdims=True)
+        edges = middles + 2.0 * (quarters - middles)
+        strokes = [np.zeros((0, 2))]
+        for edge, away in zip(edges, self._outward[is_held], strict=True):
+            strokes.append(hatched(edge + 0.5 * APART * away, away))
+        return np.concatenate(strokes)
+
+    @property
+    def _is_lying(self) -> Array:
+        """Truth of sides that lie, (n_sides, 1); others stand upright."""
+        sizes = np.ptp(self._extra.quarters, axis=1) * self._pixels
+        return np.asarray(sizes[:, :1] > sizes[:, 1:])
+
+    @property
+    def _outward(self) -> Array:
+        """Unit vectors from pieces across their sides, (n_sides, 2)."""
+        sign = np.where(self._extra.is_above == 1, -1.0, 1.0)[:, None]
+        return np.where(self._is_lying, sign * [0.0, 1.0], sign * [1.0, 0.0])
+
     def _aside(self) -> Array:
         """Shift of arrows along joints, (n_sides, 2), px."""
-        extra = self._extra
-        sizes = np.ptp(extra.quarters, axis=1) * self._pixels
-        is_lying = (sizes[:, 0] > sizes[:, 1])[:, None]
-        sign = np.where(extra.is_above == 1, ASKEW, -ASKEW)[:, None]
-        return np.where(is_lying, sign * [1.0, 0.0], sign * [0.0, 1.0])
+        sign = np.where(self._extra.is_above == 1, ASKEW, -ASKEW)[:, None]
+        return np.where(self._is_lying, sign * [1.0, 0.0], sign * [0.0, 1.0])
 
 
 def _boxes(corners: Array, parts: Indices) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from app.views.acts import Arrows, Rest
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, GROUND, HINT, KEYS, LATIN, UNSEEN
 from app.views.hints import NONE, hints_of
-from app.views.layout import Layout, layout_of
+from app.views.layout import NARROW, Layout, layout_of
 from app.views.parts import bare, color_bar
 from app.views.picture import Picture
 from app.views.view import View
@@ -159,7 +159,13 @@ class Scene(View):
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
         if not self.is_bare:
-            self.fill("hints", **(hints_of(picture) if self.state.is_new else NONE))
+            hints = NONE
+            if self.state.is_new:
+                hints = hints_of(picture)
+            self.fill("hints", **hints)
+            # They stand where a narrow picture has its keys.
+            is_narrow = layout.width < NARROW
+            self._keys.visible = not (is_narrow and self.state.is_new)
         # In the place of the ghost a structure that collapses shows its mechanism.
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:
@@ -219,10 +225,10 @@ class Scene(View):
         if not self.state.running and not frame.is_answer:
             note += f"; {STAGES[stage]}"
         self.show("note", note)
-        if layout.key_rows and not layout.angle:
-            self._keys.update(orientation="horizontal", nrows=layout.key_rows)
-        else:
-            self._keys.update(orientation="vertical", nrows="auto")
+        arrangement = []
+        if layout.angle or not layout.key_rows:
+            arrangement = ["column"]
+        self._keys.css_classes = arrangement
 
     def _scale_arrows(self, frame: Frame) -> None:
         """Keep the scale of arrows while they stay long enough and fit, or are held."""

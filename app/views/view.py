@@ -49,7 +49,7 @@ FONT = value("Roboto, sans-serif")
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Script that keeps sizes that are not the theme's: the browser sets those of the theme
 as it draws a figure."""
-ABOVE = {"margin-left": "-60px", "top": "-1px"}
+ABOVE = {"margin-left": "-52px", "top": "-1px"}
 """Style of a legend that begins at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 5px !important; }
@@ -58,17 +58,19 @@ CLOSE = """
 """
 """Style sheet by which a legend of seven entries stands in one line; the theme keeps
 entries farther apart."""
-WRAPPED = """
-:host { max-width: calc(100% + 60px); }
+FLOWING = """
 .bk-grid {
   display: flex !important;
   flex-wrap: wrap;
   width: auto !important;
   gap: 0 5px !important;
 }
+:host(.column) .bk-grid { flex-direction: column; gap: 6px !important; }
 """
-"""Style sheet by which a legend above a plot takes a second line where the first has no
-room."""
+"""Style sheet by which the entries of a legend follow each other, and take a second
+line where the first has no room; or stand below each other."""
+WRAPPED = ":host { max-width: calc(100% + 52px); }"
+"""Style sheet of the room that a legend above a plot has."""
 
 
 HIDE = """
@@ -218,9 +220,9 @@ class View:
         x, y = points
         self.fill("level", y=levels)
         self.fill("flag", x=x[: len(x) - len(levels)], y=y[: len(y) - len(levels)])
-        # The text stands where the plot has room.
+        # The text stands where the plot has room: below a loop that rises to the right.
         is_right = x > _within(self._figure.x_range, 0.5)
-        is_above = y > _within(self._figure.y_range, 0.8)
+        is_above = y > _within(self._figure.y_range, 0.2)
         self.fill(
             "flag text",
             x=x,
@@ -453,7 +455,7 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
 def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
     """A legend in one line: above the plot, where it covers no curve, or inside."""
     styles = {"font-size": TEXT}
-    sheets = [CLOSE]
+    sheets = [CLOSE, FLOWING]
     if place == "above":
         styles |= ABOVE
         sheets.append(WRAPPED)

@@ -13,7 +13,7 @@ from app.frame import LINEAR, LOCAL, Floats, Frame, Selection
 from app.units import unit_for
 from app.views.colors import ERROR, EXACT, REFERENCE, STAGES, STICK
 from app.views.parts import hover
-from app.views.view import ExtraView
+from app.views.view import TEXT, ExtraView
 from solver.arrays import Array
 
 ROOM = 0.08
@@ -27,7 +27,9 @@ BEYOND = 3.0
 RING = {"size": 16, "line_width": 2.5, "fill_alpha": 0}
 """Look of the ring about the newest stage."""
 TICKS = 4
-"""Number of ticks that both figures have room for, beside each other."""
+FEW_TICKS = 2
+"""Number of ticks that both figures have room for, beside each other, and in large
+type."""
 MARKERS = {LOCAL: "circle", LINEAR: "square"}
 
 
@@ -73,6 +75,8 @@ class Zigzag(ExtraView):
                 line_width=1.5,
                 line_dash=dash,
             )
+            # Without data, which have the opacity, a segment has no look of its own.
+            self.add(f"{name} key", color=REFERENCE, width=1.5, dash=dash)
         points = []
         for stage, marker in MARKERS.items():
             look = {"marker": marker, "size": 7, "color": STAGES[stage]}
@@ -81,7 +85,14 @@ class Zigzag(ExtraView):
         self.add("newest", "Scatter", "x y line_color", **RING)
         self.add("star", "Scatter", marker="star", size=18, color=EXACT)
         self.mark({"law": STAGES[LOCAL], "balance": STAGES[LINEAR]})
-        self.legend("law", "balance", star="solution")
+        titles = {
+            "law": "law",
+            "balance": "balance",
+            "along key": "slope ±k",
+            "mixed key": "coarse problem, too",
+            "star": "solution",
+        }
+        self.legend(**titles)
         tips = {"iteration": "@iteration", "slip": "@x{0.00}", "force": "@y{0.00}"}
         hover(plot, points, tips)
         self._grid = GridBox(
@@ -96,6 +107,12 @@ class Zigzag(ExtraView):
         """The way of the point, and the field beside it."""
         self.figure  # noqa: B018  # both are made when it is first asked for
         return self._grid
+
+    def _magnify(self, plot: figure) -> None:
+        """Set the type size of a figure, with as many ticks as have room."""
+        super()._magnify(plot)
+        ticks = TICKS if self._type == TEXT else FEW_TICKS
+        plot.xaxis.ticker.desired_num_ticks = ticks
 
     def _make_field(self) -> figure:
         """The figure of all points, whose axis up is that of the way."""
@@ -209,6 +226,7 @@ class Zigzag(ExtraView):
                 y1=self.y(steps[:, 1, 1]),
                 line_alpha=alpha,
             )
+            self.show(f"{name} key", len(steps) > 0)
         self.fill(
             "newest",
             x=self.x(way.newest[:1]),

@@ -247,7 +247,9 @@ def beside(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     elif brought is None or brought.scene != sampled.settings.scene:
         return None
     else:
-        distance = _comparison(brought, sampled, needs.interface).of(iterate)
+        comparison = _comparison(brought, sampled, needs.interface)
+        brought = comparison.results
+        distance = comparison.of(iterate)
     return {"brought": brought, "distance": distance}
 
 

@@ -39,7 +39,7 @@ FIRST = 0.25
 """Time of a search at the pace `WHOLE`, and time before its second iterate, s.
 Intervals shrink by one ratio: the first iterates are seen one by one, and a hundred
 iterations last as long as thirty."""
-KEPT = 48_000_000
+KEPT = 24_000_000
 """Largest memory of the iterates of a run that are kept to be shown again, bytes;
 beyond, every other one is dropped."""
 LATE = 0.1
@@ -139,6 +139,7 @@ class Runner:
         self._kept: dict[int, Iterate] = {}
         self.pacing = Pacing(start.pace, start.steps)
         self._before = before
+        self._is_near = False
         self._iterates: Iterator[tuple[Iterate, Decision]] | None = None
         self._references = references
         self._interrupted = interrupted
@@ -189,7 +190,8 @@ class Runner:
     def frame(self, needs: Needs) -> Frame:
         """Frame of the newest iterate."""
         self.has_news = False
-        return self.sampler.frame(self.iterate, self.history, self.status, needs)
+        frame = self.sampler.frame(self.iterate, self.history, self.status, needs)
+        return replace(frame, is_followed=self._is_near)
 
     def earlier(self, iteration: int, needs: Needs) -> Frame | None:
         """Frame of an earlier iteration as it was; None where it is not kept."""
@@ -201,7 +203,8 @@ class Runner:
 
     def _keep(self, iterate: Iterate) -> None:
         """Keep an iterate of the search, to be shown again."""
-        self._kept[iterate.number] = iterate
+        # Without the fields that are computed from it, as large as its own.
+        self._kept[iterate.number] = replace(iterate)
         # An iterate has four fields of this size.
         most = max(KEPT // (4 * iterate.outgoing.nbytes), 2)
         if len(self._kept) > most:
@@ -218,6 +221,7 @@ class Runner:
         # What was tried in vain is time of the run all the same.
         self._spent += time.perf_counter() - began
         if near is not None:
+            self._is_near = True
             self._take(*near)
 
     def _iterate(self) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from app.frame import Floats, Frame, FrictionInterface, InterfaceFields, Run
-from app.messages import Needs
+from app.messages import TABLE, Needs
 from app.worker.extras import EXTRAS, Sampled
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
 from app.worker.pieces import Cutter
@@ -37,6 +37,8 @@ MOST_POINTS = 401
 MOST_VALUES = 100_000
 """Values of a field up to which a frame has the contact of all interfaces, and not of
 the selected one alone."""
+MOST_IN_TABLE = 400_000
+"""The same for a table that is taken away; pandas writes as many rows in a second."""
 MOST_ITERATIONS = 1000
 """Largest number of entries of the history in a frame."""
 NO_SCALARS = ("modes", "is_answer")
@@ -137,7 +139,9 @@ class Sampler:
             run=self.run,
             iteration=iterate.iterations,
             is_answer=is_beside,
-            contact=self._contact(iterate, self._names(needs)),
+            contact=self._contact(
+                iterate, self._names(needs), with_slip=TABLE in needs.extras
+            ),
             deformed=self.drawn.deformed(iterate),
             loop=self._loop(iterate),
             history=_scalars(history),
@@ -168,7 +172,10 @@ class Sampler:
     def _names(self, needs: Needs) -> tuple[str, ...]:
         """Names of the interfaces whose contact a frame has."""
         size = sum(len(rows) for rows in self.rows.values()) * len(self.columns)
-        if size <= MOST_VALUES:
+        most = MOST_VALUES
+        if TABLE in needs.extras:
+            most = MOST_IN_TABLE
+        if size <= most:
             return tuple(self.rows)
         return (needs.interface,)
 
@@ -209,7 +216,11 @@ class Sampler:
         return np.asarray(force / law.by_point(law.weights)[:, None])
 
     def _contact(
-        self, shown: Iterate | Reference, names: Iterable[str]
+        self,
+        shown: Iterate | Reference,
+        names: Iterable[str],
+        *,
+        with_slip: bool = False,
     ) -> Mapping[str, InterfaceFields]:
         contact = {}
         for name in names:
@@ -220,10 +231,14 @@ class Sampler:
             pressure = None
             if nodal.normal_force is not None:
                 pressure = floats(nodal.normal_force[rows][:, self.columns] / lengths)
+            slip = None
+            if with_slip:
+                slip = floats(nodal.slip[rows][:, self.columns])
             contact[name] = InterfaceFields(
                 floats(nodal.tangential_force[rows][:, self.columns] / lengths),
                 pressure,
                 np.ascontiguousarray(nodal.status[rows][:, self.columns]),
+                slip,
             )
         return contact
 

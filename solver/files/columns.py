@@ -36,7 +36,7 @@ WORDS = {
     "angle": "angle winkel",
     "curvature": "curvature krümmung",
     "factor": "factor faktor",
-    "interface": "interface joint fuge grenzfläche",
+    "interface": "interface contact joint fuge grenzfläche",
     "layer": "layer leaf lage blatt schicht",
     "share": "share anteil",
     "wires": "wires wire number drähte drahtzahl anzahl",

@@ -20,11 +20,12 @@ Where v vanishes everywhere, |w| stands in its place.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 from solver.arrays import Array, Flags, Indices
@@ -40,8 +41,8 @@ FRICTION = "friction force"
 DISPLACEMENT = "displacement"
 FEWEST = 4
 """Smallest number of rows of a comparison."""
-MOST = 20_000
-"""Largest number of rows: reading them takes a fifth of a second of a page's server."""
+MOST = 40_000
+"""Largest number of rows: reading them takes half a second of a page's server."""
 EDGE = 1e-6
 """Share of the body's length by which rounding may put a point beyond its end."""
 CAN = "CSV whose head names x, t, and friction force or displacement"
@@ -66,6 +67,8 @@ class OtherResults:
         Name of the file, and how its columns were understood.
     scene
         Name of the scene.
+    contacts
+        Name of the interface of every row, same shape; None without such a column.
     """
 
     quantity: str
@@ -75,13 +78,28 @@ class OtherResults:
     source: str
     scene: str
     message: str
+    contacts: NDArray[np.str_] | None = None
+
+    def on(self, interface: str, known: Collection[str]) -> OtherResults:
+        """Rows of one of the known interfaces; all where no row names a known one."""
+        if self.contacts is None or not np.isin(self.contacts, list(known)).any():
+            return self
+        rows = self.contacts == interface
+        return replace(
+            self,
+            positions=self.positions[rows],
+            times=self.times[rows],
+            values=self.values[rows],
+            contacts=self.contacts[rows],
+        )
 
 
 def results_in(table: Table, settings: Settings) -> OtherResults:
     """Read the results of another program for a scene in a table.
 
     The head names the columns x (m), t (s), and friction force or displacement, with
-    units if they are others; further columns are ignored, and rows may have any order.
+    units if they are others; where several interfaces have rows, a column contact names
+    them. Further columns are ignored, and rows may have any order.
 
     Raises
     ------
@@ -102,9 +120,12 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         unit = PER[kind]
         _refuse_nodal_forces(table, column, unit)
     used = {"x": (position, "m"), "t": (time, "s"), quantity: (column, unit)}
+    table, names = _with_contacts(table)
     reading = in_si(table, used)
     x, t, values = reading.numbers
     _check_places(x, t, reading.lines, settings, table.refuse)
+    if names is not None:
+        names = names[np.isin(table.lines, reading.lines)]
     return OtherResults(
         quantity=quantity,
         positions=np.clip(x, 0.0, settings.length),
@@ -113,7 +134,21 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
         source=table.source,
         scene=settings.scene,
         message=reading.message,
+        contacts=names,
     )
+
+
+def _with_contacts(table: Table) -> tuple[Table, NDArray[np.str_] | None]:
+    """Take the column of contacts out of a table: name of every row, shape (n_rows,).
+
+    What was taken out is not said to be passed over.
+    """
+    column = table.find(table.columns, {"interface"})
+    if column is None:
+        return table, None
+    others = tuple([each for each in table.columns if each is not column])
+    names = np.array([row[column.number] for row in table.cells])
+    return replace(table, columns=others), names
 
 
 def _refuse_nodal_forces(table: Table, column: TableColumn, unit: str) -> None:
@@ -201,7 +236,7 @@ class Comparison:
     Attributes
     ----------
     results
-        Results of the other program.
+        Results of the other program, on that interface if its rows are named.
     interface
         Name of the interface whose friction is compared: the one that is asked for, or
         else the first one.
@@ -213,12 +248,12 @@ class Comparison:
         self, results: OtherResults, problem: Problem, interface: str = ""
     ) -> None:
         names = list(problem.rubbing)
-        self.results = results
         self._problem = problem
         if interface in names:
             self.interface = interface
         else:
             self.interface = names[0]
+        self.results = results = results.on(self.interface, names)
         x = results.positions
         t = results.times
         positions = problem.positions

@@ -79,6 +79,8 @@ class Case:
     change: str
     controls: tuple[str, ...]
     picture: Icon
+    typeset: str = ""
+    """The formula in TeX, as a page has it."""
     views: tuple[str, ...] = ()
     sentence: str = ""
     instant: float = 1.0

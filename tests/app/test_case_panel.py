@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import chain
 from types import SimpleNamespace
@@ -12,6 +13,7 @@ import panel as pn
 import pytest
 
 from app.frame import Frame, Selection
+from app.lessons.cases import formula_of
 from app.lessons.catalogue import (
     CASES,
     KINDS,
@@ -220,3 +222,23 @@ def test_a_changed_case_says_what_it_has_now() -> None:
     held = case.settings.replace(left_end="held")
     sentence = case.sentence_on(held.sentence())
     assert sentence.endswith("Now: free at its right end and held at its left end.")
+
+
+@each
+def test_the_formula_of_a_case_is_typeset_and_says_what_is_written(case: Case) -> None:
+    state = PageState(case.settings, case=case.name)
+    (pane,) = panel_of(state).view.select(pn.pane.LaTeX)
+    assert pane.renderer == "katex"
+    typeset = pane.object.replace(r"\displaystyle", "").strip("$ ")
+    assert typeset.count("{") == typeset.count("}")
+    # Each number and each Latin letter of the formula stands in both.
+    written = re.sub(
+        r"\b(sqrt|min|cos|cosh|sin|tanh|ln|the|largest|over)\b", "", case.formula
+    )
+    for sign in set(re.findall(r"[A-Za-z]|[\d.]+", written)):
+        assert sign in typeset
+
+
+def test_a_case_without_a_typeset_formula_has_it_as_it_is_written() -> None:
+    case = replace(CASES[NAME], typeset="")
+    assert formula_of(case).object == case.formula

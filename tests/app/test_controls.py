@@ -333,6 +333,7 @@ def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:
     assert "much" in said
     # The button does not say what became of the file.
     assert opener.file.uploaded_label == "Open"
+    assert "empty.csv was refused" in open_file("empty.csv", "")
     assert "bad.csv" not in open_file("load.csv", "time,force\n0,0\n1,800\n")
     assert state.refusal == ""
     assert opener.columns_button.visible

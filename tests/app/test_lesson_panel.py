@@ -21,7 +21,7 @@ from app.lessons.catalogue import (
     settings_of,
     without_controls,
 )
-from app.lessons.guide import WITHOUT, Guide
+from app.lessons.guide import WITHOUT, Guide, kinds_beside
 from app.lessons.handout import handout
 from app.messages import Needs
 from app.state import PageState, Poll, default_settings
@@ -88,9 +88,9 @@ def test_the_answer_comes_after_the_choice(lesson: Lesson) -> None:
     panel, player = panel_of(state)
     assert lesson.why not in words_of(panel)
     assert player.until == lesson.until
-    assert panel.kinds == kinds_of(lesson, is_answered=False)
+    assert kinds_beside(state) == kinds_of(lesson, is_answered=False)
     panel.predict(lesson.right)
-    assert panel.kinds == kinds_of(lesson, is_answered=True)
+    assert kinds_beside(state) == kinds_of(lesson, is_answered=True)
     assert player.until == 0.0
     assert state.selection.phase == lesson.instant
     shown = [control.name for control in panel._controls]
@@ -112,7 +112,7 @@ def test_another_scene_ends_the_lesson() -> None:
     state = PageState(settings_of(LESSONS[NAME]), lesson=NAME)
     panel, _ = panel_of(state)
     state.choose_scene("rope")
-    assert (state.lesson, panel.kinds, panel.view.visible) == ("", None, False)
+    assert (state.lesson, kinds_beside(state), panel.view.visible) == ("", None, False)
 
 
 def test_in_a_class_the_answer_waits_for_the_leader() -> None:
@@ -122,7 +122,7 @@ def test_in_a_class_the_answer_waits_for_the_leader() -> None:
     assert state.is_asked
     state.poll = Poll(False, 1, 3, is_answered=True)
     assert not state.is_asked
-    assert panel.kinds == kinds_of(LESSONS[NAME], is_answered=True)
+    assert kinds_beside(state) == kinds_of(LESSONS[NAME], is_answered=True)
 
 
 def buttons_of(panel: Guide) -> dict[str, pmui.Button]:

@@ -132,12 +132,12 @@ def test_the_loop_comes_with_the_frame_and_its_distance() -> None:
 
 
 def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
-    state = PageState(bar(friction=0.2, contact_stiffness=3.0), tab="Fit")
+    state = PageState(bar(friction=0.3), tab="Fit")
     tab = FitTab(state)
     assert tab.start_button.disabled
     state.brought = loop_of_a_run(bar(friction=0.37))
     assert tab.start_button.disabled
-    tab.chosen.value = ["contact_stiffness", "friction"]
+    tab.chosen.value = ["friction"]
     assert not tab.start_button.disabled
     tab.start()
     folder = tab.job.folder
@@ -149,7 +149,7 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
     assert "standard error" in tab.page.object, tab.progress.object
     tab.use()
     assert state.tab == "Live"
-    assert (state.settings.friction, state.settings.contact_stiffness) == (0.37, 8.0)
+    assert state.settings.friction == 0.37
     state.param.update(tab="Fit", brought=None)
     assert tab.start_button.disabled
     assert "standard error" in tab.page.object

@@ -14,7 +14,7 @@ from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
 import app.supervisor
-from app.messages import WHOLE, Order, Pace, Start
+from app.messages import WHOLE, Needs, Order, Pace, Start
 from app.page import Page, open_page
 from app.server import PAGES
 from app.state import PageState, default_settings
@@ -49,6 +49,17 @@ def test_a_first_run_goes_on_once_its_first_picture_is_painted(
     pulse.painted = 1
     pulse.painted = 2
     assert [order for order in orders if isinstance(order, Pace)] == [Pace(WHOLE)]
+
+
+@pytest.mark.usefixtures("document")
+def test_the_first_frame_has_what_the_views_that_are_named_need(
+    orders: list[Order],
+) -> None:
+    Page(PageState(default_settings("wall"), plots=["Pieces"]))
+    begins = next(n for n, order in enumerate(orders) if isinstance(order, Start))
+    before = [order for order in orders[:begins] if isinstance(order, Needs)]
+    assert "pieces" in before[-1].extras
+    assert not [order for order in orders[begins:] if isinstance(order, Needs)]
 
 
 @pytest.mark.usefixtures("document")

@@ -265,3 +265,34 @@ def test_the_view_says_what_fits_keeps_its_scales_and_selects_by_a_tap() -> None
     view._tap(Tap(view.figure, x=float(x), y=float(y)))
     assert state.selection.interface == pieces.names[joint]
     assert len(view.sources["selected"].data["x"])
+
+
+@pytest.mark.parametrize(("scene", "count"), [("bar", 10), ("strand", 0)])
+def test_only_pieces_on_a_support_have_one_below_them(scene: str, count: int) -> None:
+    frame = frame_of(settings_of(scene), 2)
+    view = PiecesView(PageState(frame.run.settings))
+    assert view.figure
+    view.update(frame, Selection(), None)
+    x, y = map(np.asarray, view.sources["supports"].data.values())
+    is_edge = np.isfinite(y) & (y == np.max(y, initial=0.0, where=np.isfinite(y)))
+    # Each is a line as long as its piece, with strokes that begin on it.
+    pieces = view.sources["pieces"].data
+    assert len(np.unique(np.round(x[is_edge]))) >= 2 * count
+    if count:
+        assert y[is_edge].max() < np.nanmin(np.asarray(pieces["y"]))
+    else:
+        assert len(x) == 0
+
+
+def test_micro_forces_of_rods_stand_across_as_long_as_they_are() -> None:
+    frame = frame_of(settings_of("strand", **PLAIN), 2)
+    view = PiecesView(PageState(frame.run.settings))
+    assert view.figure
+    view.update(frame, Selection(), None)
+    lengths = []
+    for side in ("above", "below"):
+        x, y = map(np.asarray, view.sources[f"micro {side}"].data.values())
+        assert np.allclose(x[::3], x[1::3])
+        lengths.append(np.abs(y[1::3] - y[::3]).max())
+    assert min(lengths) > 3.0
+    assert "micro forces drawn across" in words(view)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from typing import Any
 
@@ -13,7 +14,8 @@ from hypothesis import strategies as st
 from small_scenes import SMALL
 
 from app.messages import Needs, Start
-from app.state import SEARCH, answer, default_settings
+from app.state import SEARCH, PageState, answer, default_settings
+from app.status import status_line
 from app.worker.references import LastAnswer, ReferenceCache
 from app.worker.runner import Runner
 from solver.latin import Answer
@@ -96,6 +98,10 @@ def test_a_small_move_is_answered_without_an_iteration(scene: str) -> None:
     assert runner.history[0].iteration == 1
     assert runner.status is not None
     assert "without an iteration" in runner.status.advice
+    state = PageState(moved)
+    state.newest = state.frame = runner.frame(Needs())
+    words = re.sub("<[^>]*>", "", status_line(state))
+    assert "answer: 0 iterations · certified" in words
 
 
 @pytest.mark.parametrize("scene", list(MOVED))

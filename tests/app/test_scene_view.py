@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from app.frame import Frame, Selection
+from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.status import status_line
@@ -399,10 +400,43 @@ def test_marks_of_a_first_visit_stay_until_somebody_does_something() -> None:
     view.update(frame, Selection(0.25), None)
     x, y, texts, _ = view.sources["hints"].data.values()
     assert len(texts) == 3
-    (pulled,) = (n for n, text in enumerate(texts) if text.startswith("pulled"))
+    (pulled,) = (n for n, text in enumerate(texts) if "pulled" in text)
     (rubs,) = (n for n, text in enumerate(texts) if text.endswith("rubs here"))
     assert x[pulled] > 0.9 * np.nanmax(view.sources["bodies"].data["x"])
     assert y[rubs] < np.nanmin(view.sources["bodies"].data["y"])
     view.state.is_new = False
     view.update(frame, Selection(0.25), None)
     assert not len(view.sources["hints"].data["text"])
+
+
+def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_narrow_picture() -> (
+    None
+):
+    frame = frame_of(default_settings("bar"))
+    view = Scene(PageState(frame.run.settings, is_new=True))
+    (keys,) = view.figure.legend
+    for width, is_seen in ((900.0, True), (390.0, False)):
+        view.lay_out(width, 150.0)
+        view.update(frame, Selection(0.25), None)
+        assert keys.visible == is_seen
+    view.state.is_new = False
+    view.update(frame, Selection(0.25), None)
+    assert keys.visible
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.25, 0.4, 0.8])
+def test_words_meet_no_arrow_at_the_end_of_a_body(phase: float) -> None:
+    frame = frame_of(LESSONS["two-points"].settings)
+    view = Scene(PageState(frame.run.settings))
+    _ = view.figure
+    view.lay_out(910.0, 560.0)
+    view.update(frame, Selection(phase), None)
+    heads = [np.concatenate(view.sources["heads"].data[name]) for name in ("xs", "ys")]
+    words = view.sources["words"].data
+    for x, y, text, align in zip(
+        words["x"], words["y"], words["text"], words["text_align"], strict=True
+    ):
+        length = 7.0 * len(text)
+        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
+        is_across = (heads[0] > left) & (heads[0] < left + length)
+        assert not np.any(is_across & (np.abs(heads[1] - y) < 7.0)), text

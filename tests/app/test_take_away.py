@@ -26,8 +26,8 @@ from app.files.export import (
     program,
 )
 from app.files.tables import table_of
-from app.frame import Frame, Selection
-from app.messages import Needs, Start
+from app.frame import Frame
+from app.messages import TABLE, Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
@@ -44,7 +44,8 @@ NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
 SMALL: dict[str, dict[str, Any]] = {
     "bar": {"elements": 20, "instants": 21, "substructures": 4},
     "block": {"instants": 9},
-    "rope": {"instants": 9},
+    "layers": {"instants": 9},
+    "rope": {"instants": 9, "elements": 20},
 }
 
 
@@ -55,7 +56,7 @@ def ended(scene: str) -> tuple[Runner, Frame]:
     runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
     while runner.rest() is not None:
         runner.advance()
-    return runner, runner.frame(Needs(extras=NEEDS))
+    return runner, runner.frame(Needs(extras=NEEDS | {TABLE}))
 
 
 def page(scene: str) -> tuple[PageState, list[View]]:
@@ -109,19 +110,30 @@ def test_tables_hold_what_is_drawn() -> None:
 @pytest.mark.parametrize("scene", SMALL)
 def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
     _, frame = ended(scene)
-    text = contact_table(frame, Selection())
-    name = Selection().interface_of(frame.run)
-    friction = frame.contact[name].friction
-    results = results_in(table_of(text.encode(), "contact.csv"), frame.run.settings)
-    assert results.quantity == FRICTION
-    np.testing.assert_array_equal(results.values.astype("f4"), friction.ravel())
-    times = results.times.reshape(friction.shape)[0]
-    np.testing.assert_array_equal(times.astype("f4"), frame.run.instants)
+    text = contact_table(frame)
     read = pd.read_csv(io.StringIO(text))
-    assert list(read.columns[:2]) == ["x, m", "t, s"]
     assert not read.isna().any(axis=None)
-    sticks = read["status"].to_numpy() == "stick"
-    np.testing.assert_array_equal(sticks, frame.contact[name].status.ravel() == 0)
+    assert {"x, m", "t, s", "slip, m", "status"} <= set(read.columns)
+    several = len(frame.run.interfaces) > 1
+    assert ("contact" in read.columns) == several
+    brought = results_in(table_of(text.encode(), "contact.csv"), frame.run.settings)
+    assert brought.quantity == FRICTION
+    assert "'contact'" not in brought.message
+    names = list(frame.run.interfaces)
+    for name, fields in frame.contact.items():
+        rows = read
+        if several:
+            rows = read[read["contact"] == name]
+        np.testing.assert_array_equal(rows["slip, m"].astype("f4"), fields.slip.ravel())
+        sticks = rows["status"].to_numpy() == "stick"
+        np.testing.assert_array_equal(sticks, fields.status.ravel() == 0)
+        results = brought.on(name, names)
+        shape = fields.friction.shape
+        np.testing.assert_array_equal(
+            results.values.astype("f4").reshape(shape), fields.friction
+        )
+        times = results.times.reshape(shape)[0]
+        np.testing.assert_array_equal(times.astype("f4"), frame.run.instants)
 
 
 @pytest.mark.parametrize("scene", SMALL)

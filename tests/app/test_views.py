@@ -21,7 +21,7 @@ from app.state import PageState, default_settings
 from app.views.bases import Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
-from app.views.errors import Convergence
+from app.views.errors import CURVES, Convergence
 from app.views.loops import HysteresisLoop
 from app.views.rope import AxialForces
 from app.views.status_map import StatusMap
@@ -332,13 +332,28 @@ def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None
     answer = frames_of("bar")[2]
     view = view_of(Convergence, answer)
     names = view.sources["names"].data
-    assert {"goal 1 %", "force", "displ.", "exact"} <= set(names["text"])
+    assert {"force", "displ.", "exact"} <= set(names["text"])
+    # The goal has its name on its line, wherever curves end.
+    goal = view.sources["goal name"].data
+    assert (goal["text"], goal["y"]) == ([" goal 1 % "], [answer.run.settings.accuracy])
     assert list(view.sources["goal"].data["y"]) == [answer.run.settings.accuracy]
     axis = view.figure.y_range
     heights = np.sort(np.log10(names["y"])) / np.log10(axis.end / axis.start)
     assert np.diff(heights).min() > 0.05
     assert all(axis.start < y < axis.end for y in names["y"])
     assert max(names["x"]) < 0.9 * view.figure.x_range.end
+
+
+def test_each_curve_of_errors_is_hidden_by_the_legend_while_its_name_stays() -> None:
+    answer = frames_of("bar")[2]
+    view = view_of(Convergence, answer)
+    (legend,) = view.figure.legend
+    assert legend.click_policy == "hide"
+    names = [item.label.value for item in legend.items if item.visible]
+    assert names == ["force", "displ.", "estimate", "k-free", "η"]
+    curves = {item.renderers[0].name for item in legend.items}
+    assert set(CURVES) <= curves
+    assert set(names) <= set(view.sources["names"].data["text"])
 
 
 def test_a_tap_on_the_errors_goes_back_to_that_iteration() -> None:

@@ -13,6 +13,7 @@ import pytest
 from app.frame import LINEAR, LOCAL, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.views.colors import REFERENCE
 from app.views.zigzag import Zigzag
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -85,6 +86,30 @@ def test_mixtures_move_a_point_off_the_way_to_balance_and_never_to_the_law() -> 
     assert way["straight"][1:, 0].all()
     column = round(SHEAR * (way["star"].shape[1] - 1))
     assert not way["straight"][3:, 1, column].any()
+
+
+@pytest.mark.parametrize(("changes", "is_mixed"), [({}, True), (PLAIN, False)])
+def test_a_way_that_mixtures_moved_is_dashed(
+    changes: dict[str, Any], is_mixed: bool
+) -> None:
+    frame = run_of("bar", 12, elements=50, **changes).frame(
+        Needs(frozenset({"zigzag"}))
+    )
+    state = PageState(frame.run.settings)
+    state.newest = state.frame = frame
+    view = Zigzag(state)
+    dashes = {
+        renderer.name: renderer.glyph.line_dash
+        for renderer in view.figure.renderers
+        if renderer.name in ("along", "mixed")
+    }
+    assert dashes == {"along": "solid", "mixed": "dashed"}
+    view.update(frame, Selection(phase=SHEAR), None)
+    mixed = view.sources["mixed"].data
+    assert bool(len(mixed["x0"])) == is_mixed
+    # Only the ways to balance: those to the law all go along k.
+    assert len(mixed["x0"]) <= 12
+    assert len(view.sources["along"].data["x0"]) >= 12
 
 
 def test_the_line_of_balance_is_as_steep_as_the_bar_is_stiff_up_to_the_point() -> None:
@@ -187,3 +212,22 @@ def test_both_figures_have_one_scale_of_forces_and_a_tap_on_the_field_selects() 
     assert marked["y"] == pytest.approx(view.sources["newest"].data["y"], rel=1e-4)
     view._select(SimpleNamespace(x=0.3))
     assert state.selection.position == pytest.approx(0.3)
+
+
+def test_the_legend_tells_ways_along_k_from_others() -> None:
+    frame = run_of("bar", 6, elements=50).frame(Needs(frozenset({"zigzag"})))
+    view = Zigzag(PageState(frame.run.settings))
+    (legend,) = view.figure.legend
+    view.update(frame, Selection(), None)
+    named = {item.label.value: item for item in legend.items}
+    looks = {}
+    for name in ("slope ±k", "coarse problem, too"):
+        assert named[name].visible == bool(len(view.sources[NAMED[name]].data["x0"]))
+        glyph = named[name].renderers[0].glyph
+        assert glyph.line_color == REFERENCE
+        looks[name] = glyph.line_dash
+    assert looks == {"slope ±k": [], "coarse problem, too": [6]}
+
+
+NAMED = {"slope ±k": "along", "coarse problem, too": "mixed"}
+"""Names of the ways of a point by their titles in the legend."""

@@ -36,9 +36,10 @@ class Picture(NamedTuple):
 
 
 PICTURES = (
-    Picture("page.png", "?scene=bar"),
+    # An instant that was chosen stays: the page does not play.
+    Picture("page.png", "?scene=bar&instant=0.7"),
     Picture("method.png", "?lesson=what-the-solver-does", height=720, seconds=4.0),
-    Picture("block.png", "?scene=block"),
+    Picture("block.png", "?scene=block&instant=0.7"),
 )
 
 

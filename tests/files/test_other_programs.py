@@ -146,7 +146,7 @@ def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
             HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n",
             r"2 of its 3 rows lie in the run.*at least 4",
         ),
-        (HEAD + "0.1,0,1\n" * 20_001, "has 20001 rows, and may have 20000"),
+        (HEAD + "0.1,0,1\n" * 40_001, "has 40001 rows, and may have 40000"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_with_what_to_do(

@@ -71,6 +71,14 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
     is_solved(page)
 
 
+def test_while_a_slow_page_loads_a_word_says_so(server: Server) -> None:
+    with urllib.request.urlopen(server.address) as answer:
+        text = answer.read().decode()
+    # It is there before any script has come.
+    assert "Slipfront is loading" in text.partition("<body")[0]
+    assert 'id="loader"' in text
+
+
 def test_a_reload_keeps_the_settings_and_back_undoes_them(visit: Visit) -> None:
     page = visit(f"?{ANSWER}")
     is_solved(page)

@@ -14,7 +14,16 @@ from typing import Any
 from urllib.parse import quote
 
 from browser import ROOT, Chrome, Server
-from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved
+from pages import (
+    ANSWER,
+    Visit,
+    button,
+    close_dialog,
+    enter,
+    field,
+    figures,
+    is_solved,
+)
 from playwright.sync_api import Browser, Dialog, Page, Request, expect
 
 SMALL = f"elements=20&instants=21&substructures=4&{ANSWER}"
@@ -111,6 +120,9 @@ def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_program_and_page
     )
     (head,) = [number for number, line in enumerate(table) if "error" in line]
     assert len(table) > head + 2
+    # The worker sends slip once files are offered.
+    contact = download(page, "Contact over x and t", tmp_path).read_text("utf-8")
+    assert '"slip, m"' in contact.splitlines()[0]
     program = download(page, "The run as a program", tmp_path)
     done = subprocess.run(
         [sys.executable, program],
@@ -125,6 +137,40 @@ def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_program_and_page
     close_dialog(page)
     assert page.context.browser
     opens_alone(page.context.browser, offline)
+
+
+def test_a_file_is_opened_by_keys_and_what_is_said_of_it_is_spoken(
+    visit: Visit, tmp_path: Path
+) -> None:
+    page = visit(f"?{SMALL}")
+    is_solved(page)
+    spoken = page.get_by_role("status")
+    expect(spoken).to_have_text(re.compile("solved.*certified"))
+    region = spoken.element_handle()
+    button(page, "Files").click()
+    label = page.locator("label", has=page.locator("input[type=file]"))
+    expect(label).to_be_visible()
+    before = label.inner_text()
+    (tmp_path / "bad.csv").write_text("time,force\n0,0\n1,much\n", encoding="utf-8")
+    # The same file may be opened again.
+    for _ in range(2):
+        page.get_by_role("button", name="Save settings").focus()
+        page.keyboard.press("Tab")
+        expect(label).to_have_css("outline-style", "solid")
+        with page.expect_file_chooser() as chooser:
+            page.wait_for_timeout(QUIET)
+            page.keyboard.press("Enter")
+        chooser.value.set_files(tmp_path / "bad.csv")
+        expect(spoken).to_contain_text("much")
+        expect(page.get_by_text("bad.csv was refused")).to_be_visible()
+        assert label.inner_text() == before
+        enter(page, "Peak load", "1000", over="900")
+        expect(spoken).not_to_contain_text("much")
+        enter(page, "Peak load", "900", over="1000")
+        is_solved(page)
+    # A screen reader follows the text of one element.
+    assert page.evaluate("(one) => one.isConnected", region)
+    expect(page.get_by_role("status")).to_have_count(1)
 
 
 def test_what_a_file_has_is_drawn_beside_or_run_and_what_was_understood_is_said(

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import re
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 
-from browser import Server
+import pytest
+from browser import Chrome, Server
 from pages import (
     ANSWER,
     Visit,
@@ -17,6 +20,7 @@ from pages import (
     figures,
     is_solved,
     status,
+    visits,
 )
 from playwright.sync_api import Page, expect
 from visitors import crowd
@@ -30,6 +34,8 @@ MEASURED = """() => {
 }"""
 """Script that counts the measured points on the figure to draw on."""
 QUESTION = "Is a small indicator a small error?"
+DRAWN = "Is there a best k?"
+"""A lesson whose answer is drawn as a curve."""
 
 
 def lead(page: Page) -> str:
@@ -60,8 +66,7 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     visit: Visit,
 ) -> None:
     page = visit()
-    button(page, "Lessons").click()
-    page.get_by_role("button", name=QUESTION).click()
+    choose(page, QUESTION)
     expect(page.get_by_role("heading", name=QUESTION)).to_be_visible()
     expect(page).to_have_url(re.compile("lesson=small-indicator"))
     expect(button(page, "Show me")).to_be_visible()
@@ -84,26 +89,53 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     expect(field(page, "Friction coefficient")).to_be_visible()
 
 
-def test_a_class_of_four_sees_what_its_leader_sees(visit: Visit) -> None:
-    leader = visit(f"?{ANSWER}")
-    is_solved(leader)
-    code = lead(leader)
-    first = follow(visit, code)
-    second = follow(visit, code)
-    enter(leader, "Peak load", "1100", over="900")
-    third = follow(visit, code)
-    for page in (leader, first, second, third):
+@dataclass(frozen=True)
+class School:
+    """A class: its code, and the pages of its leader and of two who follow.
+
+    The leader has changed the load after the first of them came, and before the second.
+    """
+
+    code: str
+    leader: Page
+    first: Page
+    second: Page
+
+
+@pytest.fixture(scope="module")
+def school(chrome: Chrome, server: Server) -> Iterator[School]:
+    """A class whose pages are opened once: that takes longer than what they do."""
+    with visits(server, chrome) as visit:
+        leader = visit(f"?{ANSWER}")
+        is_solved(leader)
+        code = lead(leader)
+        first = follow(visit, code)
+        enter(leader, "Peak load", "1100", over="900")
+        yield School(code, leader, first, follow(visit, code))
+
+
+def choose(leader: Page, lesson: str) -> None:
+    """Have the leader take a lesson, by a part of its title."""
+    button(leader, "Lessons").click()
+    leader.get_by_role("button", name=lesson).click()
+
+
+def test_a_class_sees_what_its_leader_sees(school: School) -> None:
+    leader = school.leader
+    first = school.first
+    second = school.second
+    for page in (leader, first, second):
         expect(figures(page)).to_contain_text("Force −1.1 kN")
-    expect(leader.locator(".class").first).to_contain_text("3 follow")
+    expect(leader.locator(".class").first).to_contain_text("2 follow")
     leader.reload()
     # Its fields come with their values: nobody types into one that is written over.
     typed = field(leader, "Peak load")
     typed.wait_for()
     assert typed.input_value() == "1100"
-    expect(leader.locator(".class").first).to_contain_text("3 follow")
+    expect(leader.locator(".class").first).to_contain_text("2 follow")
     expect(figures(leader)).to_contain_text("Force −1.1 kN")
     enter(leader, "Peak load", "1000", over="1100")
-    expect(figures(third)).to_contain_text("Force −1 kN")
+    expect(figures(second)).to_contain_text("Force −1 kN")
 
     enter(first, "Peak load", "1200", over="1000")
     expect(figures(first)).to_contain_text("Force −1.2 kN")
@@ -113,18 +145,37 @@ def test_a_class_of_four_sees_what_its_leader_sees(visit: Visit) -> None:
     expect(figures(first)).to_contain_text("Force −1 kN")
 
 
+def test_a_class_is_joined_in_the_midst_of_an_answer(school: School) -> None:
+    leader = school.leader
+    page = school.second
+    # Whoever changes anything has left, and joins again by the code.
+    enter(page, "Friction coefficient", "0.4", over="0.3")
+    expect(page.locator(".class").first).to_contain_text("You have left class")
+    is_solved(page)
+    choose(leader, DRAWN)
+    button(leader, "Go on to the answer").click()
+    expect(leader.get_by_role("alert")).to_be_visible()
+    button(page, "A class").click()
+    page.get_by_role("textbox", name="Code").fill(school.code.lower())
+    page.get_by_role("button", name="Join").click()
+    expect(page.locator(".class").first).to_contain_text("You follow class")
+    expect(page.locator(".class").first).to_contain_text(school.code)
+    expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(0)
+    expect(page.get_by_role("alert")).to_be_visible()
+    for each in (leader, page):
+        each.wait_for_function(f"({MEASURED})() == 5")
+    assert page.locator(".bk-Figure").count() == leader.locator(".bk-Figure").count()
+
+
 def test_all_ten_of_a_class_who_predict_at_once_are_counted(
-    visit: Visit, server: Server
+    school: School, server: Server
 ) -> None:
-    leader = visit(f"?{ANSWER}")
-    is_solved(leader)
-    code = lead(leader)
-    button(leader, "Lessons").click()
-    leader.get_by_role("button", name=QUESTION).click()
+    leader = school.leader
+    pages = (school.first, school.second)
+    choose(leader, QUESTION)
     expect(button(leader, "Open the counts")).to_be_visible()
-    # Ten browsers would be too many: the others press their buttons without one.
-    with crowd(f"{server.address}?class={code}", 7, "Some 1 %") as others:
-        pages = [follow(visit, code) for _ in range(3)]
+    # A browser takes a core for each page: the others press their buttons without one.
+    with crowd(f"{server.address}?class={school.code}", 8, "Some 1 %") as others:
         others.wait()
         expect(leader.get_by_text("0 of 10 have predicted")).to_be_visible()
         at = time.time() + 1.0
@@ -134,27 +185,9 @@ def test_all_ten_of_a_class_who_predict_at_once_are_counted(
         expect(leader.get_by_text("10 of 10 have predicted")).to_be_visible()
         button(leader, "Open the counts").click()
         for page in (leader, *pages):
-            expect(page.get_by_text("7 of 10", exact=True)).to_be_visible()
-            expect(page.get_by_text("3 of 10", exact=True)).to_be_visible()
+            expect(page.get_by_text("8 of 10", exact=True)).to_be_visible()
+            expect(page.get_by_text("2 of 10", exact=True)).to_be_visible()
         button(leader, "Go on to the answer").click()
         for page in pages:
             expect(page.get_by_role("alert")).to_contain_text("You chose “Some 10 %”")
     expect(status(pages[0])).to_contain_text("75 % wrong")
-
-
-def test_a_class_is_joined_in_the_midst_of_an_answer(visit: Visit) -> None:
-    leader = visit("?lesson=best-k")
-    button(leader, "Show me").click()
-    expect(leader.get_by_role("alert")).to_be_visible()
-    code = lead(leader)
-    page = visit(f"?{ANSWER}")
-    is_solved(page)
-    button(page, "A class").click()
-    page.get_by_role("textbox", name="Code").fill(code.lower())
-    page.get_by_role("button", name="Join").click()
-    expect(page.locator(".class").first).to_contain_text(f"You follow class {code}")
-    expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(0)
-    expect(page.get_by_role("alert")).to_be_visible()
-    for each in (leader, page):
-        each.wait_for_function(f"({MEASURED})() == 5")
-    assert page.locator(".bk-Figure").count() == leader.locator(".bk-Figure").count()

@@ -176,7 +176,10 @@ FEW = {"bricks": 3, "courses": 3, "displacement": 5e-5}
 
 def options(scene: str = "bar", **changes: Any) -> Settings:
     sizes = SHORT | (FEW if scene == "wall" else {})
-    return CATALOGUE[scene].checked(sizes | {"finish": "accuracy"} | changes)
+    kind = CATALOGUE[scene]
+    # A mesh of a file has no number of elements.
+    sizes = {name: sizes[name] for name in sizes if name in kind.definitions()}
+    return kind.checked(sizes | {"finish": "accuracy"} | changes)
 
 
 @cache

@@ -5,15 +5,18 @@ from __future__ import annotations
 import functools
 import json
 import math
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from app.frame import Frame, Selection
+from app.frame import LOCAL, Frame, Selection
 from app.messages import Needs
 from app.state import PageState
-from app.status import figures_line, status_line
+from app.status import OWNER, figures_line, status_line
 from app.worker.sampling import Sampler
 from solver.commands.cli import main
 from solver.reference.incremental import reference_of
@@ -239,3 +242,19 @@ def test_the_page_tells_no_figures_of_a_wall_that_falls() -> None:
     assert line.count("<b>–</b>") == 4
     assert "no solution" in line
     assert ", last " not in details(frame)
+
+
+def test_figures_beside_a_local_stage_say_whose_they_are() -> None:
+    frame = shown(ran("bar", **LOOSENED))
+    assert OWNER in figures_line(frame, Selection(stage=LOCAL))
+    assert OWNER not in figures_line(frame, Selection())
+
+
+def test_before_the_first_estimate_no_error_is_told() -> None:
+    frame = shown(ran("bar", **LOOSENED))
+    unknown = np.full(len(frame.history["iteration"]), np.nan)
+    errors = {"error_force": unknown, "estimated_error": unknown}
+    early = replace(frame, status=None, residual=None, history=frame.history | errors)
+    (line,) = re.findall('<div class="progress.*', details(early))
+    assert "iteration" in line
+    assert "wrong" not in line
