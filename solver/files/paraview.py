@@ -130,24 +130,27 @@ class _Contacts:
         self._points = contacts.of_points(positions)
         self._areas = contacts.of_points([area[:, None] for area in areas])[:, 0]
         self._fields = [iterate.contact(name) for name in contacts]
+        self._opens = problem.opens
         self._interfaces = np.repeat(np.arange(len(contacts)) + 1, contacts.sizes)
         joined = np.flatnonzero(np.diff(self._interfaces) == 0)
         self._lines = np.stack([joined, joined + 1], axis=1)
 
     def at(self, instant: int) -> meshio.Mesh:
         """Mesh of lines with their fields at an instant."""
-        normal = self._along("normal_force", instant)
         tangential = self._along("tangential_force", instant)
         fields = {
-            "normal_force": normal,
             "friction_force": tangential,
-            "pressure": normal / self._areas,
             "friction": tangential / self._areas,
-            "gap": self._along("opening", instant),
             "slip": self._along("slip", instant),
             "status": self._along("status", instant),
             "interface": self._interfaces,
         }
+        # Where the pressure is known beforehand it is no unknown of the run.
+        if self._opens:
+            normal = self._along("normal_force", instant)
+            fields["normal_force"] = normal
+            fields["pressure"] = normal / self._areas
+            fields["gap"] = self._along("opening", instant)
         return _mesh(self._points, [("line", self._lines)], fields, {})
 
     def _along(self, name: str, instant: int) -> Array:

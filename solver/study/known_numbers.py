@@ -386,6 +386,9 @@ def dovetail(answer: SolvedCase) -> Iterator[Number]:
     for instant, sign, words in ((turned, 1.0, "pulled"), (back, -1.0, "let go")):
         carried = 2.0 * (upward + sign * settings.friction * across)
         known = tractions[instant] * width / carried
-        fields = [answer.fields.contact(each.name) for each in contacts]
-        found = np.mean([each.normal_force[:, instant].sum() for each in fields])
-        yield f"normal force of a flank, {words}", "N", float(known), float(found)
+        found = 0.0
+        for contact in contacts:
+            pressing = answer.fields.contact(contact.name).normal_force
+            assert pressing is not None
+            found += float(pressing[:, instant].sum()) / len(contacts)
+        yield f"normal force of a flank, {words}", "N", float(known), found
