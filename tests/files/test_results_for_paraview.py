@@ -9,44 +9,50 @@ import pytest
 
 from solver.commands.cli import main
 from solver.files.paraview import write_series
-from solver.latin import solve
+from solver.latin import Iterate, solve
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
 PLANE = [name for name, kind in CATALOGUE.items() if kind.kind == "plane"]
 
 
+def written(scene: str, folder: Path) -> tuple[Iterate, list[meshio.Mesh]]:
+    """A small run, and the meshes of its last instant: bodies and contacts."""
+    kind = CATALOGUE[scene]
+    settings = kind.checked({**kind.SMALL, "instants": 3})
+    iterate = solve(discretise(settings), method_of(settings)).iterate
+    path = folder / "run.pvd"
+    write_series(path, iterate)
+    listed = ElementTree.parse(path).getroot().findall("Collection/DataSet")
+    instants = iterate.problem.instants
+    assert len(listed) == 2 * len(instants)
+    assert float(listed[-1].attrib["timestep"]) == instants[-1]
+    files = [folder / each.attrib["file"] for each in listed[-2:]]
+    return iterate, [meshio.read(file) for file in files]
+
+
 @pytest.mark.parametrize("scene", PLANE)
 def test_files_of_every_scene_in_the_plane_have_its_fields(
     scene: str, tmp_path: Path
 ) -> None:
-    kind = CATALOGUE[scene]
-    settings = kind.checked({**kind.SMALL, "instants": 3})
-    problem = discretise(settings)
-    iterate = solve(problem, method_of(settings)).iterate
-    path = tmp_path / "run.pvd"
-    write_series(path, iterate)
-    listed = ElementTree.parse(path).getroot().findall("Collection/DataSet")
-    assert len(listed) == 2 * problem.n_instants
-    assert float(listed[-1].attrib["timestep"]) == problem.instants[-1]
-    bodies, contacts = [
-        meshio.read(tmp_path / each.attrib["file"]) for each in listed[-2:]
-    ]
+    iterate, (bodies, contacts) = written(scene, tmp_path)
+    problem = iterate.problem
     inside = problem.inside
     assert inside is not None
     moved = inside.displacement(iterate.displacement, [-1])[:, :, 0]
     used = np.unique(inside.elements)
     assert np.array_equal(bodies.points[:, :2], inside.nodes[used])
-    assert np.array_equal(bodies.point_data["displacement"][:, :2], moved[used])
+    found = bodies.point_data["displacement"][:, :2]
+    assert found == pytest.approx(moved[used], abs=1e-9 * np.abs(moved).max())
+    # Elements of a scene here are of one kind, and stand in their order.
+    known = inside.stress(moved)
     stress = np.concatenate(bodies.cell_data["stress"])
-    assert len(stress) == len(inside.elements)
-    assert np.sort(stress, axis=0) == pytest.approx(
-        np.sort(inside.stress(moved), axis=0)
-    )
-    pressing = [iterate.contact(name).normal_force for name in problem.rubbing]
-    total = sum(force[:, -1].sum() for force in pressing if force is not None)
-    assert contacts.point_data["normal_force"].sum() == pytest.approx(total)
+    assert stress == pytest.approx(known, abs=1e-6 * np.abs(known).max())
     assert len(contacts.points) == problem.rubbing.n_points
+    if problem.opens:
+        pressing = [iterate.contact(name).normal_force for name in problem.rubbing]
+        total = sum(force[:, -1].sum() for force in pressing if force is not None)
+        assert contacts.point_data["normal_force"].sum() == pytest.approx(total)
 
 
 def test_pressure_times_length_is_the_pressing_force(tmp_path: Path) -> None:
