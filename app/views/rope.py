@@ -104,12 +104,14 @@ class WireSection(ExtraView):
 
 
 class AxialForces(ExtraView):
-    """Force along a rod or each wire; a broken wire regains it from its break on."""
+    """Force along a rod, a band or each wire, which regains it from a break on."""
 
     name = "Axial force"
     needs = frozenset({"axial force"})
 
-    applies = staticmethod(lambda settings: settings.kind != "plane")
+    applies = staticmethod(
+        lambda settings: settings.kind != "plane" or settings.scene == "belt"
+    )
 
     def make(self) -> None:
         """Draw a curve for each wire, and the closed form."""

@@ -16,6 +16,7 @@ from app.units import percent, unit_for
 from app.worker.geometry import MOST_POINTS, floats, thinned
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
+from solver.discrete.plane.band import Band
 from solver.discrete.structure import Loop
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips
@@ -258,6 +259,29 @@ def _comparison(brought: OtherResults, sampled: Sampled, interface: str) -> Comp
     return Comparison(brought, sampled.problem, interface)
 
 
+def tension(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Tension along a band on a guide, as the axial force of a rod; None of others.
+
+    "x" of places, (n_places,), m along the guide; "force", (1, n_places, n_instants),
+    N; "names"; "stuck" has no curve, (0, n_instants). At both ends stand the tensions
+    of the free spans.
+    """
+    band = sampled.settings.structure()
+    if not isinstance(band, Band):
+        return None
+    found = band.tensions(iterate.problem, iterate)[:, sampled.columns]
+    kept = thinned(len(found), MOST_POINTS)
+    angles = band.guide.angles
+    middles = 0.5 * (angles[1:] + angles[:-1])
+    places = band.guide.radius * np.concatenate([angles[:1], middles, angles[-1:]])
+    return {
+        "x": floats(places[kept]),
+        "force": floats(found[None, kept]),
+        "names": ["band"],
+        "stuck": floats(found[:0]),
+    }
+
+
 EXTRAS: dict[str, Callable[[Sampled, Iterate, Needs], Any]] = {
     "spectra": spectra,
     "slips": slips,
@@ -265,6 +289,7 @@ EXTRAS: dict[str, Callable[[Sampled, Iterate, Needs], Any]] = {
     "modes": modes,
     "clips": clips,
     "beside": beside,
+    "axial force": tension,
 }
 """Extras of all scenes, by the names in `View.needs`; bodies of one kind have more
 (`Drawn.extras`)."""

@@ -33,7 +33,7 @@ from solver.laws.interface import (
 )
 from solver.laws.pairs import Pairs
 from solver.laws.play import SlipFactor
-from solver.laws.stiffness import BodyStiffness, RodStiffness
+from solver.laws.stiffness import BeamStiffness, BodyStiffness, RodStiffness
 from solver.laws.unilateral import ContactRule, Unilateral
 from solver.refusal import RefusedError, Words
 
@@ -119,7 +119,9 @@ class Contact(Pairs):
 
     tangential: Friction
     normal: Unilateral | None = None
-    stiffness_beside: RodStiffness | BodyStiffness = field(default_factory=RodStiffness)
+    stiffness_beside: RodStiffness | BodyStiffness | BeamStiffness = field(
+        default_factory=RodStiffness
+    )
     macro: sparse.csr_array | None = None
     slip_ratio: float = 1.0
     copies: float = 1.0
@@ -132,7 +134,7 @@ class Contact(Pairs):
             self,
             tangential=Part(Friction),
             normal=Part(Unilateral),
-            stiffness_beside=Part(RodStiffness, BodyStiffness),
+            stiffness_beside=Part(RodStiffness, BodyStiffness, BeamStiffness),
         )
         # The parts are known to be laws now, so that their sizes may be read.
         size = len(self.tangential.component.above)

@@ -34,6 +34,8 @@ of HiGHS."""
 TURNED = 1e-3
 """Difference of displacements in a body, over the largest of all, from which on it
 turns."""
+MOST = 1e6
+"""Largest load over the other loads that counts as bounded."""
 INFEASIBLE = 2
 """Status of `linprog` where no contact forces balance the loads."""
 
@@ -71,9 +73,16 @@ class _Program:
     """
 
     def __init__(
-        self, problem: Problem, motions: sparse.csc_array, unit: float
+        self,
+        problem: Problem,
+        motions: sparse.csc_array,
+        unit: float,
+        largest: float = 1.0,
     ) -> None:
-        """Prepare what all instants share, with forces in a unit."""
+        """Prepare what all instants share, with forces in a unit.
+
+        `largest` is the largest share of a step that is looked at.
+        """
         self._rules = rules_of(problem)
         rules = self._rules
         self._unit = unit
@@ -85,9 +94,9 @@ class _Program:
         caps = rules.cap[self._rubs][self._capped]
         self._caps = np.tile(self._strongest * caps, 2) / unit
         size = len(rules.gap)
-        # Pressing forces are not negative, and the share is between 0 and 1.
+        # Pressing forces are not negative, nor is the share.
         lows = np.append(np.where(rules.normal, 0.0, -np.inf), 0.0)
-        highs = np.append(np.full(size, np.inf), 1.0)
+        highs = np.append(np.full(size, np.inf), largest)
         self._bounds = np.stack([lows, highs], axis=1)
         self._aim = np.append(np.zeros(size), -1.0)
 
@@ -171,6 +180,38 @@ def collapse_of(
             return _collapse_at(problem, instant, share, balanced)
         before = now
     return None
+
+
+def load_factors(problem: Problem, without: Problem) -> Array:
+    """Largest factor on some of the loads that contact can balance, (n_instants,).
+
+    Each instant by itself. `without` is the same problem without these loads; where
+    they are zero, or nothing bounds them, the factor is infinite, and 0 where the other
+    loads alone have no equilibrium.
+
+    Raises
+    ------
+    NoReferenceError
+        If HiGHS finds no answer.
+    """
+    factors = np.full(problem.n_instants, np.inf)
+    if problem.motions is None:
+        return factors
+    motions = sparse.csc_array(problem.motions)
+    others = motions.T @ external_force(without)
+    loads = motions.T @ external_force(problem) - others
+    unit = float(np.abs(others).max(initial=0.0)) or 1.0
+    program = _Program(problem, motions, unit, MOST)
+    for instant in np.flatnonzero(loads.any(axis=0)).tolist():
+        # In units of their own, as a small load has a large factor.
+        size = float(np.abs(loads[:, instant]).max())
+        step = sparse.csr_array(loads[:, instant, None] / size)
+        balanced = program.solve(instant, others[:, instant] / unit, step)
+        if balanced.status == INFEASIBLE:
+            factors[instant] = 0.0
+        elif balanced.x[-1] < MOST:
+            factors[instant] = float(balanced.x[-1]) * unit / size
+    return factors
 
 
 def _collapse_at(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from solver import discrete
 from solver.discrete.problem import Problem
+from solver.scenes.arch import ArchSettings
 from solver.scenes.bar import BarSettings
+from solver.scenes.belt import BeltSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.fault import FaultSettings
 from solver.scenes.incline import InclineSettings
@@ -26,6 +28,8 @@ CATALOGUE: dict[str, type[Settings]] = {
         RopeSettings,
         StrandSettings,
         WallSettings,
+        ArchSettings,
+        BeltSettings,
         MeshSettings,
     )
 }

@@ -187,6 +187,9 @@ class MeshSettings(PlaneSettings):
     )
     macro_degree = redefined(RectangleSettings.param["macro_degree"], 1)
     start = redefined(RectangleSettings.param["start"], "zero")
+    # Of both meshes that come with the scene 1 % takes 61 and 35 iterations, with a
+    # factor of 1 106 and 57, of 8 86 and 46 (measured).
+    k_scale = redefined(PlaneSettings.param["k_scale"], 4.0)
 
     @cached_property
     def parts(self) -> NamedMesh:
@@ -380,8 +383,8 @@ class MeshSettings(PlaneSettings):
         parts = []
         for line, deeds in self.deeds.items():
             if deeds and deeds != ("free",):
-                parts.append(f"{taken_apart(line)[0]} is {' and '.join(deeds)}")
-        return f"{bodies} of a mesh {touch}; {shared.listed(parts)}."
+                parts.append(f"{taken_apart(line)[0]} {' and '.join(deeds)}")
+        return f"{bodies} of a mesh {touch}, with {shared.listed(parts)}."
 
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:

@@ -11,6 +11,7 @@ from scipy.special import erfc
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
+from solver.discrete.plane.band import Band
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
@@ -323,6 +324,35 @@ def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
         if name.startswith("support") and force is not None:
             found += float(force[:, -1].sum())
     yield "force on the ground", "N/m", 4.0 * (pressing + 4.0 * brick), found
+
+
+def arch_thrust(answer: SolvedCase) -> Iterator[Number]:
+    """Thrust of an arch over its weight, after an abutment has moved far enough.
+
+    The least where it has moved apart, the largest where it has moved inwards.
+    """
+    moved, thrust = answer.loop.along(answer.fields)
+    weight = answer.settings.structure().downwards[-1]
+    bounds = answer.settings.statics.thrusts()
+    assert bounds is not None
+    known, largest = bounds
+    if moved[-1] < 0.0:
+        known = largest
+    yield "thrust over weight", "", known, float(thrust[-1] / weight)
+
+
+def tensions(answer: SolvedCase) -> Iterator[Number]:
+    """Tension of a band at its ends, its largest and its least, in the end."""
+    curves = answer.settings.exact(answer.problem, answer.fields)
+    (exact,) = [curve for curve in curves if curve.of == "axial force"]
+    band = answer.settings.structure()
+    assert isinstance(band, Band)
+    found = band.tensions(answer.problem, answer.fields)[:, -1]
+    known = exact.up[:, -1]
+    # The spans carry the tensions of the ends.
+    yield "tension of the tail", "N", float(known[0]), float(found[0])
+    yield "tension of the pulled end", "N", float(known[-1]), float(found[-1])
+    yield "largest tension", "N", float(known.max()), float(found.max())
 
 
 def moved_end(answer: SolvedCase) -> Iterator[Number]:

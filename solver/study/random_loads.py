@@ -42,6 +42,11 @@ SPRINGS = 1.0, 1e4
 """Stiffness of contacts over that of bodies."""
 
 
+OPENING = 100.0
+"""Motion of the abutment of an arch, over its radius and the strain of its weight, that
+opens joints."""
+
+
 def log_uniform(generator: Generator, low: float, high: float) -> float:
     """Random positive number; all decades are equally likely."""
     return float(np.exp(generator.uniform(math.log(low), math.log(high))))
@@ -96,6 +101,8 @@ def _friction_and_largest_load(given: Mapping[str, Any]) -> tuple[float, float]:
     friction is larger than its width over its height.
     """
     friction = given["friction"]
+    if "voussoirs" in given:
+        return friction, LARGEST_ON_BRICKS
     if "bricks" not in given:
         return friction, LARGEST
     width = given["length"] * given["bricks"]
@@ -201,12 +208,24 @@ def _scales(
     """Pressing force, and the motion and strains by a load as large, by their units."""
     if "construction" in given:
         return _scales_of_rope(kind, given, generator)
+    if "wrap" in given:
+        return _scales_of_band(given, generator)
     if "section" in given:
         return _scales_of_rod(given)
     if "slack" in given:
         weight = given["weight"]
         return {"Pa": weight / given["length"], "m": weight / given["spring"]}
+    if "voussoirs" in given:
+        return _scales_of_arch(given)
     return _scales_in_plane(kind, given, generator)
+
+
+def _scales_of_arch(given: Mapping[str, Any]) -> dict[str, float]:
+    """Weight of an arch, and motions of its abutments that open joints, by unit."""
+    radius = given["length"]
+    volume = math.radians(given["span"]) * given["thickness"] * radius**2
+    strain = given["unit_weight"] * radius / given["young"]
+    return {"N": given["unit_weight"] * volume, "m": OPENING * strain * radius}
 
 
 def _scales_of_rope(
@@ -224,6 +243,16 @@ def _scales_of_rope(
         "N/m": tension * inclined**2 / radius,
         "m": strain * radius,
     }
+
+
+def _scales_of_band(given: Mapping[str, Any], generator: Generator) -> dict[str, float]:
+    """Scales of a band on a guide by unit, with a random strain of its tension."""
+    strain = 10.0 ** generator.uniform(-6.0, -2.0)
+    length = given["length"]
+    if given["guide"] == "drum":
+        length = math.radians(given["wrap"]) * given["drum_radius"]
+    tension = strain * given["young"] * given["section"]
+    return {"N": tension, "m": strain * length}
 
 
 def _scales_of_rod(given: Mapping[str, Any]) -> dict[str, float]:

@@ -40,6 +40,7 @@ SIZES = (
     "layers",
     "bricks",
     "courses",
+    "voussoirs",
 )
 """Numbers of a mesh; all decades are equally likely."""
 WIDE = {
@@ -133,8 +134,8 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
     _draw_alone(kind, values, generator)
     _fit_together(kind, values, generator)
     values |= random_loads(kind, values, generator)
-    # A wall whose top moves before anything presses has no determinate positions.
-    if kind.scene != "wall":
+    # Blocks that move before anything presses have no determinate positions.
+    if not kind.has_joints:
         values |= _paths(kind, values, generator)
     return values
 

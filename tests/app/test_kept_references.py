@@ -50,6 +50,8 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
     },
     "mesh": {"mesh": "dovetail", "displacement": 1e-5, "young": 1e11, "pressure": 1e7},
     "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
+    "arch": {"live": 100.0, "fill": 1e4, "abutment": "down", "span": 120.0},
+    "belt": {"wrap": 200.0, "drum_radius": 0.2, "pull": 1300.0, "tail": "held"},
 }
 
 

@@ -31,6 +31,7 @@ SMALL = {
     "wall": {"bricks": 4, "courses": 4},
     "fault": {"elements": 24},
     "incline": {},
+    "arch": {},
 }
 PLAIN = {
     "start": "zero",

@@ -170,12 +170,15 @@ def test_what_is_estimated_on_the_way_is_no_less_than_the_error(method: str) -> 
 SHORT = {"elements": 16, "instants": 21, "substructures": 2}
 
 
-FEW = {"bricks": 3, "courses": 3, "displacement": 5e-5}
-"""Bricks of a wall, and what it is moved by: a step is soon worth a trial."""
+FEW = {
+    "wall": {"bricks": 3, "courses": 3, "displacement": 5e-5},
+    "arch": {"voussoirs": 7, "elements": 2},
+}
+"""Few bodies, of which a step is soon worth a trial."""
 
 
 def options(scene: str = "bar", **changes: Any) -> Settings:
-    sizes = SHORT | (FEW if scene == "wall" else {})
+    sizes = SHORT | FEW.get(scene, {})
     kind = CATALOGUE[scene]
     # A mesh of a file has no number of elements.
     sizes = {name: sizes[name] for name in sizes if name in kind.definitions()}

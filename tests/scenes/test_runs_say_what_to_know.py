@@ -118,6 +118,8 @@ SOFT = {
     "layers": {"deflection": 0.2},
     "wall": {"young": 1e7},
     "rope": {"curvature": 30.0},
+    "arch": {"young": 1e6},
+    "belt": {"young": 1e7},
     "mesh": {"young": 1e7},
 }
 

@@ -29,14 +29,17 @@ for scene_name, scene_kind in CATALOGUE.items():
 """Paths that may be tables, of scenes by default."""
 
 
+HELD_ENDS: dict[str, dict[str, Any]] = {
+    "strand": {"grip": "displacement"},
+    "belt": {"driven": "moved"},
+}
+"""Settings of scenes with which no pull is too large."""
+
+
 def drawn(scene: str, name: str, seed: int) -> Any:
     """Settings with a table of wide and narrow swings, of other times than instants."""
     random = np.random.default_rng([seed, *name.encode()])
-    if scene == "strand":
-        grip = {"grip": "displacement"}
-    else:
-        grip = {}
-    settings = CATALOGUE[scene].checked(grip)
+    settings = CATALOGUE[scene].checked(HELD_ENDS.get(scene, {}))
     size = float(settings.size_of(name)) or 1e5
     middles = np.sort(random.uniform(0.02, 0.98, 5)) * settings.duration
     halves = 10.0 ** random.uniform(-6.0, -3.0, 5) * settings.duration
@@ -71,11 +74,8 @@ def test_a_table_is_seen_with_its_extremes_its_integral_and_its_turning_points(
 
 
 def of_preset(scene: str, name: str, preset: str, **changes: Any) -> Any:
-    """Settings with a preset; wires are gripped, so that no pull is too large."""
-    if scene == "strand":
-        grip = {"grip": "displacement"}
-    else:
-        grip = {}
+    """Settings with a preset, of ends that are held, so that no pull is too large."""
+    grip = HELD_ENDS.get(scene, {})
     return CATALOGUE[scene].checked({name: preset, "seed": 3} | grip | changes)
 
 

@@ -384,7 +384,10 @@ def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
     assert reading("ratchet")(run) == np.abs(moved[1]).max()
 
 
-COMES_BACK = {"fault": {"injection_load": "pulses"}}
+COMES_BACK = {
+    "fault": {"injection_load": "pulses"},
+    "belt": {"pull_load": "delayed"},
+}
 """Of scenes whose usual load does not, one that does."""
 
 

@@ -69,6 +69,12 @@ class Beam:
         """Middle of every beam, shape (n_nodes - 1, 2), m."""
         return 0.5 * (self.nodes[:-1] + self.nodes[1:])
 
+    @cached_property
+    def laid_out(self) -> Array:
+        """Middle of every beam of the line laid out straight, (n_nodes - 1, 2), m."""
+        along = np.cumsum(self.lengths) - 0.5 * self.lengths
+        return np.stack([along, np.zeros_like(along)], axis=1)
+
     @property
     def size(self) -> float:
         """Length of the line, m."""

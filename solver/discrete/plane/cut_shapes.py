@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Shape
 
 
@@ -46,7 +47,11 @@ class CutShape:
 
     def __init__(self, shape: Shape, count: int) -> None:
         self.labels = np.zeros(len(shape.centres), dtype=np.intp)
-        _bisect(shape.centres, np.arange(len(self.labels)), count, 0, self.labels)
+        places = shape.centres
+        if isinstance(shape, Beam):
+            # A line may wind back beside itself, and is cut along itself.
+            places = shape.laid_out
+        _bisect(places, np.arange(len(self.labels)), count, 0, self.labels)
         numbers = range(count)
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]
         self.nodes = [np.unique(shape.element_nodes[some]) for some in self.elements]

@@ -11,10 +11,18 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
+from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_pieces import JointPiece
 from solver.discrete.plane.meshes import Mesh
-from solver.laws import BodyStiffness, Component, Contact, Friction, Unilateral
+from solver.laws import (
+    BeamStiffness,
+    BodyStiffness,
+    Component,
+    Contact,
+    Friction,
+    Unilateral,
+)
 from solver.laws.friction import compliance_of
 
 QUADRATIC = 0.5
@@ -154,7 +162,18 @@ def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Compo
     return Component(*along), Component(*across)
 
 
-def _stiffness_beside(cut: CutBodies, pairs: _Pairs) -> BodyStiffness:
+def _stiffness_beside(cut: CutBodies, pairs: _Pairs) -> BodyStiffness | BeamStiffness:
+    """Stiffness beside joints: of bodies, or of lines of beams on a support."""
+    above = [cut.structure.joints[number].above for number in pairs.joints]
+    bodies = cut.structure.bodies
+    is_on_support = cut.structure.joints[pairs.joints[0]].below is None
+    if is_on_support and all(isinstance(bodies[one].shape, Beam) for one in above):
+        moduli = np.array([cut.modulus(number) for number in above])
+        return BeamStiffness(moduli[pairs.joint_of_pairs])
+    return _of_bodies(cut, pairs)
+
+
+def _of_bodies(cut: CutBodies, pairs: _Pairs) -> BodyStiffness:
     """Moduli and depth of the bodies at joints, for their search direction.
 
     Nodes of elements with a node in the middle have uneven areas, but a body resists

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import solver.study.quantities.arch_measures as arches
+import solver.study.quantities.belt_measures as belts
 import solver.study.quantities.contact_measures as contacts
 import solver.study.quantities.cycle_measures as cyclic
 import solver.study.quantities.holding_measures as holding
@@ -55,6 +57,11 @@ QUANTITIES = by_name(
     contacts.spring_force,
     holding.holding_friction,
     holding.holding_force,
+    arches.thrust,
+    arches.hinges,
+    arches.live_factor,
+    belts.tension_ratio,
+    belts.torque,
     contacts.end_displacement,
     contacts.residual_displacement,
     contacts.stiffness,

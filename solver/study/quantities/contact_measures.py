@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Flags
+from solver.discrete.plane.band import Band
 from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import AxialForce, reaction
 from solver.discrete.problem import Problem
@@ -72,7 +73,7 @@ def _of_loop(run: FinishedRun, name: str, at: float | None) -> float:
         if figure.name == name:
             if at is None:
                 return figure.largest
-            return figure.at(_instant_at(run, at))
+            return figure.at(instant_at(run, at))
     return math.nan
 
 
@@ -93,13 +94,21 @@ def force(run: FinishedRun, at: float | None) -> float:
     return _of_loop(run, "force", at)
 
 
+def _has_axial_force(settings: Settings) -> bool:
+    """Check that bodies are rods, wires, or a band on a guide."""
+    return settings.kind in ("rod", "wires") or settings.scene == "belt"
+
+
 def _axial_force(run: FinishedRun) -> Array:
-    """Axial force in all elements, then at both ends: (n_elements + 2, n_instants), N.
+    """Axial force in all elements, and at both ends: (n_elements + 2, n_instants), N.
 
     Tension is positive. The ends are rows of their own, since friction takes a part of
     the end force before the middle of the last element.
     """
     rods = run.settings.structure()
+    if isinstance(rods, Band):
+        # The free spans are elements of their own.
+        return rods.tensions(run.problem, run.iterate)
     assert isinstance(rods, Rods)
     left, right = (rods.end_force(run.problem, side).of(run.iterate) for side in ENDS)
     in_elements = AxialForce(run.problem)(run.iterate.displacement)
@@ -110,10 +119,10 @@ def _axial_force_instant(run: FinishedRun, at: float | None) -> int:
     """Instant at a share of the interval, or the instant of the largest axial force."""
     if at is None:
         return first_largest(np.abs(_axial_force(run)).max(axis=0))
-    return _instant_at(run, at)
+    return instant_at(run, at)
 
 
-def _instant_at(run: FinishedRun, share: float) -> int:
+def instant_at(run: FinishedRun, share: float) -> int:
     """Instant that is nearest to a share of the interval."""
     times = run.problem.instants
     return int(np.abs(times - share * times[-1]).argmin())
@@ -123,11 +132,14 @@ def _instant_at(run: FinishedRun, share: float) -> int:
     "Largest axial force",
     "N",
     parameter=AT,
-    applies=lambda settings: settings.kind in ("rod", "wires"),
+    applies=_has_axial_force,
     when=_axial_force_instant,
 )
 def axial_force(run: FinishedRun, instant: int) -> float:
-    """Largest axial force along rods at an instant, with ends, N, tension positive."""
+    """Largest axial force along a body at an instant, with ends, N.
+
+    Tension is positive.
+    """
     force = _axial_force(run)[:, instant]
     return float(force[first_largest(force)])
 

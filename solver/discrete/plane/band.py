@@ -1,0 +1,186 @@
+"""A band on a rigid rough curve as data: belt on a drum, tendon in a duct."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.discrete.plane.beams import Beam
+from solver.discrete.plane.bodies import Bodies
+from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.probes import LoopFields, Probe, constant, mean_held, reaction
+from solver.discrete.problem import Problem
+from solver.discrete.structure import Axes, Loop
+
+GUIDE = "guide"
+"""Name of the contact."""
+PULL = "pull"
+TAIL = "tail"
+"""Names of what is given at the last and at the first end."""
+LIMP = 1e-3
+"""Radius of gyration of the section over the length of an element. Stiffness against
+bending keeps free spans in place, and carries next to nothing, though a band that
+slides turns on the arc and not on the spans.
+"""
+
+
+@dataclass(frozen=True)
+class Guide:
+    """A circular arc, and lines of a band on it that goes on straight beyond its ends.
+
+    Attributes
+    ----------
+    angle, radius
+        Angle of the arc, rad, and its radius, m.
+    elements
+        Number of equal elements on the arc. Either span beyond it is one more.
+    turned
+        Counter-clockwise angle of the last span from the x axis, rad.
+    """
+
+    angle: float
+    radius: float
+    elements: int
+    turned: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """Length of the arc, m."""
+        return self.angle * self.radius
+
+    @property
+    def span(self) -> float:
+        """Length of either span, m."""
+        return self.length / self.elements
+
+    @cached_property
+    def nodes(self) -> Indices:
+        """Numbers of the nodes on the arc, (elements + 1,), among those of the band."""
+        return np.arange(1, self.elements + 2)
+
+    @cached_property
+    def angles(self) -> Array:
+        """Angles along the arc from its first end, shape (elements + 1,), rad."""
+        return np.linspace(0.0, self.angle, self.elements + 1)
+
+    @cached_property
+    def along(self) -> Array:
+        """Unit tangents at the nodes on the arc, shape (elements + 1, 2)."""
+        directions = self.turned + self.angle - self.angles
+        return np.stack([np.cos(directions), np.sin(directions)], axis=1)
+
+    @property
+    def normals(self) -> Array:
+        """Unit normals out of the guide, shape (elements + 1, 2)."""
+        return np.stack([-self.along[:, 1], self.along[:, 0]], axis=1)
+
+    @property
+    def outwards(self) -> tuple[Array, Array]:
+        """Directions of the first and the last span away from the guide, (2,) each."""
+        return -self.along[0], self.along[-1]
+
+    @cached_property
+    def line(self) -> Array:
+        """Nodes of the band, shape (elements + 3, 2), m."""
+        arc = self.radius * self.normals
+        first, last = self.outwards
+        ends = arc[0] + self.span * first, arc[-1] + self.span * last
+        return np.concatenate([ends[:1], arc, ends[1:]])
+
+    def body(self, young: float, section: float, substructures: int) -> Body:
+        """Band of a modulus, Pa, and a section, m^2, in a number of substructures."""
+        gyration = LIMP * self.span
+        shape = Beam(self.line, section, section * gyration**2)
+        return Body("band", shape, young, substructures=substructures)
+
+    def contact(self, friction: float) -> Joint:
+        """Contact of the band with the guide, of a coefficient of friction."""
+        return Joint(GUIDE, 0, self.nodes, None, None, self.normals, friction=friction)
+
+    def load(self, name: str, tension: Array) -> Load:
+        """Tension of an end over time, (n_instants,), N, by its name."""
+        direction, node = self._end(name)
+        force = np.multiply.outer(direction, tension)
+        return Load(name, 0, np.array([node]), force[None])
+
+    def held(self, name: str, displacement: Array) -> list[Held]:
+        """Displacement of an end away from the guide, (n_instants,), m, by its name."""
+        direction, node = self._end(name)
+        return [
+            Held(
+                f"{name} {'xy'[axis]}", 0, np.array([node]), axis, share * displacement
+            )
+            for axis, share in enumerate(direction.tolist())
+        ]
+
+    def _end(self, name: str) -> tuple[Array, int]:
+        """Direction away from the guide, (2,), and node of an end."""
+        first, last = self.outwards
+        if name == TAIL:
+            return first, 0
+        return last, self.elements + 2
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Band(Bodies):
+    """A band on a guide; its loop shows the tension at its last end.
+
+    Attributes
+    ----------
+    guide
+        The guide.
+    """
+
+    guide: Guide
+
+    @property
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        return ("Displacement of the pulled end", "m"), ("Tension", "N")
+
+    def loop(self, problem: Problem) -> Loop:
+        """Tension at the last end over its displacement away from the guide."""
+        if self.loads and self.loads[0].name == PULL:
+            (load,) = self.loads[0].force
+            tension = constant(self.guide.outwards[1] @ load)
+            moved = super().loop(problem).displacement
+            return Loop(*self.axes, moved, tension.of)
+        return Loop(*self.axes, self._moved(problem), self._reaction(problem))
+
+    def _moved(self, problem: Problem) -> Probe:
+        """Displacement of the last end, which is given."""
+        x, y = [mean_held(problem, f"{PULL} {name}", axis) for axis, name in _AXES]
+        by_x, by_y = self.guide.outwards[1]
+        x = x.times(by_x)
+        y = y.times(by_y)
+        dofs = np.concatenate([x.dofs, y.dofs])
+        return Probe(dofs, np.concatenate([x.weights, y.weights]))
+
+    def _reaction(self, problem: Problem) -> Callable[[LoopFields], Array]:
+        """Tension that moves the last end, N."""
+        x, y = [reaction(problem, f"{PULL} {name}", axis) for axis, name in _AXES]
+        by_x, by_y = self.guide.outwards[1]
+        x = x.times(by_x)
+        y = y.times(by_y)
+        return lambda fields: x.of(fields) + y.of(fields)
+
+    def tensions(self, problem: Problem, fields: LoopFields) -> Array:
+        """Tension of all elements, those of the spans too, (n_elements, n_instants), N.
+
+        From the first end to the last.
+        """
+        assert problem.inside is not None
+        moved = problem.inside.displacement(fields.displacement, slice(None))
+        body = self.bodies[0]
+        assert isinstance(body.shape, Beam)
+        along = np.diff(body.nodes, axis=0) / body.shape.lengths[:, None]
+        stretch = np.einsum("ea,eat->et", along, np.diff(moved, axis=0))
+        stiffness = body.young * body.shape.area / body.shape.lengths
+        return np.asarray(stiffness[:, None] * stretch)
+
+
+_AXES = (0, "x"), (1, "y")

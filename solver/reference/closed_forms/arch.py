@@ -1,0 +1,172 @@
+"""Statics of a symmetric arch of rigid voussoirs: a linear program in two unknowns.
+
+The voussoirs are equal parts of a ring between radial joints. Lengths are shares of the
+mean radius, weights are per area. By symmetry the crown passes a horizontal thrust H,
+and no shear. H and its moment about the centre of the ring are all that statics leaves
+open: forces at every joint are linear in both (J. Heyman, The Stone Skeleton, 1966).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq, linprog
+
+from solver.arrays import Array
+
+THICKEST = 1.9
+"""Largest thickness, over the mean radius, that is looked at."""
+ROUGHEST = 100.0
+"""Largest coefficient of friction that is looked at."""
+LEAST = 1e-4
+"""Smallest thickness or coefficient of friction that is looked at: of less the linear
+program leaves no digits."""
+
+
+UNBOUNDED = 3
+"""Status of `linprog` where the thrust has no bound."""
+
+
+@dataclass(frozen=True)
+class VoussoirArch:
+    """An arch of equal voussoirs under its own weight, and a fill above it.
+
+    Attributes
+    ----------
+    voussoirs
+        Number of voussoirs.
+    thickness
+        Thickness of the ring over its mean radius.
+    span
+        Angle of the whole ring, rad: pi is a semicircle.
+    friction
+        Coefficient of friction mu in the joints.
+    fill
+        Weight of the fill per area over that of the voussoirs. It stands in columns on
+        the outer side.
+    cover
+        Height of the fill above the outer side at the crown, over the mean radius.
+    """
+
+    voussoirs: int
+    thickness: float
+    span: float = np.pi
+    friction: float = np.inf
+    fill: float = 0.0
+    cover: float = 0.0
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Inner and outer radius of the ring over its mean radius."""
+        return 1.0 - 0.5 * self.thickness, 1.0 + 0.5 * self.thickness
+
+    @property
+    def joints(self) -> Array:
+        """Angles of the joints of one half from the crown, (n_joints,), rad."""
+        numbers = np.arange(self.voussoirs % 2, self.voussoirs + 1, 2)
+        return 0.5 * self.span * numbers / self.voussoirs
+
+    @property
+    def weight(self) -> float:
+        """Weight of the whole arch and its fill."""
+        return float(2.0 * self._loads(np.array([0.5 * self.span]))[0, 0])
+
+    def _loads(self, angles: Array) -> Array:
+        """Weight from the crown to angles, and its moment, (2, n_angles)."""
+        inner, outer = self.radii
+        sine = np.sin(angles)
+        cosine = np.cos(angles)
+        ring = 0.5 * angles * (outer**2 - inner**2)
+        ring_moment = (outer**3 - inner**3) / 3.0 * (1.0 - cosine)
+        # A column at an angle is outer + cover - outer cos(angle) high.
+        top = outer + self.cover
+        column = outer * (top * sine - 0.5 * outer * (angles + sine * cosine))
+        column_moment = outer**2 * (
+            0.5 * top * sine**2 - outer * (1.0 - cosine**3) / 3.0
+        )
+        return np.stack(
+            [ring + self.fill * column, ring_moment + self.fill * column_moment]
+        )
+
+    @property
+    def _conditions(self) -> tuple[Array, Array]:
+        """Rows of A (H, moment of H) <= b for all joints, (n_rows, 2) and (n_rows,).
+
+        H and its moment are over the weight of the whole.
+        """
+        angles = self.joints
+        weight, moment = self._loads(angles) / self.weight
+        inner, outer = self.radii
+        zero = np.zeros_like(angles)
+        # Columns: what H, its moment about the centre, and the weight add.
+        pressing = np.stack([np.cos(angles), zero, weight * np.sin(angles)], axis=1)
+        shear = np.stack([-np.sin(angles), zero, weight * np.cos(angles)], axis=1)
+        about_centre = np.stack([zero, zero + 1.0, moment], axis=1)
+        # The resultant acts between both sides of the ring.
+        rows = [inner * pressing - about_centre, about_centre - outer * pressing]
+        if np.isfinite(self.friction):
+            bound = self.friction * pressing
+            rows += [shear - bound, -shear - bound]
+        columns = np.concatenate(rows)
+        return columns[:, :2], -columns[:, 2]
+
+    @property
+    def reserve(self) -> float:
+        """Largest distance to all bounds at once, over the weight; < 0: it falls."""
+        matrix, bounds = self._conditions
+        # The distance is a third unknown.
+        with_distance = np.column_stack([matrix, np.ones(len(bounds))])
+        limits = [(0.0, None), (0.0, None), (None, 1.0)]
+        best = linprog([0.0, 0.0, -1.0], with_distance, bounds, bounds=limits)
+        return float(-best.fun)
+
+    @property
+    def stands(self) -> bool:
+        """Check whether forces in the joints balance the weight."""
+        return self.reserve >= 0.0
+
+    def thrusts(self) -> tuple[float, float] | None:
+        """Least and largest thrust over the weight; None where the arch falls.
+
+        The thrust is the least where the abutments have moved apart, and the largest
+        where they have come together: infinite where a straight strut fits in.
+        """
+        matrix, bounds = self._conditions
+        limits = [(0.0, None), (0.0, None)]
+        found = []
+        for sign in (1.0, -1.0):
+            best = linprog([sign, 0.0], matrix, bounds, bounds=limits)
+            if best.status == UNBOUNDED:
+                found.append(np.inf)
+            elif best.status:
+                return None
+            else:
+                found.append(float(best.x[0]))
+        return found[0], found[1]
+
+    def thinnest(self) -> float | None:
+        """Smallest thickness over the mean radius that stands; None without any.
+
+        Milankovitch, Z. Math. Phys. 55, 1907, has 0.10748 for a semicircle of thin
+        voussoirs.
+        """
+        return _onset(
+            lambda thickness: replace(self, thickness=thickness).reserve, THICKEST
+        )
+
+    def least_friction(self) -> float | None:
+        """Smallest coefficient of friction that holds the arch; None without any."""
+        return _onset(
+            lambda friction: replace(self, friction=friction).reserve, ROUGHEST
+        )
+
+
+def _onset(reserve: Callable[[float], float], largest: float) -> float | None:
+    """Smallest value up to a largest one whose reserve is not negative; None: none."""
+    if reserve(largest) < 0.0:
+        return None
+    if reserve(LEAST) >= 0.0:
+        return LEAST
+    return float(brentq(reserve, LEAST, largest))

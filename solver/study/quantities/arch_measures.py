@@ -1,0 +1,84 @@
+"""Quantities of arches and of blocks with joints: thrust, hinges, limit of a load."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solver.arrays import Flags
+from solver.discrete import discretise
+from solver.discrete.plane.voussoirs import LIVE, Arch
+from solver.laws import OPEN, Contact
+from solver.reference.limit_analysis import load_factors
+from solver.settings.scene import Settings
+from solver.study.quantities.contact_measures import AT, instant_at
+from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.quantity import quantity
+
+
+def _is_arch(settings: Settings) -> bool:
+    return settings.scene == "arch"
+
+
+def _instant(run: FinishedRun, at: float | None) -> int:
+    """Instant at a share of the interval, or the last one."""
+    if at is None:
+        return run.problem.n_instants - 1
+    return instant_at(run, at)
+
+
+@quantity("Thrust over weight", parameter=AT, applies=_is_arch)
+def thrust(run: FinishedRun, at: float | None) -> float:
+    """Horizontal thrust over all that weighs, at the end or at a share of the time."""
+    instant = _instant(run, at)
+    structure = run.settings.structure()
+    assert isinstance(structure, Arch)
+    weight = float(structure.downwards[instant])
+    if weight == 0.0:
+        return math.nan
+    return float(run.force[instant]) / weight
+
+
+@quantity(
+    "Joints that are hinges", parameter=AT, applies=lambda settings: settings.has_joints
+)
+def hinges(run: FinishedRun, at: float | None) -> float:
+    """Number of joints that touch at one edge alone, and so turn freely about it.
+
+    At the end of the run, or at a share of the interval.
+    """
+    instant = _instant(run, at)
+    count = 0
+    for law, _, points, _ in run.problem.rubbing.stacks:
+        touches = run.iterate.status[points, instant, None] != OPEN
+        count += int(np.count_nonzero(are_hinges(law, touches)))
+    return float(count)
+
+
+def are_hinges(law: Contact, touches: Flags) -> Flags:
+    """Check which joints of a law touch at one edge alone, (n_joints, n_instants).
+
+    `touches` says at which points there is contact, (n_points, n_instants).
+    """
+    firsts = np.cumsum(law.sizes) - law.sizes
+    lasts = firsts + law.sizes - 1
+    touching = np.add.reduceat(touches.astype(np.intp), firsts)
+    is_at_edge = touches[firsts] | touches[lasts]
+    has_edges = (law.sizes > 1)[:, None]
+    return np.asarray((touching == 1) & is_at_edge & has_edges)
+
+
+@quantity(
+    "Limit of the load on the back, over the load",
+    applies=lambda settings: _is_arch(settings) and settings.has("live"),
+)
+def live_factor(run: FinishedRun) -> float:
+    """Smallest factor on the load on the back for which no forces balance it.
+
+    At the worst place of its way, by limit analysis.
+    """
+    structure = run.settings.structure()
+    assert isinstance(structure, Arch)
+    unloaded = discretise(structure.without(LIVE))
+    return float(load_factors(run.problem, unloaded).min())

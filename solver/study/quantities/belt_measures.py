@@ -1,0 +1,59 @@
+"""Quantities of a band on a guide: ratio of its tensions, and torque on a drum."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.plane.band import Band
+from solver.settings.scene import Settings
+from solver.study.quantities.contact_measures import AT, instant_at
+from solver.study.quantities.finished import FinishedRun, first_largest
+from solver.study.quantities.quantity import quantity
+
+SLACK = 1e-6
+"""Tension over the largest one of a run below which a band is slack."""
+
+
+def _is_belt(settings: Settings) -> bool:
+    return settings.scene == "belt"
+
+
+def _is_drum(settings: Settings) -> bool:
+    return _is_belt(settings) and settings.values()["guide"] == "drum"
+
+
+def _ends(run: FinishedRun) -> tuple[Array, Array]:
+    """Tensions of the tail and of the pulled end, (n_instants,) each, N."""
+    band = run.settings.structure()
+    assert isinstance(band, Band)
+    tensions = band.tensions(run.problem, run.iterate)
+    return tensions[0], tensions[-1]
+
+
+def _largest(run: FinishedRun, values: Array, at: float | None) -> float:
+    """Value at a share of the interval, or the largest in size, of (n_instants,)."""
+    if at is not None:
+        return float(values[instant_at(run, at)])
+    return float(values[first_largest(np.abs(values))])
+
+
+@quantity("Tension of the pulled end over the tail's", parameter=AT, applies=_is_belt)
+def tension_ratio(run: FinishedRun, at: float | None) -> float:
+    """Largest ratio of both tensions, or that at a share of the interval.
+
+    0 while the tail is slack.
+    """
+    tail, pulled = _ends(run)
+    ratio = np.zeros_like(tail)
+    is_tight = tail > SLACK * max(tail.max(), pulled.max())
+    np.divide(pulled, tail, out=ratio, where=is_tight)
+    return _largest(run, ratio, at)
+
+
+@quantity("Torque on the drum", "N·m", parameter=AT, applies=_is_drum)
+def torque(run: FinishedRun, at: float | None) -> float:
+    """Torque of the band on the drum that is largest in size, N m: (T2 - T1) R."""
+    tail, pulled = _ends(run)
+    radius = run.settings.values()["drum_radius"]
+    return _largest(run, (pulled - tail) * radius, at)
