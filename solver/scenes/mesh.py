@@ -371,9 +371,8 @@ class MeshSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bodies in a sentence."""
-        names = [f"{name!r}" for name in self.parts.names]
-        bodies = f"{len(names)} bodies"
-        if len(names) == 1:
+        bodies = f"{self.n_bodies} bodies"
+        if self.n_bodies == 1:
             bodies = "One body"
         touch = "slide freely on each other"
         if self.is_rough:
