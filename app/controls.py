@@ -20,6 +20,7 @@ from solver.scenes import CATALOGUE
 from solver.settings.definitions import (
     CurveParameter,
     Parameter,
+    TextParameter,
     about,
     help_of,
     is_logarithmic,
@@ -30,6 +31,8 @@ WIDTH = 286
 STEPS = 80
 """Least number of steps of a slider."""
 POINTS = "points"
+OWN = "a file"
+"""Choice of a text that is the content of a file: the files group opens one."""
 GROUPS = (
     "Load",
     "Ends",
@@ -109,6 +112,8 @@ class SettingControl:
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
+        if isinstance(definition, TextParameter):
+            return self._make_text(definition, more)
         if isinstance(definition, param.Selector):
             options = list(definition.objects)
             field = pmui.Select(options=options, variant="standard", **more)
@@ -120,6 +125,17 @@ class SettingControl:
         self._is_logarithmic = is_logarithmic(definition)
         self.slider = self._make_slider()
         return field, pn.Column(field, self.slider, margin=(3, 0, 0, 0))
+
+    def _make_text(
+        self, definition: TextParameter, more: dict[str, Any]
+    ) -> tuple[Any, Any]:
+        """Field of a text: its presets and a file that is open, or text to type in."""
+        if not definition.is_file:
+            field = pmui.TextInput(variant="standard", **more)
+            return field, field
+        options = list(definition.presets)
+        field = pmui.Select(options=options, variant="standard", **more)
+        return field, field
 
     def _make_slider(self) -> pmui.FloatSlider:
         lowest, highest = self._definition.softbounds
@@ -174,6 +190,13 @@ class SettingControl:
             self._edit_button.visible = isinstance(value, tuple)
             if self._dialog is not None:
                 self._dialog.update()
+        elif isinstance(self._definition, TextParameter) and self._definition.is_file:
+            presets = list(self._definition.presets)
+            # A file is there to be chosen only while it is open.
+            if value not in presets:
+                presets.append(OWN)
+                value = OWN
+            self.field.param.update(options=presets, value=value)
         elif self.slider is None:
             self.field.value = value
         else:
@@ -217,6 +240,8 @@ class SettingControl:
             self.update()
         elif value == POINTS and isinstance(self._definition, CurveParameter):
             self._edit()
+        elif value == OWN:
+            self.update()
         elif self.slider is not None:
             self._take_text(value)
         else:

@@ -337,6 +337,7 @@ def too_long(settings: Settings) -> list[str]:
     """Names of the settings whose values are too long for an address."""
     long = []
     for name, value in settings.values().items():
-        if isinstance(value, tuple) and len(json.dumps(value)) > LONGEST:
+        is_long = isinstance(value, tuple | str)
+        if is_long and len(json.dumps(value)) > LONGEST:
             long.append(name)
     return long

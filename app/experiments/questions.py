@@ -21,6 +21,7 @@ from solver.refusal import RefusedError
 from solver.settings.definitions import (
     CurveParameter,
     Parameter,
+    TextParameter,
     about,
     is_logarithmic,
     title_of,
@@ -139,7 +140,7 @@ def names_of(definition: Parameter) -> list[str]:
     """Names of the values of a setting; none where they are numbers."""
     if isinstance(definition, param.Boolean):
         return ["false", "true"]
-    if isinstance(definition, CurveParameter):
+    if isinstance(definition, CurveParameter | TextParameter):
         return list(definition.presets)
     if isinstance(definition, param.Selector):
         return list(definition.objects)

@@ -23,19 +23,21 @@ from app.files.tables import (
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from app.widgets import PlainText, button, dialog, download, file_button
+from solver.files.meshes import MESHES, text_of_mesh
 from solver.files.saved import dump, read_settings
 from solver.files.tables import Table
 from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
 from solver.settings.definitions import title_of
 from solver.settings.scene import Settings
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.table_use import Use
 
 HELP = (
-    "Settings (.toml) that were saved here; or a table (.csv, .xlsx, ...): of time and "
-    "load; of displacement and force, a measured loop, which is drawn beside the run; "
-    "or of x, t and friction force or displacement, as another program found them, "
-    "which are drawn beside it, too."
+    "Settings (.toml) that were saved here; a mesh (.msh of Gmsh) with names; or a "
+    "table (.csv, .xlsx, ...): of time and load; of displacement and force, a measured "
+    "loop, which is drawn beside the run; or of x, t and friction force or "
+    "displacement, as another program found them, which are drawn beside it, too."
 )
 HEADS = (
     "A name for each column, with its unit in brackets, as in `time [s], displacement "
@@ -49,7 +51,8 @@ SHOWN = 5
 def files_panel(state: PageState, width: int) -> pn.Column:
     """Buttons that save and reset settings and open files."""
     look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
-    opener = TableOpener(state, "Open settings or a table", f".toml,{TABLES}", width)
+    kinds = f".toml,{MESHES},{TABLES}"
+    opener = TableOpener(state, "Open settings, a table or a mesh", kinds, width)
 
     def reset() -> None:
         state.adopt(default_settings(state.settings.scene))
@@ -164,6 +167,9 @@ class TableOpener:
         """Content of a file, and a message on it."""
         if source.lower().endswith(".toml"):
             return settings_in(data.decode("utf-8-sig", "replace"), source)
+        if source.lower().endswith(MESHES):
+            settings = CATALOGUE["mesh"].checked({"mesh": text_of_mesh(data, source)})
+            return settings, f"{source}: {settings.sentence()}"
         table = table_of(data, source)
         self._table = table
         # In the field commas stand between the names.

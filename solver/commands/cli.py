@@ -30,6 +30,7 @@ from solver.commands.runs import add_checks
 from solver.discrete import Problem
 from solver.discrete.problem import nothing_acts
 from solver.files.disk import check_place, why
+from solver.files.paraview import PARAVIEW, check_plane, write_series
 from solver.files.saved import save_result, scene_settings, summary
 from solver.latin import Ending, Solution, solve, solve_in_slabs
 from solver.latin.stages.blocks import one_blas_thread
@@ -136,7 +137,10 @@ def _add_run(commands: Any) -> None:
         commands, "run", "run one scene to its stop rule", _run, of_scene=True
     )
     run.add_argument(
-        "--out", type=Path, metavar="FILE.npz", help="write the result here"
+        "--out",
+        type=Path,
+        metavar="FILE.npz",
+        help="write the result here; of a scene in the plane as FILE.pvd for ParaView",
     )
     run.add_argument(
         "--json", action="store_true", help="print the key figures as JSON"
@@ -178,6 +182,9 @@ def _run(chosen: argparse.Namespace) -> int:
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
+    for_paraview = chosen.out is not None and chosen.out.suffix == PARAVIEW
+    if for_paraview:
+        check_plane(problem.inside, chosen.out)
     if nothing_acts(problem):
         warn("nothing acts on the structure: all loads are zero")
     announce(settings, problem, reference=chosen.reference, limit=limit)
@@ -188,7 +195,10 @@ def _run(chosen: argparse.Namespace) -> int:
     solution = _solved(chosen, settings, problem, known, asked, limit, spent)
     if chosen.out is not None:
         with refusing(chosen.out, CAN_BE_WRITTEN):
-            save_result(chosen.out, settings, solution)
+            if for_paraview:
+                write_series(chosen.out, solution.iterate)
+            else:
+                save_result(chosen.out, settings, solution)
     _warn_of_loose_bodies(solution)
     with contextlib.suppress(BrokenPipeError):  # the reader needs no more
         run = FinishedRun(settings, solution, known_loss=known.lost_from)

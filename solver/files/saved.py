@@ -16,6 +16,7 @@ import numpy as np
 
 from solver.files.curves import messages, read_tables
 from solver.files.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
+from solver.files.meshes import read_meshes
 from solver.latin import Answer, Iterate, Solution
 from solver.reference.distance import determinate_forces, held_instants
 from solver.scenes import CATALOGUE
@@ -124,11 +125,13 @@ def settings_from_command(
     kind = scene_settings(values.pop("scene", None))
     # Names of files are replaced by points before anything is checked.
     tables = read_tables(kind, values, Path(scene).parent)
+    read_meshes(kind, values, Path(scene).parent)
     changes = _changes_in(assignments, kind)
     # A table that an assignment replaces has nothing to say any more.
     for name in changes:
         tables.pop(name, None)
     tables |= read_tables(kind, changes, Path())
+    read_meshes(kind, changes, Path())
     # The file is checked by itself first, so that a refusal tells its faults from those
     # of changes.
     settings = kind.checked(values).replace(**changes)

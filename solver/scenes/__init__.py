@@ -12,6 +12,7 @@ from solver.scenes.bundle import BundleSettings
 from solver.scenes.fault import FaultSettings
 from solver.scenes.incline import InclineSettings
 from solver.scenes.layers import LayersSettings
+from solver.scenes.mesh import MeshSettings
 from solver.scenes.rope import RopeSettings
 from solver.scenes.strand import StrandSettings
 from solver.scenes.wall import WallSettings
@@ -31,6 +32,7 @@ CATALOGUE: dict[str, type[Settings]] = {
         ArchSettings,
         BeltSettings,
         BundleSettings,
+        MeshSettings,
     )
 }
 

@@ -134,6 +134,36 @@ class CurveParameter(Parameter):
         return len(self.columns) == 2
 
 
+class TextParameter(Parameter):
+    """A text: one of a few presets, or another one that the scene understands.
+
+    Attributes
+    ----------
+    presets
+        Descriptions of the presets by name.
+    others
+        Words on all other texts that are allowed.
+    is_file
+        Whether other texts are contents of files.
+    """
+
+    __slots__ = ["is_file", "others", "presets"]
+
+    def __init__(
+        self,
+        default: str,
+        presets: Mapping[str, str],
+        others: str,
+        *,
+        is_file: bool,
+        **rest: Any,
+    ) -> None:
+        super().__init__(default=default, **rest)
+        self.presets = presets
+        self.others = others
+        self.is_file = is_file
+
+
 def about(parameter: Parameter) -> About:
     """Properties of a setting that a front needs, from its definition."""
     record: About = parameter.metadata["about"]
@@ -229,6 +259,20 @@ class SettingGroup:
         common = self._common(doc, presets=_lines_on(presets), **record)
         return CurveParameter(default, presets, units, bounds, **common)
 
+    def text(
+        self,
+        default: str,
+        presets: Mapping[str, str],
+        others: str,
+        doc: str,
+        *,
+        is_file: bool = False,
+        **record: Any,
+    ) -> TextParameter:
+        """Text: a preset, or one of `others`; the scene says which it understands."""
+        common = self._common(doc, presets=presets, **record)
+        return TextParameter(default, presets, others, is_file=is_file, **common)
+
     def _common(
         self, doc: str, title: str | None = None, **record: Any
     ) -> dict[str, Any]:
@@ -274,6 +318,8 @@ def allowed(definition: Parameter) -> str:
     """Words on the values that a setting takes."""
     if isinstance(definition, CurveParameter):
         return f"{', '.join(definition.presets)}, or {_allowed_rows(definition)}"
+    if isinstance(definition, TextParameter):
+        return ", ".join([*definition.presets, f"or {definition.others}"])
     if isinstance(definition, param.Boolean):
         return "true or false"
     if isinstance(definition, param.Selector):
@@ -359,6 +405,10 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     if isinstance(definition, param.Selector):
         if value not in definition.objects:
             raise refuse("choose one of these")
+        return value
+    if isinstance(definition, TextParameter):
+        if not isinstance(value, str):
+            raise refuse("write a text")
         return value
     if not is_number(value):
         raise refuse("write a number")

@@ -434,3 +434,28 @@ def pushed_block(answer: SolvedCase) -> Iterator[Number]:
     yield "pressing force", "N/m", load, float(pressing.sum())
     known = 0.5 * load * settings.length
     yield "moment of both about the foot", "N", known, around_foot
+
+
+def dovetail(answer: SolvedCase) -> Iterator[Number]:
+    """Normal force on each flank of a dovetail that a known force pulls and lets go.
+
+    Both flanks slip all along; the friction on the root points down while it is pulled,
+    and up while it goes back.
+    """
+    settings = answer.settings
+    contacts = settings.parts.contacts
+    tractions = settings.path("load")
+    turned = int(tractions.argmax())
+    back = turned + (len(tractions) - turned) * 4 // 5
+    side = next(side for side in settings.parts.sides if side.name.startswith("top"))
+    width = settings.parts.shapes[side.body].shares(side.nodes).sum()
+    across, upward = np.abs(contacts[0].normals[0])
+    for instant, sign, words in ((turned, 1.0, "pulled"), (back, -1.0, "let go")):
+        carried = 2.0 * (upward + sign * settings.friction * across)
+        known = tractions[instant] * width / carried
+        found = 0.0
+        for contact in contacts:
+            pressing = answer.fields.contact(contact.name).normal_force
+            assert pressing is not None
+            found += float(pressing[:, instant].sum()) / len(contacts)
+        yield f"normal force of a flank, {words}", "N", float(known), found

@@ -72,6 +72,8 @@ def random_loads(
     default = kind()
     given = {name: definition.default for name, definition in definitions.items()}
     given.update(values)
+    if "length" not in given:
+        given["length"] = default.parts.size
     scales = _scales(kind, given, generator)
     friction, largest = _friction_and_largest_load(given)
     sizes: dict[str, Any] = {}

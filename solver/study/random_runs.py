@@ -21,6 +21,7 @@ from solver.scenes import CATALOGUE
 from solver.settings.definitions import (
     CurveParameter,
     SettingError,
+    TextParameter,
     about,
     is_logarithmic,
 )
@@ -52,7 +53,7 @@ WIDE = {
     "k_scale": (1e-3, 1e3),
 }
 """Ranges other than those of the sliders."""
-KEPT = {"max_iterations", "method", "opening", "opening_height"}
+KEPT = {"max_iterations", "method", "opening", "opening_height", "scale"}
 """Settings that are not drawn by their definition alone."""
 NARROW = (1e-5, 1e-2)
 """Widths of narrow peaks, as shares of the interval or the length: most lie between
@@ -212,7 +213,7 @@ def _friction_factors(
     kind: Any, values: dict[str, Any], generator: Generator
 ) -> list[list[float]]:
     """Random factor on mu for every interface of layers or wires, by its number."""
-    names = ("layers", "wires", "construction")
+    names = ("layers", "wires", "construction", "mesh")
     numbers = {name: values[name] for name in names if name in values}
     rows = []
     for number, _ in kind.checked(numbers).points("friction_factors"):
@@ -252,6 +253,8 @@ def _drawn(name: str, definition: Any, generator: Generator) -> object:
         make = TABLES.get(definition.abscissa)
         if make and generator.random() < 0.4:
             return make(name, generator)
+        return str(generator.choice(list(definition.presets)))
+    if isinstance(definition, TextParameter):
         return str(generator.choice(list(definition.presets)))
     if isinstance(definition, param.Boolean):
         return bool(generator.random() < 0.5)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import param
 import pytest
 
-from app.controls import POINTS, Controls, SettingControl
+from app.controls import OWN, POINTS, Controls, SettingControl
 from app.files.opener import TableOpener
 from app.messages import Start
 from app.refusals import advice_in_titles
@@ -17,8 +18,8 @@ from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
 from solver.files.saved import dump
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE
-from solver.settings.definitions import CurveParameter
+from solver.scenes import CATALOGUE, mesh_files
+from solver.settings.definitions import CurveParameter, TextParameter
 
 
 @cache
@@ -64,6 +65,10 @@ def test_the_widget_of_every_setting_shows_its_value_and_takes_another(
         elif isinstance(definition, param.Boolean):
             control.field.value = not value
             assert held(state, name) is not value
+        elif isinstance(definition, TextParameter) and not definition.is_file:
+            control.field.value = "nowhere held"
+            assert state.refusal
+            assert held(state, name) == value
         elif others := [
             one for one in control.field.options if one not in (value, POINTS)
         ]:
@@ -313,6 +318,27 @@ def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> No
     assert state.brought.source == "other.csv"
     open_file("bar.toml", saved)
     assert state.settings.values() == default_settings("bar").values()
+
+
+def test_a_mesh_that_is_opened_is_run_and_is_a_choice_of_its_control() -> None:
+    state = of_scene("bar")
+    opener = TableOpener(state, "Open", ".msh", 280)
+    source = Path(mesh_files.__file__).parent / "meshes" / "dovetail.msh"
+    opener.file.filename = "mine.msh"
+    opener.file.value = source.read_bytes()
+    assert "mine.msh: 2 bodies of a mesh" in str(opener.message.object)
+    assert state.settings.scene == "mesh"
+    control = SettingControl("mesh", state)
+    assert control.field.value == OWN
+    # It has no file to go back to: only another choice changes the mesh.
+    assert control.field.options == ["bolted", "dovetail", OWN]
+    control.field.value = "dovetail"
+    control.update()
+    assert held(state, "mesh") == "dovetail"
+    assert control.field.options == ["bolted", "dovetail"]
+    opener.file.filename = "broken.msh"
+    opener.file.value = b"nothing"
+    assert "broken.msh was refused" in str(opener.message.object)
 
 
 def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:

@@ -48,6 +48,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "slope": 5.0,
         "top": "pulled",
     },
+    "mesh": {"mesh": "dovetail", "displacement": 1e-5, "young": 1e11, "pressure": 1e7},
     "rope": {"construction": "seven-wire", "curvature": 0.11, "tension_load": "shaken"},
     "bundle": {"press": 5e4, "band": 1.5, "unit_weight": 1e4, "displacement": 1e-6},
     "arch": {"live": 100.0, "fill": 1e4, "abutment": "down", "span": 120.0},

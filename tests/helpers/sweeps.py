@@ -39,7 +39,10 @@ class Here(ThreadPoolExecutor):
 
 
 def tiny(vary: list[str], of: list[str], scene: str = "bar", **changes: Any) -> Plan:
-    settings = CATALOGUE[scene].checked(TINY | changes)
+    kind = CATALOGUE[scene]
+    # A mesh of a file has no number of elements.
+    sizes = {name: TINY[name] for name in TINY if name in kind.definitions()}
+    settings = kind.checked(sizes | changes)
     return plan_of(settings, vary, of)
 
 

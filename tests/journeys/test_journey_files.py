@@ -179,7 +179,7 @@ def test_what_a_file_has_is_drawn_beside_or_run_and_what_was_understood_is_said(
     page = visit(f"?{SMALL}")
     is_solved(page)
     button(page, "Files").click()
-    expect(page.get_by_text("Open settings or a table").first).to_be_visible()
+    expect(page.get_by_text("Open settings, a table or a mesh").first).to_be_visible()
     upload(page, tmp_path / "theirs.csv", RESULTS)
     expect(figures(page)).to_contain_text("Distance to theirs.csv")
     button(page, "Remove theirs.csv").click()

@@ -179,7 +179,10 @@ FEW = {
 
 def options(scene: str = "bar", **changes: Any) -> Settings:
     sizes = SHORT | FEW.get(scene, {})
-    return CATALOGUE[scene].checked(sizes | {"finish": "accuracy"} | changes)
+    kind = CATALOGUE[scene]
+    # A mesh of a file has no number of elements.
+    sizes = {name: sizes[name] for name in sizes if name in kind.definitions()}
+    return kind.checked(sizes | {"finish": "accuracy"} | changes)
 
 
 @cache

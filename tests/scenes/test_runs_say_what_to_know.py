@@ -121,6 +121,7 @@ SOFT = {
     "arch": {"young": 1e6},
     "belt": {"young": 1e7},
     "bundle": {"displacement": 1e-3},
+    "mesh": {"young": 1e7},
 }
 
 

@@ -63,7 +63,7 @@ def values_of(scene: str, row: int) -> dict[str, Any]:
             values[name] = min(values.get(name, most), most)
     for name, elements in CUTS.items():
         if name in definitions:
-            values[name] = min(values.get(name, 1), values[elements])
+            values[name] = min(values.get(name, 1), values.get(elements, 1))
     return values
 
 

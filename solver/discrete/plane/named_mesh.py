@@ -1,0 +1,260 @@
+"""A mesh whose parts have names, taken apart into bodies, contacts and sides.
+
+Surfaces are bodies. Edges with a name lie between two bodies, which makes them a
+contact, or on the outside of one, which makes them a side. Each body has nodes of its
+own, also where it meets another one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from solver.arrays import Array, Indices
+from solver.checks import Numbers, check_value
+from solver.discrete.plane.chains import chains_of
+from solver.discrete.plane.meshes import Mesh
+from solver.refusal import RefusedError, Words
+
+SAME = 1e-7
+"""Largest distance of points of two bodies that are one, over the size of the mesh."""
+
+
+class ContactLine(NamedTuple):
+    """Line along which two bodies touch.
+
+    Attributes
+    ----------
+    name
+        Name of its edges, with a number where these make several lines.
+    above, below
+        Numbers of both bodies; the normals point from the one below into that above.
+    nodes, nodes_below
+        Chains of nodes of both, which lie opposite, (n,).
+    normals
+        Unit normals out of the body below, shape (n, 2).
+    """
+
+    name: str
+    above: int
+    below: int
+    nodes: Indices
+    nodes_below: Indices
+    normals: Array
+
+
+class OuterLine(NamedTuple):
+    """Line on the outside of a body: name of its edges, number of the body, chain."""
+
+    name: str
+    body: int
+    nodes: Indices
+
+
+@dataclass(frozen=True, eq=False)
+class NamedMesh:
+    """Points, and elements and edges by name.
+
+    Attributes
+    ----------
+    points
+        Coordinates, shape (n_points, 2), m.
+    surfaces
+        Corners of the elements of each body, (n, 3) or (n, 4).
+    lines
+        Both ends of the edges of each contact and side, (n, 2).
+
+    Raises
+    ------
+    RefusedError
+        If there is no body. What bodies, contacts and sides must be to each other
+        `check_named` in `named_mesh_refused` tells.
+    """
+
+    points: Array
+    surfaces: Mapping[str, Indices]
+    lines: Mapping[str, Indices] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_value("points", self.points, Numbers(((None, 2),)))
+        if not self.surfaces:
+            raise RefusedError(
+                "mesh",
+                Words("without bodies"),
+                "elements with the name of their body",
+                "make a physical group of the surface of each body, with a name",
+            )
+        last = len(self.points) - 1
+        for name, elements in self.surfaces.items():
+            kind = Numbers(((None, 3), (None, 4)), low=0, high=last, whole=True)
+            check_value(f"body {name!r}", elements, kind)
+        for name, edges in self.lines.items():
+            kind = Numbers(((None, 2),), low=0, high=last, whole=True)
+            check_value(f"line {name!r}", edges, kind)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the bodies."""
+        return tuple(self.surfaces)
+
+    @cached_property
+    def size(self) -> float:
+        """Longer side of a rectangle about the mesh, m."""
+        return float(np.ptp(self.points, axis=0).max())
+
+    @cached_property
+    def shapes(self) -> list[Mesh]:
+        """Shape of every body."""
+        shapes = []
+        for name, used in zip(self.names, self._used, strict=True):
+            elements = np.searchsorted(used, self.surfaces[name])
+            corners = self.points[used]
+            mesh = Mesh(corners, elements)
+            # Programs orient a surface as its outline was drawn.
+            if mesh.areas.sum() < 0.0:
+                mesh = Mesh(corners, elements[:, ::-1].copy())
+            if mesh.flaw:
+                raise RefusedError(
+                    f"body {name!r}",
+                    Words(mesh.flaw),
+                    "one piece of elements with some area, none of which is inverted",
+                    "mesh it again, or name each piece as a body of its own",
+                )
+            shapes.append(mesh)
+        return shapes
+
+    @cached_property
+    def _used(self) -> list[Indices]:
+        """Numbers of the points of every body, ascending, (n_corners,) each."""
+        return [np.unique(elements) for elements in self.surfaces.values()]
+
+    @cached_property
+    def places(self) -> Indices:
+        """Number of the place of every point, (n_points,); bodies may share one.
+
+        Points of one body at the same place, as of a crack, stay apart.
+        """
+        count = len(self.points)
+        owners = np.zeros((count, len(self.names)), dtype=bool)
+        for body, used in enumerate(self._used):
+            owners[used, body] = True
+        tree = cKDTree(self.points)
+        first, second = tree.query_pairs(SAME * self.size, output_type="ndarray").T
+        apart = ~(owners[first] & owners[second]).any(axis=1)
+        links = np.ones(int(apart.sum())), (first[apart], second[apart])
+        return np.asarray(
+            connected_components(coo_array(links, (count, count)), directed=False)[1]
+        )
+
+    @cached_property
+    def edges(self) -> list[Array]:
+        """Edges of every body as sorted places of their ends, (n_edges, 2) each."""
+        edges = []
+        for shape, used in zip(self.shapes, self._used, strict=True):
+            ends = self.places[used][shape.grid.facets.T]
+            edges.append(np.sort(ends, axis=1))
+        return edges
+
+    @cached_property
+    def owners(self) -> dict[tuple[int, int], list[int]]:
+        """Bodies that have an edge, by the places of its ends."""
+        owners: dict[tuple[int, int], list[int]] = {}
+        for body, edges in enumerate(self.edges):
+            for low, high in edges.tolist():
+                owners.setdefault((low, high), []).append(body)
+        return owners
+
+    @cached_property
+    def groups(self) -> dict[tuple[str, tuple[int, ...]], Array]:
+        """Edges with a name, by the name and the bodies that have them."""
+        groups: dict[tuple[str, tuple[int, ...]], list[tuple[int, int]]] = {}
+        for name, ends in self.lines.items():
+            for low, high in np.sort(self.places[ends], axis=1).tolist():
+                bodies = tuple(self.owners.get((low, high), ()))
+                groups.setdefault((name, bodies), []).append((low, high))
+        return {key: np.unique(edges, axis=0) for key, edges in groups.items()}
+
+    def scaled(self, factor: float) -> NamedMesh:
+        """Mesh with all coordinates times a factor."""
+        if factor == 1.0:
+            return self
+        return NamedMesh(factor * self.points, self.surfaces, self.lines)
+
+    @cached_property
+    def contacts(self) -> list[ContactLine]:
+        """Lines along which bodies touch."""
+        found = list[ContactLine]()
+        for (name, bodies), edges in self.groups.items():
+            for body, other in combinations(bodies, 2):
+                found += self._contacts_of(name, (body, other), edges)
+        return _numbered(found)
+
+    def _contacts_of(
+        self, name: str, bodies: tuple[int, int], edges: Array
+    ) -> Iterator[ContactLine]:
+        """Contact lines of edges between two bodies."""
+        for line in chains_of(edges, self._position_of):
+            chains = [self._along(body, line.own) for body in bodies]
+            # Each place of a chain has two nodes up to the next one.
+            whole = self._along(bodies[0], line.places)
+            skipped = 2 * line.beside
+            outward = self.shapes[bodies[0]].outward(whole)
+            outward = outward[skipped : len(whole) - skipped]
+            # The normal points upwards, of an upright line to the right.
+            mean = outward.sum(axis=0)
+            is_below = mean[1] > 0.0
+            if abs(mean[1]) <= 1e-6 * abs(mean[0]):
+                is_below = mean[0] > 0.0
+            normals = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+            sides = list(zip(bodies, chains, strict=True))
+            if is_below:
+                sides.reverse()
+            else:
+                normals = -normals
+            (above, nodes), (below, nodes_below) = sides
+            yield ContactLine(name, above, below, nodes, nodes_below, normals)
+
+    @cached_property
+    def sides(self) -> list[OuterLine]:
+        """Lines on the outside of bodies."""
+        found = []
+        for (name, bodies), edges in self.groups.items():
+            if len(bodies) == 1:
+                for line in chains_of(edges, self._position_of):
+                    chain = self._along(bodies[0], line.own)
+                    found.append(OuterLine(name, bodies[0], chain))
+        return found
+
+    @cached_property
+    def _position_of(self) -> Array:
+        """Position of every place, shape (n_places, 2), m."""
+        positions = np.empty((self.places.max() + 1, 2))
+        positions[self.places] = self.points
+        return positions
+
+    def _along(self, body: int, places: Sequence[int]) -> Indices:
+        """Chain of nodes of a body along places in turn."""
+        own = self.places[self._used[body]]
+        order = np.argsort(own)
+        corners = order[np.searchsorted(own, places, sorter=order)]
+        return self.shapes[body].along(corners)
+
+
+def _numbered(lines: Sequence[ContactLine]) -> list[ContactLine]:
+    """Contact lines with a number behind the name where several have it."""
+    names = [line.name for line in lines]
+    numbered = []
+    for place, line in enumerate(lines):
+        name = line.name
+        if names.count(name) > 1:
+            name = f"{name} {names[: place + 1].count(name)}"
+        numbered.append(line._replace(name=name))
+    return numbered

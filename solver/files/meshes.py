@@ -1,0 +1,56 @@
+"""Files of meshes for settings: their texts take the place of the names of files."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from solver.discrete.plane.named_mesh_refused import check_named
+from solver.files.disk import read_bytes
+from solver.refusal import RefusedError, Words
+from solver.scenes.mesh_files import HEAD, as_text, read_mesh
+from solver.settings.definitions import SettingError, TextParameter, allowed
+from solver.settings.scene import Settings
+
+MESHES = ".msh"
+"""Files of meshes that a page opens: those of Gmsh name no other files."""
+
+
+def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
+    """Text of the mesh in a file, which the setting of that name takes.
+
+    Raises
+    ------
+    SettingError
+        For a file that is refused.
+    """
+    try:
+        mesh = read_mesh(data, source)
+        check_named(mesh)
+        return as_text(mesh)
+    except RefusedError as refusal:
+        value = refusal.value
+        found = f"{source}: {refusal.name} {value}"
+        if refusal.name == name:
+            found = f"{source} {value}"
+        raise SettingError(
+            name, Words(found), refusal.allowed, refusal.remedy
+        ) from None
+
+
+def read_meshes(kind: type[Settings], values: dict[str, Any], folder: Path) -> None:
+    """Read the files that settings name; texts replace the names in the values.
+
+    Only fronts whose user owns the machine call this: elsewhere no file may be read.
+    """
+    for name, definition in kind.definitions().items():
+        value = values.get(name)
+        if not isinstance(definition, TextParameter) or not definition.is_file:
+            continue
+        if not isinstance(value, str) or value.startswith(HEAD):
+            continue
+        if value not in definition.presets:
+            can = allowed(definition)
+            data = read_bytes(folder / value, partial(SettingError, name, value, can))
+            values[name] = text_of_mesh(data, value, name)

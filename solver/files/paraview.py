@@ -1,0 +1,193 @@
+"""Results in the plane as a series of files that ParaView opens, by meshio.
+
+FILE.pvd lists two files for each instant, in a folder FILE beside it: the bodies, with
+displacement and stress, and lines along the contacts, with their fields.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+from xml.etree import ElementTree
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.discrete.inside import Inside
+from solver.files.disk import whole_file
+from solver.latin import Iterate
+from solver.settings.definitions import SettingError
+
+if TYPE_CHECKING:
+    import meshio
+
+PARAVIEW = ".pvd"
+"""End of the names of these files."""
+KINDS = {
+    4: "quad",
+    3: "triangle",
+    2: "line",
+}
+"""Names of meshio of elements, by the number of their different corners."""
+
+
+class _Cells(NamedTuple):
+    """Cells of one kind: corners, (n, n_corners), and numbers of the elements, (n,)."""
+
+    kind: str
+    corners: Indices
+    elements: Indices
+
+
+def check_plane(inside: Inside | None, path: Path) -> Inside:
+    """Return the inside of plane bodies; refuse structures of rods."""
+    if inside is None:
+        raise SettingError(
+            "--out",
+            str(path),
+            "FILE.npz for rods, wires and ropes",
+            f"{PARAVIEW} files are of scenes in the plane",
+        )
+    return inside
+
+
+def write_series(path: Path, iterate: Iterate) -> None:
+    """Write a series of files; the one that lists them comes last, complete.
+
+    Raises
+    ------
+    SettingError
+        For a structure that is not in the plane.
+    OSError
+        If a file cannot be written.
+    """
+    inside = check_plane(iterate.problem.inside, path)
+    folder = path.with_suffix("")
+    folder.mkdir(exist_ok=True)
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
+    listed = ElementTree.SubElement(root, "Collection")
+    displacement = inside.displacement(iterate.displacement, slice(None))
+    parts: dict[str, _Bodies | _Contacts] = {
+        "bodies": _Bodies(inside, displacement),
+        "contacts": _Contacts(iterate),
+    }
+    for instant, time in enumerate(iterate.problem.instants.tolist()):
+        for number, (name, part) in enumerate(parts.items()):
+            file = folder / f"{name}_{instant:04}.vtu"
+            part.at(instant).write(file, file_format="vtu")
+            ElementTree.SubElement(
+                listed,
+                "DataSet",
+                timestep=repr(time),
+                part=str(number),
+                file=f"{folder.name}/{file.name}",
+            )
+    with whole_file(path, "wb") as whole:
+        ElementTree.ElementTree(root).write(whole, "utf-8", xml_declaration=True)
+
+
+class _Bodies:
+    """The bodies at any instant: displacement of nodes, stress in elements."""
+
+    def __init__(self, inside: Inside, displacement: Array) -> None:
+        self._inside = inside
+        self._displacement = displacement
+        # Nodes in the middle of edges have no corner.
+        self._used = np.unique(inside.elements)
+        self._cells = _cells_of(np.searchsorted(self._used, inside.elements))
+
+    def at(self, instant: int) -> meshio.Mesh:
+        """Mesh with its fields at an instant."""
+        moved = self._displacement[:, :, instant]
+        fields = {
+            "stress": self._inside.stress(moved),
+            "body": self._inside.bodies + 1,
+        }
+        of_cells = {
+            name: [field[cells.elements] for cells in self._cells]
+            for name, field in fields.items()
+        }
+        return _mesh(
+            self._inside.nodes[self._used],
+            [(cells.kind, cells.corners) for cells in self._cells],
+            {"displacement": _in_space(moved[self._used])},
+            of_cells,
+        )
+
+
+class _Contacts:
+    """Lines along the contacts at any instant, with fields at their points."""
+
+    def __init__(self, iterate: Iterate) -> None:
+        problem = iterate.problem
+        contacts = problem.rubbing
+        positions = []
+        areas = []
+        for law in contacts.laws.values():
+            of_pairs = problem.positions[problem.row_dofs[law.tangent.above]]
+            positions.append(law.mean_by_point(of_pairs))
+            areas.append(law.by_point(law.weights))
+        self._points = contacts.of_points(positions)
+        self._areas = contacts.of_points([area[:, None] for area in areas])[:, 0]
+        self._fields = [iterate.contact(name) for name in contacts]
+        self._opens = problem.opens
+        self._interfaces = np.repeat(np.arange(len(contacts)) + 1, contacts.sizes)
+        joined = np.flatnonzero(np.diff(self._interfaces) == 0)
+        self._lines = np.stack([joined, joined + 1], axis=1)
+
+    def at(self, instant: int) -> meshio.Mesh:
+        """Mesh of lines with their fields at an instant."""
+        tangential = self._along("tangential_force", instant)
+        fields = {
+            "friction_force": tangential,
+            "friction": tangential / self._areas,
+            "slip": self._along("slip", instant),
+            "status": self._along("status", instant),
+            "interface": self._interfaces,
+        }
+        # Where the pressure is known beforehand it is no unknown of the run.
+        if self._opens:
+            normal = self._along("normal_force", instant)
+            fields["normal_force"] = normal
+            fields["pressure"] = normal / self._areas
+            fields["gap"] = self._along("opening", instant)
+        return _mesh(self._points, [("line", self._lines)], fields, {})
+
+    def _along(self, name: str, instant: int) -> Array:
+        """Field of all points at an instant, (n_points,)."""
+        parts = [getattr(fields, name)[:, instant] for fields in self._fields]
+        return np.concatenate([np.zeros(0), *parts])
+
+
+def _cells_of(elements: Indices) -> list[_Cells]:
+    """Cells of each kind, of elements of which some have a corner twice, (n, 4)."""
+    is_new = np.ones(elements.shape, dtype=bool)
+    is_new[:, 1:] = elements[:, 1:] != elements[:, :-1]
+    counts = is_new.sum(axis=1)
+    cells = []
+    for count, kind in KINDS.items():
+        numbers = np.flatnonzero(counts == count)
+        corners = elements[numbers][is_new[numbers]].reshape(-1, count)
+        if len(numbers):
+            cells.append(_Cells(kind, corners, numbers))
+    return cells
+
+
+def _mesh(
+    points: Array,
+    cells: list[tuple[str, Indices]],
+    of_points: dict[str, Array],
+    of_cells: dict[str, Any],
+) -> meshio.Mesh:
+    """Mesh of meshio in the plane z = 0."""
+    # Only runs that write such files pay for the import.
+    import meshio
+
+    return meshio.Mesh(
+        _in_space(points), cells, point_data=of_points, cell_data=of_cells
+    )
+
+
+def _in_space(vectors: Array) -> Array:
+    """Vectors in the plane, (n, 2), with z = 0: (n, 3)."""
+    return np.pad(vectors, ((0, 0), (0, 1)))

@@ -1,0 +1,239 @@
+"""Meshes with names in files, which meshio reads, and as texts in settings.
+
+A text has all of a mesh that the scene needs, so that saved settings, links and other
+processes need no file.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import contextlib
+import io
+import struct
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import Any
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.discrete.plane.named_mesh import NamedMesh
+from solver.refusal import RefusedError, Words
+
+SURFACES = {
+    "triangle": 3,
+    "triangle6": 3,
+    "triangle7": 3,
+    "quad": 4,
+    "quad8": 4,
+    "quad9": 4,
+}
+"""Corners of elements of meshio, which come before its other nodes."""
+LINES = {
+    "line": 2,
+    "line3": 2,
+}
+"""Ends of edges of meshio, which come before its other nodes."""
+PASSED_OVER = {"vertex"}
+"""Cells of meshio that say nothing on a mesh in the plane."""
+FLAT = 1e-9
+"""Largest distance of points from a plane, over the size of the mesh."""
+GMSH = ".msh"
+"""End of the names of Gmsh's files: they name no other files, as some others do."""
+HEAD = "mesh:"
+"""Beginning of the text of a mesh."""
+SURFACE = "surface "
+LINE = "line "
+POINTS = "points"
+"""Names of arrays in the text of a mesh."""
+LARGEST = 20_000_000
+"""Largest number of bytes of the arrays in a text."""
+CAN = "a mesh in the plane whose bodies, contacts and sides have names"
+ERRORS = (
+    AssertionError,
+    AttributeError,
+    EOFError,
+    IndexError,
+    KeyError,
+    MemoryError,
+    OSError,
+    StopIteration,
+    TypeError,
+    UnicodeError,
+    ValueError,
+    struct.error,
+    SystemExit,
+)
+"""What meshio raises where a file is not as it expects."""
+
+
+def read_mesh(data: bytes, source: str) -> NamedMesh:
+    """Mesh in a file of a kind that meshio reads by the end of its name.
+
+    Raises
+    ------
+    RefusedError
+        For a file that meshio does not read, and a mesh that is no `NamedMesh`.
+    """
+    # Only runs that read a file pay for the import.
+    import meshio
+
+    end = Path(source).suffix.lower()
+    with NamedTemporaryFile(suffix=end) as file:
+        file.write(data)
+        file.flush()
+        # It prints what it does not like, and then ends the program.
+        quiet = contextlib.redirect_stdout(io.StringIO())
+        try:
+            with quiet, contextlib.redirect_stderr(io.StringIO()):
+                if end == GMSH:
+                    mesh = meshio.gmsh.read(file.name)
+                else:
+                    mesh = meshio.read(file.name)
+        except (meshio.ReadError, *ERRORS) as problem:
+            reason = " ".join(str(problem).replace(file.name, source).split())
+            remedy = f"save it again as Gmsh's .msh, format 4.1 ({reason or 'unread'})"
+            raise RefusedError("mesh", source, CAN, remedy) from None
+    return named(mesh)
+
+
+def read_example(name: str) -> NamedMesh:
+    """Mesh that comes with the scene, by its name."""
+    path = Path(__file__).parent / "meshes" / f"{name}{GMSH}"
+    return read_mesh(path.read_bytes(), path.name)
+
+
+def named(mesh: Any) -> NamedMesh:
+    """Mesh with names from one of meshio.
+
+    Of quadratic elements the corners are taken. Quadrilaterals of a body that has
+    triangles, too, become two of these.
+    """
+    surfaces = dict[str, list[Indices]]()
+    lines = dict[str, list[Indices]]()
+    for kind, cells, names in _blocks(mesh):
+        if kind in PASSED_OVER:
+            continue
+        if kind not in SURFACES and kind not in LINES:
+            raise RefusedError(
+                "mesh",
+                Words(f"with elements of the kind {kind}"),
+                "triangles, quadrilaterals, and edges with names",
+                "save the surfaces of a mesh in the plane alone",
+            )
+        found = surfaces
+        if kind in LINES:
+            found = lines
+        for name in np.unique(names).tolist():
+            if name:
+                corners = cells[names == name, : (SURFACES | LINES)[kind]]
+                found.setdefault(name, []).append(corners.astype(np.intp))
+            elif kind in SURFACES:
+                raise RefusedError(
+                    "mesh",
+                    Words(f"with {int((names == name).sum())} elements without a name"),
+                    "elements with the name of their body",
+                    "make a physical group of the surface of each body, with a name",
+                )
+    return NamedMesh(
+        points=_in_plane(mesh.points),
+        surfaces={name: _of_one_kind(parts) for name, parts in surfaces.items()},
+        lines={name: np.concatenate(parts) for name, parts in lines.items()},
+    )
+
+
+def _blocks(mesh: Any) -> Iterator[tuple[str, Indices, Any]]:
+    """Kind, cells and names of the cells of every block; "" is no name."""
+    tags = mesh.cell_data.get("gmsh:physical")
+    titles = {
+        (int(dimension), int(tag)): name
+        for name, (tag, dimension) in mesh.field_data.items()
+    }
+    for number, block in enumerate(mesh.cells):
+        names = np.full(len(block.data), "", dtype=object)
+        if tags is not None:
+            for tag in np.unique(tags[number]).tolist():
+                title = titles.get((block.dim, int(tag)), "")
+                names[tags[number] == tag] = title
+        else:
+            for name, cells in mesh.cell_sets.items():
+                if cells[number] is not None and ":" not in name:
+                    names[cells[number]] = name
+        yield block.type, np.asarray(block.data), names.astype(str)
+
+
+def _in_plane(points: Array) -> Array:
+    """Coordinates along x and y of points, (n_points, 2)."""
+    if points.shape[1] > 2:
+        thickness = float(np.ptp(points[:, 2]))
+        if thickness > FLAT * float(np.ptp(points, axis=0).max()):
+            raise RefusedError(
+                "mesh",
+                Words(f"that reaches {thickness:.4g} along z"),
+                "a mesh in the plane of x and y",
+                "save a section of it, turned into that plane",
+            )
+    return np.asarray(points[:, :2], dtype=float)
+
+
+def _of_one_kind(parts: list[Indices]) -> Indices:
+    """Elements of a body, (n, 3) or (n, 4), from those of each kind."""
+    if len({elements.shape[1] for elements in parts}) > 1:
+        halves = [elements[:, [0, 2, 3]] for elements in parts if elements.shape[1] > 3]
+        parts = [elements[:, :3] for elements in parts] + halves
+    return np.concatenate(parts)
+
+
+def as_text(mesh: NamedMesh) -> str:
+    """Text of a mesh, of which `from_text` makes the mesh again."""
+    used = np.unique(
+        np.concatenate([cells.ravel() for cells in mesh.surfaces.values()])
+    )
+    kind = np.min_scalar_type(len(used))
+    arrays = {POINTS: mesh.points[used]}
+    for head, named_cells in ((SURFACE, mesh.surfaces), (LINE, mesh.lines)):
+        for name, cells in named_cells.items():
+            if not np.isin(cells, used).all():
+                raise RefusedError(
+                    f"line {name!r}",
+                    Words("off the bodies"),
+                    "edges between two bodies, or on the outside of one",
+                    "leave out its name, or name the elements beside it, too",
+                )
+            arrays[head + name] = np.searchsorted(used, cells).astype(kind)
+    file = io.BytesIO()
+    np.savez_compressed(file, **arrays)
+    return HEAD + base64.b64encode(file.getvalue()).decode("ascii")
+
+
+def from_text(text: str) -> NamedMesh:
+    """Mesh of a text that `as_text` made."""
+    try:
+        data = base64.b64decode(text.removeprefix(HEAD), validate=True)
+        found = _arrays_in(data)
+        points = found.pop(POINTS)
+    except (binascii.Error, zipfile.BadZipFile, ValueError, KeyError) as problem:
+        raise RefusedError(
+            "mesh", text[:20], CAN, f"give the file again ({problem})"
+        ) from None
+    surfaces = {}
+    lines = {}
+    for key, cells in found.items():
+        if key.startswith(SURFACE):
+            surfaces[key.removeprefix(SURFACE)] = cells.astype(np.intp)
+        else:
+            lines[key.removeprefix(LINE)] = cells.astype(np.intp)
+    return NamedMesh(points, surfaces, lines)
+
+
+def _arrays_in(data: bytes) -> dict[str, Array]:
+    """Arrays by name in a file of NumPy; larger ones than are allowed are refused."""
+    with zipfile.ZipFile(io.BytesIO(data)) as content:
+        size = sum(entry.file_size for entry in content.infolist())
+    if size > LARGEST:
+        raise ValueError("it is too large")
+    with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
+        return dict(arrays)

@@ -1,0 +1,155 @@
+"""Words on the sides of a mesh: what each of them is held, moved or loaded by.
+
+They stand behind the name of a side in the mesh, as in "left held", or in the setting
+`sides`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.plane.body import Body, Held, Load
+from solver.discrete.plane.named_mesh import NamedMesh, OuterLine
+from solver.refusal import RefusedError
+
+DEEDS = {
+    "free": "nothing acts on it",
+    "held": "it moves neither along x nor along y",
+    "held x": "it does not move along x",
+    "held y": "it does not move along y",
+    "moved x": "it moves along x by the displacement",
+    "moved y": "it moves along y by the displacement",
+    "pulled": "the traction acts outwards on it",
+    "pressed": "the pressure acts on it",
+}
+"""What may happen to a side, and what it means."""
+USUAL = {
+    "bottom": "held",
+    "fixed": "held",
+    "top": "moved y",
+}
+"""What happens to sides of these names if nothing else is said."""
+AXES = {
+    "held": (0, 1),
+    "held x": (0,),
+    "held y": (1,),
+    "moved x": (0,),
+    "moved y": (1,),
+}
+"""Axes along which a side is held or moved."""
+_DEED = "|".join(sorted(DEEDS, key=len, reverse=True))
+_PHRASE = re.compile(rf"(.*?)\s*\b((?:{_DEED})(?: and (?:{_DEED}))*)", re.DOTALL)
+ALLOWED = f"a name of a side and one or more of {', '.join(DEEDS)}, joined by and"
+
+
+def taken_apart(phrase: str) -> tuple[str, tuple[str, ...]]:
+    """Name of a side, and what happens to it; nothing where the phrase does not say."""
+    match = _PHRASE.fullmatch(phrase.strip())
+    if match is None:
+        return phrase.strip(), ()
+    name, deeds = match.groups()
+    return name or phrase.strip(), tuple(deeds.split(" and "))
+
+
+def deeds_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, ...]]:
+    """Deeds on the sides of a mesh, by the names of its lines, in order.
+
+    Phrases that are `given` between commas go before those in names; where neither says
+    anything, sides have the usual deed of their name.
+
+    Raises
+    ------
+    RefusedError
+        For a phrase that is not understood, and a side that does not exist.
+    """
+    known: dict[str, tuple[str, ...]] = {}
+    for line in lines:
+        name, deeds = taken_apart(line)
+        usual = USUAL.get(name.lower())
+        if not deeds and usual:
+            deeds = (usual,)
+        known[line] = deeds
+    names = {taken_apart(line)[0].lower(): line for line in lines}
+    for phrase in given.split(","):
+        if not phrase.strip():
+            continue
+        name, deeds = taken_apart(phrase)
+        if not deeds:
+            remedy = f"write “{name} held”, or another of these"
+            raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
+        if name.lower() not in names:
+            sides = ", ".join(taken_apart(line)[0] for line in lines) or "none"
+            remedy = f"there is no side {name!r}: those of the mesh are {sides}"
+            raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
+        known[names[name.lower()]] = deeds
+    return known
+
+
+class _Acted(NamedTuple):
+    """A deed on a line on the outside of a body, and a name of its own."""
+
+    name: str
+    deed: str
+    line: OuterLine
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Sides of a mesh, and the deeds on them by the names of their lines."""
+
+    mesh: NamedMesh
+    deeds: Mapping[str, tuple[str, ...]]
+
+    def held(self, drive: Array) -> Iterator[Held]:
+        """Yield sides that are held, or moved by `drive`, (n_instants,), m.
+
+        Each node is held once along an axis, by the first of its sides.
+        """
+        taken: set[tuple[int, int, int]] = set()
+        for name, deed, line in self._acted():
+            for axis in AXES.get(deed, ()):
+                nodes = []
+                for node in line.nodes.tolist():
+                    if (line.body, node, axis) not in taken:
+                        nodes.append(node)
+                taken.update((line.body, node, axis) for node in nodes)
+                path = np.zeros_like(drive)
+                if deed.startswith("moved"):
+                    path = drive
+                label = name
+                if deed == "held":
+                    label = f"{name} along {'xy'[axis]}"
+                if nodes:
+                    yield Held(label, line.body, np.array(nodes), axis, path)
+
+    def loads(
+        self, bodies: Sequence[Body], traction: Array, pressure: Array
+    ) -> Iterator[Load]:
+        """Yield sides that are pulled by the traction or pressed, (n_instants,), Pa."""
+        inwards = {"pulled": -traction, "pressed": pressure}
+        for name, deed, line in self._acted():
+            if deed in inwards:
+                body = bodies[line.body]
+                yield Load.of_pressure(name, line.body, body, line.nodes, inwards[deed])
+
+    def _acted(self) -> Iterator[_Acted]:
+        """Yield the deeds on all lines; of one name and body they have numbers."""
+        counts: dict[str, int] = {}
+        for line in self.mesh.sides:
+            bodies = {
+                other.body for other in self.mesh.sides if other.name == line.name
+            }
+            for deed in self.deeds[line.name]:
+                name = f"{taken_apart(line.name)[0]} {deed}"
+                if len(bodies) > 1:
+                    name = f"{name}, {self.mesh.names[line.body]}"
+                counts[name] = counts.get(name, 0) + 1
+                if counts[name] > 1:
+                    name = f"{name} {counts[name]}"
+                yield _Acted(name, deed, line)
