@@ -105,10 +105,10 @@ RIVALS = (INCREMENTAL, SPARSE)
 WAYS = (*RIVALS, *LATIN, KNOWN)
 NOTES = (
     f"Until the contact force is within {GOAL:.0%} of the incremental solvers'. "
-    f"Medians of {REPEATS} in turns (of one from {LONG:.0f} s on), s: of the "
-    "processor, and by the clock on the wall, by which two threads are to be judged; "
-    "MB that the process grows by, the problem apart. Ratio: to the faster "
-    "incremental solver that solves all instants.",
+    f"Medians, in turns (of one from {LONG:.0f} s on), s: of the processor, and by "
+    "the clock on the wall, by which two threads are to be judged; MB that the "
+    "process grows by, the problem apart. Ratio: to the faster incremental solver "
+    "that solves all instants.",
     "Until known: until the run says itself that it is within 1 %, by an estimate or "
     "certified.",
     "Sparse incremental: tests/benchmarks/sparse_newton.py.",
@@ -318,13 +318,12 @@ class Entry:
     samples: list[Sample] = field(default_factory=list)
     answer: Answer | None = None
 
-    @property
-    def is_due(self) -> bool:
-        """Whether one more sample is needed."""
+    def is_due(self, repeats: int) -> bool:
+        """Check that fewer samples than so many are there, and that they are short."""
         if self.remark:
             return False
         spent = sum(sample.seconds for sample in self.samples)
-        return len(self.samples) < REPEATS and spent < LONG
+        return len(self.samples) < repeats and spent < LONG
 
     @property
     def seconds(self) -> float:
@@ -363,11 +362,11 @@ class Entry:
         return f"  {self.way:<20} {self.count or '':>5} {cells} {remark}".rstrip()
 
 
-def measure_in_turns(entries: list[Entry], processes: Processes) -> None:
+def measure_in_turns(entries: list[Entry], processes: Processes, repeats: int) -> None:
     """Measure ways one after the other, again and again."""
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         for entry in entries:
-            if entry.is_due:
+            if entry.is_due(repeats):
                 entry.measure(processes)
 
 
@@ -401,7 +400,7 @@ def latin_entry(
 
 
 def rows_of(
-    scene: str, size: int, ways: list[str], processes: Processes
+    scene: str, size: int, ways: list[str], processes: Processes, repeats: int
 ) -> Iterator[str]:
     """Rows of one size."""
     making = processes.call(making_of, scene, size)
@@ -418,7 +417,7 @@ def rows_of(
         entries = rivals + [
             latin_entry(scene, size, way, truth, processes) for way in own
         ]
-    measure_in_turns(entries, processes)
+    measure_in_turns(entries, processes, repeats)
     arrived = [entry.seconds for entry in rivals if entry.arrives]
     best = min(arrived, default=np.nan)
     for entry in entries:
@@ -432,6 +431,7 @@ def main() -> None:
     parser.add_argument("sizes", nargs="*", type=int, help="values of what grows")
     parser.add_argument("--ways", nargs="+", choices=WAYS, default=list(WAYS))
     parser.add_argument("--limit", type=float, default=LIMIT, help="seconds of a way")
+    parser.add_argument("--repeats", type=int, default=REPEATS, help="samples of a way")
     chosen = parser.parse_args()
     os.environ.update(ONE_THREAD)
     print(machine())
@@ -440,7 +440,9 @@ def main() -> None:
     with ProcessPool(1, max_tasks=1, context=context) as pool:
         processes = Processes(pool, chosen.limit)
         for size in chosen.sizes or RACES[chosen.scene].sizes:
-            for row in rows_of(chosen.scene, size, chosen.ways, processes):
+            for row in rows_of(
+                chosen.scene, size, chosen.ways, processes, chosen.repeats
+            ):
                 print(row, flush=True)
     print(*NOTES, sep="\n")
 
