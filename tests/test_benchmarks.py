@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks import ahead, by_getfem, cycles
+from benchmarks import ahead, by_getfem, cycles, race
 from benchmarks.public_solvers import PUBLIC, Public, solve_by
 from benchmarks.sparse_newton import SparseNewton
 
@@ -87,6 +87,37 @@ def test_the_sparse_rival_on_a_wall_comes_to_the_same(bond: str) -> None:
     for name in ("displacement", "contact_force"):
         known = getattr(reference, name)
         assert np.abs(getattr(found, name) - known).max() < 1e-10 * np.abs(known).max()
+
+
+@pytest.mark.parametrize(("scene", "size"), [("arch", 7), ("wall", 3)])
+def test_a_race_counts_iterations_until_the_answer_of_its_rivals(
+    scene: str, size: int
+) -> None:
+    settings = race.settings_of(scene, size, {})
+    problem = discretise(settings)
+    truth = race.answer_of(problem, race.INCREMENTAL)
+    assert truth.difference(race.answer_of(problem, race.SPARSE)) < race.SAME
+    count, error = race.count_of(scene, size, "LATIN", truth)
+    assert count == first_within(problem, settings, race.GOAL)
+    assert error <= race.GOAL
+
+
+def test_a_race_tells_what_does_not_arrive() -> None:
+    size = 7
+    monoscale = "LATIN, monoscale"
+    problem = discretise(race.settings_of("arch", size, {}))
+    truth = race.answer_of(problem, race.INCREMENTAL)
+    count, error = race.count_of("arch", size, monoscale, truth)
+    assert count == 0
+    assert error > race.GOAL
+    some = truth.solved.copy()
+    some[-1] = False
+    rival = race.Entry(race.SPARSE, ())
+    rival.samples = [race.Sample(1.0, 1.0, 1.0)]
+    rival.answer = race.Answer(truth.displacement, truth.contact_force, some)
+    assert not rival.arrives
+    assert race.truth_of([rival])[0] is None
+    assert f"solves {len(some) - 1} of {len(some)}" in rival.line(1.0)
 
 
 @pytest.mark.parametrize("public", PUBLIC, ids=lambda public: public.name)
