@@ -443,11 +443,11 @@ class Picture:
             return []
         if self._description.footings is None or not len(line):
             return []
-        names = self._names_at_ends(line)
-        # Beside a joint that ends within bodies there may be room in the next row.
-        for name in names[:2]:
-            names += _in_rows(self.layout, name, 1)
-        return [min(names, key=self._covers)]
+        places = []
+        for name in self._names_at_ends(line):
+            # Beside a joint that ends within bodies the next row may be free.
+            places += [name, *_in_rows(self.layout, name, 1)]
+        return [min(places, key=self._covers)]
 
     def _names_at_ends(self, line: Array) -> list[Word]:
         """The name of a joint beyond each end of its line, (n, 2), px.
