@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -206,8 +207,14 @@ def _is_lost(frame: Frame) -> bool:
 
 
 def _of_loop(frame: Frame) -> list[KeyFigure]:
-    """Key figures of the loop of a frame."""
-    return key_figures((frame.run.across, frame.run.up), frame.loop)
+    """Key figures of the loop of a frame; a side that is held is not moved."""
+    figures = []
+    moved = float(np.nanmax(np.abs(frame.deformed.nodes), initial=0.0))
+    for figure in key_figures((frame.run.across, frame.run.up), frame.loop):
+        if figure.unit == "m" and settled(figure.largest, moved) == 0.0:
+            figure = replace(figure, values=np.zeros_like(figure.values))
+        figures.append(figure)
+    return figures
 
 
 def _unit_of(figure: KeyFigure) -> Callable[[float], str]:

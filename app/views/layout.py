@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -38,6 +39,12 @@ MOST = 1.25
 """Largest motion over the room for it with which a magnification is kept."""
 GROUND = 26.0
 """Depth of the ground of a case, px."""
+ROW = 1.3
+"""Height of a line of words over its type size."""
+FOOTING = 18.0
+"""Depth of the hatching of a footing, px."""
+EACH = " each"
+"""Words behind the value of several equal loads."""
 NARROW = 560.0
 """Width below which keys take two lines, px."""
 
@@ -50,8 +57,9 @@ class Layout:
     it differs along x and y. `origin` is the middle of their foot, px. An arrow is
     `arrow` px long at its largest value, a letter of its words `letter` px wide, and a
     line of them `row` px high; a body is about `body_height` m high;
-    the largest displacement takes `motion` px at most. Keys stand below the bodies in
-    `key_rows`, or at their left if there are none.
+    the largest displacement takes `motion` px at most. Of each load `equals` are
+    equal, itself included; 0 where an earlier one has their words. Keys stand below
+    the bodies in `key_rows`, or at their left if there are none.
 
     Bodies that stand upright, by the `surroundings` of a case, are laid out in a figure
     that is turned by a quarter to the right: their left end is on top. `angle` is that
@@ -74,10 +82,11 @@ class Layout:
         self.key_rows = key_rows
         self.surroundings = surroundings
         self.letter = LETTER * type_size
-        self.row = 1.3 * type_size
+        self.row = ROW * type_size
         self.description = geometry.description
         if is_bare:
             self.description = replace(self.description, acts=())
+        self.equals = counts_of_equals(self.description.acts)
         top = float(geometry.nodes[:, 1].max())
         self.body_height = top / self.description.bodies
         if self.description.footings is not None:
@@ -132,7 +141,12 @@ class Layout:
         All are along and across the bodies, px; the corner is the lower one.
         """
         left, right, below, above = _margins(
-            self.description, self.arrow, self.letter, self.deepest, self.surroundings
+            self.description,
+            self.equals,
+            self.arrow,
+            self.letter,
+            self.deepest,
+            self.surroundings,
         )
         figure = np.array([self.width, self.height])
         if not self.key_rows:
@@ -200,6 +214,29 @@ def is_opposite(act: Act, other: Act) -> bool:
     return act.unit == other.unit and np.array_equal(act.values, -other.values)
 
 
+def is_equal(act: Act, other: Act) -> bool:
+    """Check whether loads of bodies of any shape are alike, but for their direction."""
+    if act.outward is None or other.outward is None:
+        return False
+    if act.symbol != other.symbol or act.unit != other.unit:
+        return False
+    if act.values.shape != other.values.shape:
+        return False
+    return np.allclose(act.values, other.values, atol=0.0)
+
+
+def counts_of_equals(acts: Sequence[Act]) -> list[int]:
+    """Number of loads equal to each load; 0 where an earlier one has their words."""
+    counts: list[int] = []
+    for act in acts:
+        firsts = [n for n, count in enumerate(counts) if count]
+        alike = [first for first in firsts if is_equal(act, acts[first])]
+        counts.append(int(not alike))
+        for first in alike:
+            counts[first] += 1
+    return counts
+
+
 @lru_cache(maxsize=16)
 def layout_of(
     geometry: Geometry,
@@ -239,6 +276,7 @@ def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array
 
 def _margins(
     description: Description,
+    counts: Sequence[int],
     arrow: float,
     letter: float,
     deepest: float,
@@ -261,19 +299,25 @@ def _margins(
     for footing in description.footings or ():
         for side, outward in OUTWARD.items():
             if np.max(footing.outward @ outward) > 0.5:
-                room[side] = max(room[side], 18.0)
+                room[side] = max(room[side], FOOTING)
     is_upright = False
     if surroundings is not None:
         is_upright = surroundings.is_upright
         room["bottom"] = max(room["bottom"], GROUND + 16.0)
         if surroundings.place == "around":
             room["top"] = max(room["top"], GROUND + 16.0)
-    for act in description.acts:
+    for act, count in zip(description.acts, counts, strict=True):
         side = act.side
         if is_upright:
             size = arrow + 10.0
         elif side in ("left", "right"):
-            size = 20.0 + letter * (len(act.symbol) + len(act.unit) + 9)
+            size = 20.0
+            if count != 1:
+                # The words of equal loads stand below all bodies.
+                row = ROW * letter / LETTER
+                room["bottom"] = max(room["bottom"], FOOTING + 1.2 * row)
+            else:
+                size += letter * (len(act.symbol) + len(act.unit) + 9)
             if act.outward is not None:
                 size += arrow
         elif side not in ("top", "bottom"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -23,7 +24,16 @@ from app.views.acts import (
 )
 from app.views.colors import EDGE, ERROR, FORCE, HALO, REFERENCE, STATUS
 from app.views.colors import GROUND as GROUND_COLOR
-from app.views.layout import BAND, GROUND, IMAGE, Layout, is_opposite, turned
+from app.views.layout import (
+    BAND,
+    EACH,
+    FOOTING,
+    GROUND,
+    IMAGE,
+    Layout,
+    is_opposite,
+    turned,
+)
 from solver.arrays import Array
 from solver.discrete.structure import Act
 
@@ -35,6 +45,12 @@ NAME = 14.0
 ASKEW = 0.3
 """Distance of the name of a joint from its end, px, and slope of a joint from which on
 its name stands beside it and not above or below."""
+HANDLE = 5.5
+"""Half of the size of the handle of an arrow, px."""
+LINE = 0.8
+"""Height of letters over the distance of rows."""
+MOST_ROWS = 3
+"""Largest number of rows by which a word makes way for another."""
 LEFT_OF = {"left": 0.0, "center": 0.5, "right": 1.0}
 """Share of a text at the left of its anchor, by its alignment."""
 Columns = dict[str, Any]
@@ -334,7 +350,8 @@ class Picture:
             slope = f"slope {number(float(np.degrees(self.tilt)))}°"
             anchor = np.array([x, -14.0]) + self.layout.origin
             words.append(Word(slope, anchor, "left", FORCE))
-        x, y = _inside(self.layout, words)
+        words = self._apart(_inside(self.layout, words))
+        x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
         return {
             "x": x,
             "y": y,
@@ -347,20 +364,62 @@ class Picture:
         """Symbols and values of the loads."""
         layout = self.layout
         words = []
-        for arrows in self.arrows:
+        for arrows, count in zip(self.arrows, layout.equals, strict=True):
             act = arrows.act
-            # Pressures from both sides have one text.
-            if self._is_repeated(act):
+            # Pressures from both sides have one text, and so have equal loads.
+            if self._is_repeated(act) or count == 0:
                 continue
+            text = text_of(act, self._now)
+            if count > 1:
+                text += EACH
             anchor, align = anchor_of(arrows, layout)
-            anchor = self.page(anchor)
+            if count > 1 and act.side in ("left", "right"):
+                anchor = np.array([0.0, -FOOTING - 0.6 * layout.row])
+                align = "center"
+            word = Word(text, self.page(anchor), align, color_of(act))
             if layout.angle:
                 # In rows above what stands upright.
                 above = layout.height - (len(words) + 0.5) * layout.row
                 anchor = np.array([layout.origin[0], above])
-                align = "center"
-            words.append(Word(text_of(act, self._now), anchor, align, color_of(act)))
+                word = word._replace(anchor=anchor, align="center")
+            elif act.side == "body" and len(arrows.lines):
+                # Below an arch, say, there is room at the arrow itself.
+                near = arrows.lines[0].mean(axis=0)
+                near = np.add(self.page(near), [12.0, 0.0])
+                beside = word._replace(anchor=near, align="left")
+                if not self._covers(beside):
+                    word = beside
+            words.append(word)
         return words
+
+    def _covers(self, word: Word) -> bool:
+        """Check whether a word lies on bodies or on the handle of an arrow."""
+        corners = self.page(self.nodes[self._geometry.cells])
+        is_on_bodies = _lies_on(
+            self.layout, word, corners.min(axis=1), corners.max(axis=1)
+        )
+        return is_on_bodies or self._hides_handle(word)
+
+    def _hides_handle(self, word: Word) -> bool:
+        """Check whether a word lies on the handle of an arrow."""
+        handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
+        marks = self.page(handles)
+        return _lies_on(self.layout, word, marks - HANDLE, marks + HANDLE)
+
+    def _apart(self, words: Sequence[Word]) -> list[Word]:
+        """Words, moved up or down by rows off earlier ones and off handles.
+
+        They go to the next place that bodies leave free, too, if there is one.
+        """
+        placed: list[Word] = []
+        for word in words:
+            moved = word
+            if _meets(self.layout, word, placed) or self._hides_handle(word):
+                places = _in_rows(self.layout, word, MOST_ROWS)
+                free = [one for one in places if not _meets(self.layout, one, placed)]
+                moved = min(free, key=self._covers, default=word)
+            placed.append(moved)
+        return placed
 
     def _name_of_ground(self) -> list[Word]:
         """Name of the ground of a case, if there is one."""
@@ -384,23 +443,30 @@ class Picture:
             return []
         if self._description.footings is None or not len(line):
             return []
-        anchor, align = self._anchor_of_name(line)
-        return [Word(self._selected, self.page(anchor), align, REFERENCE)]
+        places = []
+        for name in self._names_at_ends(line):
+            # Beside a joint that ends within bodies the next row may be free.
+            places += [name, *_in_rows(self.layout, name, 1)]
+        return [min(places, key=self._covers)]
 
-    def _anchor_of_name(self, line: Array) -> tuple[Array, str]:
-        """Anchor of the name of a joint beyond one end of its line, (n, 2), and side.
+    def _names_at_ends(self, line: Array) -> list[Word]:
+        """The name of a joint beyond each end of its line, (n, 2), px.
 
-        The end is the one nearer to the middle of all bodies, px.
+        The end that is nearer to the middle of all bodies comes first.
         """
         middle = 0.5 * self.layout.size * self.layout.scale * [0.0, 1.0]
         ends = line[[0, -1]]
         nearer = int(np.hypot(*(ends - middle).T).argmin())
-        away = ends[nearer] - ends[1 - nearer]
-        away /= np.hypot(*away) or 1.0
-        align = "center"
-        if abs(away[0]) > ASKEW:
-            align = "left" if away[0] > 0.0 else "right"
-        return ends[nearer] + NAME * away, align
+        names = []
+        for end in (nearer, 1 - nearer):
+            away = ends[end] - ends[1 - end]
+            away /= np.hypot(*away) or 1.0
+            align = "center"
+            if abs(away[0]) > ASKEW:
+                align = "left" if away[0] > 0.0 else "right"
+            anchor = self.page(ends[end] + NAME * away)
+            names.append(Word(self._selected, anchor, align, REFERENCE))
+        return names
 
     def _is_repeated(self, act: Act) -> bool:
         """Check whether a load is a pressure from below that is named above already."""
@@ -410,13 +476,57 @@ class Picture:
         return any(is_opposite(act, other) for other in above)
 
 
-def _inside(layout: Layout, words: Sequence[Word]) -> tuple[Array, Array]:
-    """X and y, (n,), px, of the anchors of words, moved so that no text is cut."""
-    x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
-    widths = np.array([layout.letter * len(word.text) + 4.0 for word in words])
-    left = widths * [LEFT_OF[word.align] for word in words]
-    right = np.maximum(layout.width - widths + left, left)
-    return np.clip(x, left, right), np.clip(y, 8.0, layout.height - 8.0)
+def _inside(layout: Layout, words: Sequence[Word]) -> list[Word]:
+    """Words, moved so that no text is cut."""
+    inside = []
+    for word in words:
+        width = _width_of(layout, word)
+        left = width * LEFT_OF[word.align]
+        right = max(layout.width - width + left, left)
+        limits = [left, 8.0], [right, layout.height - 8.0]
+        inside.append(word._replace(anchor=np.clip(word.anchor, *limits)))
+    return inside
+
+
+def _width_of(layout: Layout, word: Word) -> float:
+    """Width of a word, about, px."""
+    return layout.letter * len(word.text) + 4.0
+
+
+def _box_of(layout: Layout, word: Word) -> tuple[Array, Array]:
+    """Lower left and upper right corner of a word, (2,) each, px."""
+    width = _width_of(layout, word)
+    size = np.array([width, LINE * layout.row])
+    low = word.anchor - size * [LEFT_OF[word.align], 0.5]
+    return low, low + size
+
+
+def _lies_on(layout: Layout, word: Word, low: Array, high: Array) -> bool:
+    """Check whether a word lies on boxes between corners, shape (n, 2) each, px."""
+    first, last = _box_of(layout, word)
+    return bool(np.any(np.all((low < last) & (high > first), axis=1)))
+
+
+def _meets(layout: Layout, word: Word, others: Sequence[Word]) -> bool:
+    """Check whether a word lies on one of others."""
+    boxes = [_box_of(layout, other) for other in others]
+    low, high = np.reshape(boxes, (-1, 2, 2)).swapaxes(0, 1)
+    return _lies_on(layout, word, low, high)
+
+
+def _in_rows(layout: Layout, word: Word, most: int) -> list[Word]:
+    """A word moved up or down by up to a number of rows, inside the figure.
+
+    Of two places equally far away the one farther from the middle comes first.
+    """
+    outward = math.copysign(layout.row, word.anchor[1] - 0.5 * layout.height)
+    places = []
+    for rows in range(1, most + 1):
+        for shift in (rows * outward, -rows * outward):
+            anchor = np.add(word.anchor, [0.0, shift])
+            if 8.0 <= anchor[1] <= layout.height - 8.0:
+                places.append(word._replace(anchor=anchor))
+    return places
 
 
 def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:

@@ -13,7 +13,7 @@ from app.frame import Frame, Run, Selection
 from app.units import Unit, number, unit_for
 from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
-from app.views.layout import is_opposite
+from app.views.layout import is_equal, is_opposite
 from app.views.parts import bare
 from app.views.view import View
 from solver.arrays import Array
@@ -125,15 +125,15 @@ def paths_of(run: Run) -> list[tuple[str, Array]]:
 def _given_in(description: Description) -> list[tuple[str, Array, Unit]]:
     """Symbol, values, (n_given,), and unit of the tilt and of each load.
 
-    The same pressure from both sides is a single load; a load that varies along a side
-    has its values in the middle.
+    The same pressure from both sides is a single load, as are equal loads of bodies of
+    any shape; a load that varies along a side has its values in the middle.
     """
     given: list[tuple[str, Array, Unit]] = []
     if description.tilt is not None:
         given.append(("tilt", np.degrees(description.tilt), Unit("°")))
     for index, act in enumerate(description.acts):
         before = description.acts[:index]
-        if any(is_opposite(act, other) for other in before):
+        if any(is_opposite(act, other) or is_equal(act, other) for other in before):
             continue
         values = act.values
         if values.ndim > 1:

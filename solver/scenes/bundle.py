@@ -143,7 +143,7 @@ class BundleSettings(PlaneSettings):
 
     @cached_property
     def packing(self) -> Packing:
-        """How the wires lie."""
+        """Arrangement of the wires."""
         if self.arrangement == "heap":
             return Packing.heap(self.rings)
         return Packing.hexagon(self.rings)
@@ -163,7 +163,9 @@ class BundleSettings(PlaneSettings):
         """Number of contacts."""
         rows = self.packing.rows
         between = sum(len(wires) for wires in self.packing.neighbours) // 2
-        under_plate = rows[-1] if self.has_plate else 0
+        under_plate = 0
+        if self.has_plate:
+            under_plate = rows[-1]
         return between + rows[0] + under_plate
 
     @property

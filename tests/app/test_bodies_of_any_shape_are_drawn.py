@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,10 +12,13 @@ import shaped
 from scipy.spatial import Delaunay
 
 from app.frame import Frame, Selection
+from app.lessons.catalogue import CASES
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.status import figures_line
 from app.views.acts import hatched
 from app.views.scene import Scene, Thrust
+from app.views.timeline import paths_of
 from app.worker.cells import (
     BAND,
     MOST_CELLS,
@@ -247,3 +251,97 @@ def test_hatches_of_a_round_support_lie_behind_it() -> None:
     radii = np.hypot(*strokes[np.isfinite(strokes[:, 0])].T)
     assert radii.max() < 100.0 + 1e-9
     assert radii.min() < 94.0
+
+
+def boxes_of_words(view: Scene) -> dict[str, np.ndarray]:
+    """Lower left and upper right corners, (2, 2), px, of words by their texts."""
+    words = view.sources["words"].data
+    boxes = {}
+    for x, y, text, align in zip(
+        words["x"], words["y"], words["text"], words["text_align"], strict=True
+    ):
+        length = 7.5 * len(text)
+        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
+        boxes[text] = np.array([[left, y - 7.0], [left + length, y + 7.0]])
+    return boxes
+
+
+def meet(box: np.ndarray, low: np.ndarray, high: np.ndarray) -> bool:
+    return bool(np.any(np.all((low < box[1]) & (high > box[0]), axis=-1)))
+
+
+CROWDED = {
+    "arch": arch(live=2000.0, fill=20e3),
+    "bundle": default_settings("bundle").replace(instants=9),
+    "wall": CASES["settling-ground"].settings,
+}
+
+
+@pytest.fixture(scope="module", params=CROWDED)
+def crowded(request: pytest.FixtureRequest) -> Frame:
+    return ran(CROWDED[request.param], ends=False)
+
+
+@pytest.mark.parametrize("size", [(950.0, 190.0), (420.0, 360.0), (380.0, 180.0)])
+def test_words_of_many_loads_lie_apart_and_leave_handles_free(
+    crowded: Frame, size: tuple[float, float]
+) -> None:
+    view = shown(crowded, 0.0)
+    view.lay_out(*size)
+    for phase in (0.0, 0.3, 0.5, 0.75, 1.0):
+        view.update(crowded, Selection(phase), None)
+        boxes = list(boxes_of_words(view).values())
+        marks = view.sources["marks"].data
+        handles = np.stack([marks["x"], marks["y"]], axis=1)
+        for index, box in enumerate(boxes):
+            for other in boxes[:index]:
+                assert not meet(box, other[0], other[1])
+            assert not meet(box, handles - 3.0, handles + 3.0)
+
+
+def test_equal_loads_have_one_word() -> None:
+    frame = ran(CROWDED["bundle"], ends=False)
+    acts = frame.run.geometry.description.acts
+    bands = [act for act in acts if act.where.startswith("band")]
+    assert len(bands) > 3
+    texts = list(boxes_of_words(shown(frame, 0.5)))
+    assert sum(text.endswith(" each") for text in texts) == 1
+    assert sum(text.startswith("F = ") for text in texts) == 2
+    assert shown(frame, 0.5).picture.layout.equals.count(len(bands)) == 1  # type: ignore[union-attr]
+    titles = [title for title, _ in paths_of(frame.run)]
+    assert sum(title.startswith("F = ") for title in titles) == 2
+
+
+def test_the_weight_of_an_arch_is_read_at_its_arrow() -> None:
+    view = shown(ran(arch(), ends=False), 0.5)
+    view.lay_out(420.0, 360.0)
+    view.update(view._shown[0], Selection(0.5), None)  # type: ignore[index]
+    picture = view.picture
+    assert picture is not None
+    (weight,) = (each for each in picture.arrows if each.act.side == "body")
+    (box,) = (box for text, box in boxes_of_words(view).items() if text[0] == "W")
+    tail, head = picture.page(weight.lines[0])
+    assert head[0] < box[0, 0] < head[0] + 20.0
+    assert head[1] < box[:, 1].mean() < tail[1]
+
+
+def test_the_name_of_a_joint_lies_on_no_body_where_one_end_is_free() -> None:
+    frame = ran(default_settings("mesh"), ends=False)
+    view = shown(frame, 0.5)
+    view.lay_out(950.0, 230.0)
+    for name in frame.run.surfaces:
+        view.update(frame, Selection(0.5, interface=name), None)
+        picture = view.picture
+        assert picture is not None
+        corners = picture.page(picture.nodes[frame.run.geometry.cells])
+        box = boxes_of_words(view)[name]
+        assert not meet(box, corners.min(axis=1), corners.max(axis=1)), name
+
+
+def test_a_side_that_is_held_is_not_moved_during_the_search() -> None:
+    frame = ran(arch(displacement=0.0), ends=False)
+    moved = frame.deformed.nodes
+    rounding = 1e-8 * np.abs(moved).max() * np.ones_like(frame.loop[0])
+    frame = replace(frame, loop=np.stack([rounding, frame.loop[1]]))
+    line = figures_line(frame, Selection(0.5))
+    assert "Movement of the right abutment <b>0 " in line

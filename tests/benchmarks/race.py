@@ -332,7 +332,7 @@ class Entry:
 
     @property
     def arrives(self) -> bool:
-        """Whether it was measured, and solves all instants."""
+        """Check whether a way was measured, and solves all instants."""
         is_whole = self.answer is None or bool(self.answer.solved.all())
         return bool(self.samples) and is_whole
 
@@ -372,7 +372,8 @@ def measure_in_turns(entries: list[Entry], processes: Processes, repeats: int) -
 
 def truth_of(entries: list[Entry]) -> tuple[Answer | None, str]:
     """Answer that errors are measured from, and a sentence about it."""
-    answers = [entry.answer for entry in entries if entry.arrives and entry.answer]
+    arrived = [entry.answer for entry in entries if entry.arrives]
+    answers = [answer for answer in arrived if answer is not None]
     if not answers:
         return None, "no incremental solver solves all instants"
     if len(answers) == 1:

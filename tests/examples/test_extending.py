@@ -25,7 +25,16 @@ from solver.study.quantities.finished import finished_run
 from solver.study.quantities.quantity import quantity
 
 PAGE = Path(__file__).resolve().parents[2] / "solver" / "EXTENDING.md"
-KINDS = ("setting", "scene", "quantity", "law", "view", "lesson", "case")
+KINDS = (
+    "setting",
+    "scene",
+    "structure",
+    "quantity",
+    "law",
+    "view",
+    "lesson",
+    "case",
+)
 PAGES = dict(
     zip(
         KINDS,
@@ -67,6 +76,16 @@ def test_a_scene_is_solved_as_its_closed_form_has_it() -> None:
     assert run.iterate.displacement[-1, -1] == pytest.approx(exact, rel=1e-6)
     assert kind.checked(kind.SMALL).elements == 20
     assert "pulled" in settings.sentence()
+
+
+def test_a_structure_is_bodies_and_their_joints(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (program,) = blocks("structure")
+    exec(compile(program, "wedge", "exec", dont_inherit=True), {"__name__": "wedge"})
+    ending, friction = capsys.readouterr().out.split()
+    assert ending == "converged"
+    assert float(friction) == pytest.approx(1e3 * math.sin(0.3), rel=1e-6)
 
 
 def test_a_quantity_is_a_function_of_a_run() -> None:

@@ -173,6 +173,7 @@ SHORT = {"elements": 16, "instants": 21, "substructures": 2}
 FEW = {
     "wall": {"bricks": 3, "courses": 3, "displacement": 5e-5},
     "arch": {"voussoirs": 7, "elements": 2},
+    "bundle": {"rings": 1, "elements": 4},
 }
 """Few bodies, of which a step is soon worth a trial."""
 

@@ -61,7 +61,9 @@ class Zone:
         surface = self.reach * np.cosh(growing)
         below = []
         for number, ring in enumerate(growing.tolist()):
-            every = angles if number < FINE else angles[::2]
+            every = angles
+            if number >= FINE:
+                every = angles[::2]
             along = np.cosh(ring) * np.cos(every)
             depth = np.sinh(ring) * np.sin(every)
             below.append(self.reach * np.stack([along, depth], axis=1))
@@ -176,11 +178,12 @@ class Plate:
         bottom = np.concatenate(lines)
         upper = np.linspace(left, right, 4 * len(places) + 1)
         middle = 0.5 * thickness
+        inside = [below + np.array([x, 0.0]) for x in places]
         corners = [
             np.stack([bottom, np.zeros_like(bottom)], axis=1),
             np.stack([upper, np.full_like(upper, thickness)], axis=1),
             np.array([(left, middle), (right, middle)]),
-            *[below + np.array([x, 0.0]) for x in places],
+            *inside,
         ]
         mesh = triangulated(np.concatenate(corners))
         first = len(bottom)
@@ -211,7 +214,7 @@ def _chains(mesh: Mesh, zones: Iterable[Zone], lines: Sequence[Array]) -> list[I
 
 @dataclass(frozen=True)
 class Packing:
-    """How wires lie: rows of a triangular grid, from below.
+    """Arrangement of wires: rows of a triangular grid, from below.
 
     Attributes
     ----------
