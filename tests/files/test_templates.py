@@ -78,7 +78,11 @@ PARTS = {
         "said": MARKUP,
         "is_running": True,
     },
-    "figures.html": {"figures": {MARKUP: MARKUP}, "hints": {MARKUP: MARKUP}},
+    "figures.html": {
+        "owner": MARKUP,
+        "figures": {MARKUP: MARKUP},
+        "hints": {MARKUP: MARKUP},
+    },
     "class_dialog.html": {"code": MARKUP, "link": MARKUP, "picture": "", "port": 1},
     "keys.html": {"curves": [{"label": MARKUP, "dash": MARKUP, "color": MARKUP}]},
     "charts.html": {"heading": MARKUP, "keys": "", "panels": []},
@@ -149,7 +153,7 @@ def test_every_report_has_its_values_here() -> None:
 @given(st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r")))
 def test_a_text_is_read_as_it_was_filled_in(text: str) -> None:
     reader = Reader(
-        app.widgets.html("figures.html", figures={"": f"|{text}|"}, hints={})
+        app.widgets.html("figures.html", owner="", figures={"": f"|{text}|"}, hints={})
     )
     assert "".join(reader.texts).split("|", 1)[1].rsplit("|", 1)[0] == text
 

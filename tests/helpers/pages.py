@@ -10,7 +10,9 @@ from typing import Any
 from browser import Chrome, Server
 from playwright.sync_api import ConsoleMessage, Error, Locator, Page, expect
 
-ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=20 a second"
+ENDLESS = (
+    "method=paper&max_iterations=100000&tolerance=1e-30&k_scale=0.1&pace=20 a second"
+)
 """In an address: a run that goes on."""
 ANSWER = "start=nested&finish=at-once"
 """In an address: a run whose answer is there at once."""

@@ -25,7 +25,7 @@ from processes import wait_for
 
 from solver.scenes import CATALOGUE
 
-HIGH = {"block", "fault", "incline"}
+HIGH = {"block", "fault", "incline", "arch", "belt", "bundle"}
 """Scenes whose bodies are not long."""
 WHOLE = """() => {
   const models = Bokeh.documents.flatMap((document) => [...document.all_models])
