@@ -119,7 +119,11 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
     for scene in CATALOGUE:
         button(page, scene.capitalize()).click()
         expect(sentence).not_to_have_text(told[-1])
-        is_solved(page)
+        if scene == "bundle":
+            # A search that ends by its estimate, as a proof would take longer.
+            expect(status(page)).to_contain_text("solved")
+        else:
+            is_solved(page)
         told.append(sentence.inner_text())
         wait_for(lambda scene=scene: has_plots_beside(page) == (scene in HIGH))
         assert min(heights_of_plots(page)) >= 200.0

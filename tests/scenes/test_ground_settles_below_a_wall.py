@@ -110,6 +110,13 @@ def test_ground_that_settles_beside_the_wall_changes_nothing():
     assert not settings.bodies.strips
 
 
+def test_bricks_may_have_more_elements_up_than_the_wall_has_along():
+    _, problem, answer = made(**SETTLES | {"elements": 2, "elements_up": 40})
+    weight = SMALL["bricks"] * SMALL["courses"] * BRICK
+    pressed = SMALL["pressure"] * 0.25 * SMALL["bricks"]
+    assert carried(problem, answer)[-1] == pytest.approx(weight + pressed, rel=1e-9)
+
+
 def test_each_kind_of_joint_has_its_friction():
     factors = {"friction": 0.5, "head_friction": 0.5, "ground_friction": 2.0}
     for values in (SMALL, SETTLES):

@@ -324,7 +324,8 @@ def _coefficients(stack: Stack, support: Support | None, pairs: _Pairs) -> Array
     if stack.strips and stack.support is not None:
         on_ground = (pairs.others >= 0) & (pairs.others < stack.strips)
         of_ground = np.broadcast_to(stack.support.friction, stack.grid[0] + 1)
-        of_pairs = np.where(on_ground, of_ground[pairs.nodes], of_pairs)
+        of_pairs = of_pairs.copy()
+        of_pairs[on_ground] = of_ground[pairs.nodes[on_ground]]
     return of_pairs
 
 
