@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import logging
 import time
-from collections import deque
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -30,8 +30,9 @@ PAINTED = (
 animation frame runs after that frame is painted."""
 SHORTEST = 0.02
 """Shortest pause between pictures that is kept, s."""
-LASTS = 1.0
-"""Seconds after which a value that was shown no longer comes back."""
+BEHIND = 200
+"""Time for which a value that the browser sent before it told that it has shown all may
+still be on its way, ms: Panel gathers values for 50 ms."""
 TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
 """Elements that take keys for themselves (a CSS selector)."""
 COPY = """
@@ -47,6 +48,13 @@ SPEAK = "document.getElementById('spoken').textContent = browser.spoken"
 text. A pane of Panel makes its content anew, which they may pass over."""
 GO = "if (browser.destination) { location.search = browser.destination }"
 """Script that opens the page of another address, also one that is there already."""
+TELL = """
+// Once idle, React has shown all values, and sent back those that it sends back.
+const idle = window.requestIdleCallback ?? ((tell) => setTimeout(tell, 500))
+const given = browser.given
+idle(() => { browser.shown = given }, {timeout: 10000})
+"""
+"""Script that tells that the values are shown which the page gave to widgets."""
 LISTEN = """
 const measure = () => {
   browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
@@ -199,8 +207,9 @@ class Browser(DataModel):
     The window has a `height` in px and may be narrow. `pressed` is the last key, and
     `count` grows with every key. `search` is the address to which the browser went back
     or on, `copied` a link that it is to copy, `spoken` a text for screen readers,
-    `destination` an address whose page it is to open. A browser is new until somebody
-    has done something on a page.
+    `destination` an address whose page it is to open. `given` is the number of values
+    that the page gave to widgets, `shown` of those that the browser has shown. A
+    browser is new until somebody has done something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -212,6 +221,8 @@ class Browser(DataModel):
     spoken: str = String(default="")  # type: ignore[assignment]
     is_new: bool = Bool(default=False)  # type: ignore[assignment]
     destination: str = String(default="")  # type: ignore[assignment]
+    given: int = Int(default=0)  # type: ignore[assignment]
+    shown: int = Int(default=0)  # type: ignore[assignment]
 
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
@@ -230,8 +241,32 @@ class Browser(DataModel):
         self.js_on_change("spoken", CustomJS(args=args, code=SPEAK))
         self.js_on_change("is_new", CustomJS(code=f"if (!cb_obj.is_new) {{ {MET} }}"))
         self.js_on_change("destination", CustomJS(args=args, code=GO))
+        self.js_on_change("given", CustomJS(args=args, code=TELL))
+        self.on_change(
+            "shown",
+            lambda name, old, new: document.add_timeout_callback(
+                partial(state.param.update, shown=new), BEHIND
+            ),
+        )
+        self._follow_values(state)
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
+        document.js_on_event(DocumentReady, CustomJS(args=args, code=TELL))
+
+    def _follow_values(self, state: PageState) -> None:
+        """Number the values that the page gives to widgets."""
+        self.given = state.given
+
+        def count() -> None:
+            self.given = state.given
+
+        def on_given(event: Any) -> None:
+            # A model changes under the document's lock, which a click does not have.
+            # One message tells of all values of a step.
+            if event.old == self.given:
+                pn.state.execute(count, schedule=True)
+
+        state.param.watch(on_given, "given")
 
 
 def fade_first(state: PageState, act: Callable[[], None]) -> None:
@@ -244,27 +279,35 @@ def fade_first(state: PageState, act: Callable[[], None]) -> None:
 
 
 class Echoes:
-    """Values that the page gave a widget lately, to tell them from those of a person.
+    """Values that the page gave a widget, to tell them from those of a person.
 
     Panel's React wrapper sends a value back after it has shown it. Where the page gave
     the next value meanwhile, that looks as if a person had chosen the one before
-    (panel/models/react_component.ts, `useState`).
+    (panel/models/react_component.ts, `useState`). No value comes back once the browser
+    has told that it has shown it (`PageState.shown`).
     """
 
-    def __init__(self) -> None:
-        self._given: deque[tuple[float, Any]] = deque(maxlen=64)
+    def __init__(self, state: PageState) -> None:
+        self._state = state
+        self._given: list[tuple[int, Any]] = []
 
-    def give(self, value: Any, before: Any) -> Any:
-        """Note a value and the one that it replaces; return the value."""
-        now = time.monotonic()
-        if value != before:
-            for each in (before, value):
+    def show(self, widget: Any, value: Any, **more: Any) -> None:
+        """Give a widget a value, with more of its parameters."""
+        if value != widget.value:
+            self._forget()
+            self._state.given += 1
+            for each in (widget.value, value):
                 # An empty value was never shown, and so does not come back.
                 if each != "":
-                    self._given.append((now, each))
-        return value
+                    self._given.append((self._state.given, each))
+        widget.param.update(value=value, **more)
 
     def has(self, value: Any) -> bool:
-        """Check whether a value that the widget reports was given to it just now."""
-        since = time.monotonic() - LASTS
-        return any(when > since and given == value for when, given in self._given)
+        """Check whether a value that the widget reports may be one given to it."""
+        self._forget()
+        return any(given == value for _, given in self._given)
+
+    def _forget(self) -> None:
+        """Forget the values that the browser has shown."""
+        shown = self._state.shown
+        self._given = [each for each in self._given if each[0] > shown]

@@ -66,15 +66,16 @@ class SettingControl:
         self._unit = unit_of(self._definition)
         self._is_updating = False
         self._is_dragged = False
-        self._echoes = Echoes()
-        self._positions = Echoes()
+        self._echoes = Echoes(state)
+        self._positions = Echoes(state)
         self._dialog: CurveDialog | None = None
         self.slider: pmui.FloatSlider | None = None
         self.field, self.view = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
         self.update()
-        # No browser has shown the position that the slider was made with.
-        self._positions = Echoes()
+        # No browser has shown what the widgets were made with.
+        self._echoes = Echoes(state)
+        self._positions = Echoes(state)
 
     def update(self) -> None:
         """Show the value of the setting, and whether it applies."""
@@ -186,7 +187,8 @@ class SettingControl:
 
     def _show(self, value: Any) -> None:
         if isinstance(self._definition, CurveParameter):
-            self.field.value = POINTS if isinstance(value, tuple) else value
+            choice = POINTS if isinstance(value, tuple) else value
+            self._echoes.show(self.field, choice)
             self._edit_button.visible = isinstance(value, tuple)
             if self._dialog is not None:
                 self._dialog.update()
@@ -196,13 +198,11 @@ class SettingControl:
             if value not in presets:
                 presets.append(OWN)
                 value = OWN
-            self.field.param.update(options=presets, value=value)
+            self._echoes.show(self.field, value, options=presets)
         elif self.slider is None:
-            self.field.value = value
+            self._echoes.show(self.field, value)
         else:
-            # The browser may send the text back after the next one has come: see
-            # `Echoes`.
-            self.field.value = self._echoes.give(self._written(value), self.field.value)
+            self._echoes.show(self.field, self._written(value))
             if not self._is_dragged:
                 self._show_on_slider(value)
 
@@ -217,10 +217,9 @@ class SettingControl:
         position = min(max(self._to_slider(value), slider.start), slider.end)
         if (slider.value, slider.value_throttled) == (position, position):
             return
-        self._positions.give(position, slider.value)
         # The throttled value is set, too: the browser sends it only when it changes.
         with param.edit_constant(slider):
-            slider.param.update(value=position, value_throttled=position)
+            self._positions.show(slider, position, value_throttled=position)
 
     def _explain(self, refusal: str) -> None:
         """Write below the field why a value is refused, or the help of a preset."""
@@ -279,7 +278,7 @@ class SettingControl:
         if self._is_updating:
             return
         if self._positions.has(events[-1].new):
-            # A position that the page gave comes back, as a text does.
+            # The browser may show it too.
             self.update()
             return
         value = self._from_slider(events[-1].new)
@@ -305,6 +304,7 @@ class Controls:
 
     def __init__(self, state: PageState) -> None:
         self._state = state
+        self._echoes = Echoes(state)
         self._controls: list[SettingControl] = []
         # Toggle buttons have no pictures of their own: rules of style give each of them
         # one.
@@ -341,7 +341,11 @@ class Controls:
 
     def _choose_scene(self, scene: str) -> None:
         # The page itself sets the widget, too.
-        if scene != self._state.settings.scene:
+        if scene == self._state.settings.scene:
+            return
+        if self._echoes.has(scene):
+            self._echoes.show(self._scene, self._state.settings.scene)
+        else:
             fade_first(self._state, partial(self._state.choose_scene, scene))
 
     def update(self) -> None:
@@ -358,7 +362,8 @@ class Controls:
 
     def _build(self) -> None:
         settings = self._state.settings
-        self._built = self._scene.value = settings.scene
+        self._built = settings.scene
+        self._echoes.show(self._scene, settings.scene)
         self._scene.label = settings.title
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]

@@ -120,6 +120,12 @@ class PageState(param.Parameterized):
     is_new = param.Boolean(
         doc="Whether marks in the picture say what is to be seen: on a first visit."
     )
+    given = param.Integer(
+        default=0, doc="Number of values that the page gave to widgets."
+    )
+    shown = param.Integer(
+        default=0, doc="Number of these that the browser has shown, in their order."
+    )
     plots = param.List(default=[], doc="Names of the views on top of their cards.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(

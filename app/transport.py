@@ -58,7 +58,7 @@ class Transport:
         self._is_lively = False
         self._is_touched = self._is_guided or state.selection != Selection()
         self._moved_at = -math.inf
-        self._echoes = Echoes()
+        self._echoes = {name: Echoes(state) for name in ("scrub", "finish", "scene")}
         self._run = _button("pause", "Run or pause (space)", self._toggle)
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
@@ -114,7 +114,7 @@ class Transport:
             margin=(6, 4),
             **looks("large"),
         )
-        self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
+        self._scene.param.watch(lambda event: self._choose_scene(event.new), "value")
 
         def leave() -> None:
             state.view = "page"
@@ -277,7 +277,7 @@ class Transport:
     def _seek(self, back: int) -> None:
         """Show the iterate to which a person moved the slider, from the newest back."""
         # The browser sends back what the page had set: nobody moved the slider.
-        if self._echoes.has(back):
+        if self._echoes["scrub"].has(back):
             return
         self._moved_at = time.monotonic()
         iteration = None
@@ -287,8 +287,19 @@ class Transport:
         if self._state.frame is not None:
             self.scrub.label = self._name()
 
+    def _choose_scene(self, scene: str) -> None:
+        if scene == self._state.settings.scene:
+            return
+        if self._echoes["scene"].has(scene):
+            self._show()
+        else:
+            self._state.choose_scene(scene)
+
     def _choose_finish(self, finish: str) -> None:
         if finish == self._state.settings.finish:
+            return
+        if self._echoes["finish"].has(finish):
+            self._show()
             return
         values = ANSWER
         if finish == SEARCH["finish"]:
@@ -316,9 +327,9 @@ class Transport:
             turn.visible = has_several
         self._pin.color = "default" if state.pinned is None else "primary"
         if state.settings.finish in WATCH.values():
-            self._finish.value = state.settings.finish
+            self._echoes["finish"].show(self._finish, state.settings.finish)
         if self._presented:
-            self._scene.value = state.settings.scene
+            self._echoes["scene"].show(self._scene, state.settings.scene)
 
     def _name(self) -> str:
         """Name of the iterate that is shown, among all."""
@@ -353,8 +364,7 @@ class Transport:
         if is_newest and not self._state.is_over and start <= slider.start <= start / 2:
             start = slider.start
         if (start, back) != (slider.start, slider.value):
-            value = self._echoes.give(back, slider.value)
-            slider.param.update(start=start, value=value)
+            self._echoes["scrub"].show(slider, back, start=start)
 
     @property
     def _last(self) -> int:

@@ -411,7 +411,7 @@ def _written(shape: Sequence[int | None]) -> str:
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
-    """Return whether a shape is a wanted one, in which None is any size."""
+    """Check whether a shape is a wanted one, in which None is any size."""
     if len(shape) != len(wanted):
         return False
     for size, allowed in zip(shape, wanted, strict=True):

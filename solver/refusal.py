@@ -52,5 +52,5 @@ def plain(value: float) -> str:
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Return whether a value is a number, and no truth value."""
+    """Check whether a value is a number, and no truth value."""
     return isinstance(value, Real) and not isinstance(value, bool)

@@ -102,7 +102,7 @@ class TableColumn:
 
     @property
     def is_known(self) -> bool:
-        """Return whether the column names a quantity, or has a unit."""
+        """Check whether the column names a quantity, or has a unit."""
         return bool(self.quantities[0] or self.unit)
 
     @cached_property
@@ -185,7 +185,7 @@ def column_of(number: int, line: int, head: str) -> TableColumn:
 
 
 def _is_unit_behind(word: str) -> bool:
-    """Return whether the last word of a head is a unit, not the letter of a channel."""
+    """Check whether the last word of a head is a unit, not the letter of a channel."""
     return is_spelt_as_unit(word) and (len(word) > 1 or word in SYMBOLS)
 
 
@@ -201,7 +201,7 @@ def quantities_of(title: str, units: str) -> Collection[str]:
 
 
 def are_units(cells: list[str]) -> bool:
-    """Return whether a line is a line of units.
+    """Check whether a line is a line of units.
 
     Symbols of quantities, as t, s and F, are no units. At least half of the cells are
     units, as prose may have an "in".

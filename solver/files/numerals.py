@@ -82,7 +82,7 @@ _PATTERNS = {
 
 
 def is_gap(cell: str) -> bool:
-    """Return whether a cell is a gap: empty, or a word for a missing number."""
+    """Check whether a cell is a gap: empty, or a word for a missing number."""
     return cell.lower() in GAPS or (cell.startswith("*") and not cell.strip("*"))
 
 
@@ -98,7 +98,7 @@ def decimal_signs(cell: str) -> str:
 
 
 def is_numeral(cell: str) -> bool:
-    """Return whether a cell is a number under either decimal sign."""
+    """Check whether a cell is a number under either decimal sign."""
     return _PLAIN.fullmatch(cell) is not None or bool(decimal_signs(cell))
 
 

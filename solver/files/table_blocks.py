@@ -49,7 +49,7 @@ class Block:
 
     @cached_property
     def is_known(self) -> bool:
-        """Return whether a line above may be a head that names a quantity."""
+        """Check whether a line above may be a head that names a quantity."""
         near = self.above[-FARTHEST:]
         return any(len(line.cells) > 1 and _is_known(line.cells) for line in near)
 
@@ -132,7 +132,7 @@ def _heads_among(
 
 
 def _is_comment_or_known(head: Line) -> bool:
-    """Return whether a line is a comment, or names a quantity.
+    """Check whether a line is a comment, or names a quantity.
 
     Words that name no quantity may tell of the test, as in `phase;unloading`.
     """
@@ -140,7 +140,7 @@ def _is_comment_or_known(head: Line) -> bool:
 
 
 def _is_head_of(line: Line, row: Line, separator: str) -> bool:
-    """Return whether a line of words may be the head of rows: a name for each column.
+    """Check whether a line of words may be the head of rows: a name for each column.
 
     Comments, and lines divided by blanks, may be prose: of a head two names are known.
     """
@@ -156,12 +156,12 @@ def _is_head_of(line: Line, row: Line, separator: str) -> bool:
 
 
 def _is_known(words: Sequence[str]) -> bool:
-    """Return whether a name of a line is that of a quantity, or has a unit."""
+    """Check whether a name of a line is that of a quantity, or has a unit."""
     return any(column_of(0, 0, word).is_known for word in words)
 
 
 def _is_first(line: Line, between: Sequence[Line]) -> bool:
-    """Return whether a line may be the first row: `N1,0,7` below a head, or numbers."""
+    """Check whether a line may be the first row: `N1,0,7` below a head, or numbers."""
     if not line.has_words:
         return len(line.cells) > 1
     is_below_head = bool(between) and between[-1].is_text and len(between[-1].cells) > 1
@@ -169,7 +169,7 @@ def _is_first(line: Line, between: Sequence[Line]) -> bool:
 
 
 def _is_next(line: Line, block: Block | None, separator: str) -> bool:
-    """Return whether a line may be a further row.
+    """Check whether a line may be a further row.
 
     A line that begins with a word is a row if the first row does, or if cells are
     divided by a sign, and there are as many as in the first row.
@@ -256,12 +256,12 @@ def _texts_of_head(block: Block, separator: str) -> list[tuple[Line, list[str]]]
 
 
 def _has_numbers(words: Sequence[str]) -> bool:
-    """Return whether a line of words has numbers, other than the unit 1."""
+    """Check whether a line of words has numbers, other than the unit 1."""
     return any(is_numeral(word) and word != "1" for word in words)
 
 
 def _fits(named: Sequence[TableColumn], block: Block, separator: str) -> bool:
-    """Return whether there is a column for each name.
+    """Check whether there is a column for each name.
 
     The last columns may be empty, or have words alone.
     """

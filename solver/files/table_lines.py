@@ -51,7 +51,7 @@ class Line(NamedTuple):
 
     @property
     def has_words(self) -> bool:
-        """Return whether a cell is neither a number nor a gap."""
+        """Check whether a cell is neither a number nor a gap."""
         return True in self.are_words
 
     @property
@@ -65,7 +65,7 @@ class Line(NamedTuple):
 
     @property
     def is_text(self) -> bool:
-        """Return whether the line may be a head, units, as in `s;1;kN`, or a title."""
+        """Check whether the line may be a head, units, as in `s;1;kN`, or a title."""
         if not self.has_words:
             return False
         pairs = list(zip(self.cells, self.are_numbers, strict=True))
@@ -128,7 +128,7 @@ def lines_of_text(data: bytes | str, refuse: Refuse) -> tuple[str, list[Line]]:
 
 
 def _is_empty(line: Line) -> bool:
-    """Return whether a line has no cells, or is a rule between others."""
+    """Check whether a line has no cells, or is a rule between others."""
     return not line.cells or bool(_RULE.fullmatch(line.text))
 
 
@@ -154,7 +154,7 @@ def _separator_of(texts: Sequence[str]) -> str:
 
 
 def _has_two(line: Line) -> bool:
-    """Return whether a line has two numbers, or a number and a gap that is written."""
+    """Check whether a line has two numbers, or a number and a gap that is written."""
     filled = filter(None, line.cells)
     gaps = [cell for cell in filled if is_gap(cell)]
     has_number = line.n_numbers > 0
@@ -177,7 +177,7 @@ def _line(number: int, text: str, separator: str) -> Line:
 
 
 def _is_comment(text: str, first: str, separator: str) -> bool:
-    """Return whether a text begins with the mark of a comment.
+    """Check whether a text begins with the mark of a comment.
 
     `#N/A` is a gap, and a cell that is % alone a unit.
     """
@@ -228,5 +228,5 @@ def up_to_last_filled(cells: list[str]) -> list[str]:
 
 
 def is_blank(separator: str) -> bool:
-    """Return whether columns are divided by blanks."""
+    """Check whether columns are divided by blanks."""
     return separator in (" ", BLANKS)

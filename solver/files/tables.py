@@ -205,7 +205,7 @@ class Table:
         return None
 
     def _has_numbers(self, column: TableColumn) -> bool:
-        """Return whether any cell of a column is a finite number."""
+        """Check whether any cell of a column is a finite number."""
         return bool(np.isfinite(self.numbers[column.number]).any())
 
     def choose(
@@ -415,7 +415,7 @@ def _notation(
 
 
 def _has_doubtful_sign(row: Line) -> bool:
-    """Return whether a cell has a comma, or points that cannot all be decimal."""
+    """Check whether a cell has a comma, or points that cannot all be decimal."""
     return any("," in cell or cell.count(".") > 1 for cell in row.cells)
 
 

@@ -260,7 +260,7 @@ def _factors(text: str) -> Iterable[tuple[int, str, str]]:
 
 
 def is_spelt_as_unit(text: str) -> bool:
-    """Return whether a word is a unit in any spelling (KN, inches), or kg."""
+    """Check whether a word is a unit in any spelling (KN, inches), or kg."""
     symbols = [symbol for _, symbol, _ in _factors(text)]
     letters = [symbol for symbol in symbols if symbol not in "1-"]
     return bool(letters) and all(symbol.lower() in _SPELT for symbol in letters)

@@ -19,7 +19,7 @@ OTHER = "it is no workbook (.xlsx) and no text: save the table as CSV"
 
 
 def is_archive(data: bytes) -> bool:
-    """Return whether a file is an archive, as workbooks are, or an old workbook."""
+    """Check whether a file is an archive, as workbooks are, or an old workbook."""
     return data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0"))
 
 

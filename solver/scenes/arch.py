@@ -187,7 +187,7 @@ class ArchSettings(PlaneSettings):
 
     @property
     def has_live(self) -> bool:
-        """Return whether a load acts on the back."""
+        """Check whether a load acts on the back."""
         return self.acts("live_load")
 
     @property

@@ -395,7 +395,7 @@ class BarSettings(Settings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Return whether an end is pulled or moved."""
+        """Check whether an end is pulled or moved."""
         acting = {name for name in self.paths if self.acts(name)}
         driven = [*PATHS["left"].values(), *PATHS["right"].values()]
         return bool(acting.intersection(driven))

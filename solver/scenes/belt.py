@@ -11,7 +11,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.plane.band import PULL, TAIL, Band, Guide
+from solver.discrete.plane.band import PULL, TAIL, Band, GuideCurve
 from solver.discrete.plane.body import Held, Load
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
@@ -217,7 +217,7 @@ class BeltSettings(PlaneSettings):
 
     @property
     def is_duct(self) -> bool:
-        """Return whether the guide is the duct of a tendon."""
+        """Check whether the guide is the duct of a tendon."""
         return bool(self.guide == "duct")
 
     @property
@@ -239,12 +239,12 @@ class BeltSettings(PlaneSettings):
         return int(self.elements) + 3
 
     @cached_property
-    def curve(self) -> Guide:
+    def curve(self) -> GuideCurve:
         """The guide: the pulled end of a drum is level, a duct lies evenly."""
         if self.is_duct:
             radius = self.length / self.angle
-            return Guide(self.angle, radius, self.elements, -0.5 * self.angle)
-        return Guide(self.angle, self.drum_radius, self.elements)
+            return GuideCurve(self.angle, radius, self.elements, -0.5 * self.angle)
+        return GuideCurve(self.angle, self.drum_radius, self.elements)
 
     @property
     def capstan(self) -> Capstan:
@@ -388,6 +388,9 @@ class BeltSettings(PlaneSettings):
             if turns == 1.0:
                 where = "lies once round a drum"
         path = self.path("pull_load")
+        is_tail_alone = self.acts("tail_load") and not np.any(path)
+        if (self.driven, self.tail) == ("pulled", "pulled") and is_tail_alone:
+            return f"{band} {where}; both ends are pulled alike."
         done = shared.acting(
             path, "pulled", "slackened", "pulled to and fro", "{}, and let go"
         )

@@ -138,7 +138,7 @@ class BundleSettings(PlaneSettings):
 
     @property
     def has_plate(self) -> bool:
-        """Return whether a plate presses on the highest wires."""
+        """Check whether a plate presses on the highest wires."""
         return self.acts("press_load")
 
     @cached_property

@@ -92,7 +92,7 @@ def _grown(bar: Rods, slip_factor: SlipFactor) -> Iterator[ExactCurve]:
 
 
 def _is_even(bar: Rods) -> bool:
-    """Return whether the bar is uniform, and only a force at its end moves it."""
+    """Check whether the bar is uniform, and only a force at its end moves it."""
     is_uniform = (
         bar.section is None and bar.strength.ndim == 1 and not np.ptp(bar.strength)
     )
@@ -100,7 +100,7 @@ def _is_even(bar: Rods) -> bool:
 
 
 def _is_coulombs(body: Stack) -> bool:
-    """Return whether friction on the support is Coulomb's, mu N, with one mu."""
+    """Check whether friction on the support is Coulomb's, mu N, with one mu."""
     assert body.support is not None
     return body.friction_law == FrictionLaw() and not np.ptp(body.support.friction)
 

@@ -187,7 +187,7 @@ class LayersSettings(RectangleSettings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Return whether the loop is a force's, not a moment's over a rotation."""
+        """Check whether the loop is a force's, not a moment's over a rotation."""
         return bool(self.bending != "moment")
 
     def check_together(self) -> None:

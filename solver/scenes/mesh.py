@@ -17,7 +17,7 @@ from solver.discrete.plane.named_mesh_refused import check_named
 from solver.discrete.problem import Problem
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import from_text, read_example
-from solver.scenes.named_sides import ALLOWED, Sides, deeds_of, taken_apart
+from solver.scenes.named_sides import ALLOWED, MeshSides, deeds_of, taken_apart
 from solver.scenes.plane import PlaneSettings, RectangleSettings
 from solver.settings.definitions import (
     BODY,
@@ -217,7 +217,7 @@ class MeshSettings(PlaneSettings):
         return list(chain.from_iterable(self.deeds.values()))
 
     def has_deed(self, *verbs: str) -> bool:
-        """Return whether any side is "moved", "pulled" or "pressed"."""
+        """Check whether any side is "moved", "pulled" or "pressed"."""
         try:
             every = self._every_deed
         except RefusedError:
@@ -314,7 +314,7 @@ class MeshSettings(PlaneSettings):
     def bodies(self) -> Bodies:
         """The bodies; one metre thick."""
         bodies = list(self._bodies())
-        sides = Sides(self.parts, self.deeds)
+        sides = MeshSides(self.parts, self.deeds)
         drive = np.zeros(self.n_instants)
         if self.has_deed("moved", "pulled"):
             drive = self.path("load")

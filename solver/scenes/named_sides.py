@@ -100,7 +100,7 @@ class _Acted(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Sides:
+class MeshSides:
     """Sides of a mesh, and the deeds on them by the names of their lines."""
 
     mesh: NamedMesh

@@ -104,7 +104,7 @@ class PlaneSettings(Settings):
 
     @property
     def is_rough(self) -> bool:
-        """Return whether there is any friction."""
+        """Check whether there is any friction."""
         return bool(self.friction or self.law.cohesion)
 
     @property

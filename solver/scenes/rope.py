@@ -191,7 +191,7 @@ class RopeSettings(Settings):
 
     @property
     def is_clamped(self) -> bool:
-        """Return whether the curvature falls away from a clamp."""
+        """Check whether the curvature falls away from a clamp."""
         return bool(self.bending == "clamp")
 
     @property

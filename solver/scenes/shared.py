@@ -330,5 +330,5 @@ def listed(parts: Sequence[str]) -> str:
 
 
 def is_steel(young: float) -> bool:
-    """Return whether Young's modulus, Pa, is about that of steel."""
+    """Check whether Young's modulus, Pa, is about that of steel."""
     return 190e9 <= young <= 220e9

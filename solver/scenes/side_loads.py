@@ -160,11 +160,11 @@ class SideLoad:
         return "x" if is_along_x else "y"
 
     def _is_given(self, settings: Any) -> bool:
-        """Return whether anything but rest is given along the side."""
+        """Check whether anything but rest is given along the side."""
         return getattr(settings, self.side) not in AT_REST
 
     def _is_prescribed(self, settings: Any) -> bool:
-        """Return whether the component is a displacement."""
+        """Check whether the component is a displacement."""
         kind = getattr(settings, self.side)
         return bool(getattr(PRESCRIBED[kind], self.component))
 

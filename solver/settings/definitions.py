@@ -130,7 +130,7 @@ class CurveParameter(Parameter):
 
     @property
     def is_path(self) -> bool:
-        """Return whether rows are an abscissa, which increases, and one value."""
+        """Check whether rows are an abscissa, which increases, and one value."""
         return len(self.columns) == 2
 
 
@@ -182,7 +182,7 @@ def title_of(definition: Parameter) -> str:
 
 
 def is_logarithmic(definition: Any) -> bool:
-    """Return whether a slider is logarithmic: its range is far more than a decade."""
+    """Check whether a slider is logarithmic: its range is far more than a decade."""
     low, high = definition.softbounds
     ratio = 20
     if isinstance(definition, param.Integer):

@@ -109,12 +109,12 @@ class FrictionSettings(MethodSettings):
 
     @property
     def is_general(self) -> bool:
-        """Return whether all parts of the friction law are given."""
+        """Check whether all parts of the friction law are given."""
         return bool(self.friction_law == "general")
 
     @property
     def is_linear_in_slip(self) -> bool:
-        """Return whether friction changes with slip by a ratio over a length."""
+        """Check whether friction changes with slip by a ratio over a length."""
         by_ratio = self.is_general and self.strength == "linear"
         return by_ratio or bool(self.friction_law == "slip-dependent")
 

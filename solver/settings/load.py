@@ -120,7 +120,7 @@ class LoadSettings(FrictionSettings):
         return float(getattr(self, name))
 
     def acts(self, path: str) -> bool:
-        """Return whether a path is a table, or a preset of a value that is not 0."""
+        """Check whether a path is a table, or a preset of a value that is not 0."""
         return not isinstance(getattr(self, path), str) or self.size_of(path) != 0.0
 
     def size_or_table(self, path: str) -> str:
@@ -147,7 +147,7 @@ class LoadSettings(FrictionSettings):
 
     @property
     def is_repeatable(self) -> bool:
-        """Return whether any load path is a preset that is periodic."""
+        """Check whether any load path is a preset that is periodic."""
         for name in self.paths:
             preset = self.preset(name)
             if preset is not None and preset.repeats is not None:

@@ -22,7 +22,7 @@ STOP = SettingGroup("Stop")
 
 
 def _on_modes(settings: MethodSettings) -> bool:
-    """Return whether the linear stage finds a sum of modes (PGD)."""
+    """Check whether the linear stage finds a sum of modes (PGD)."""
     return bool(settings.linear_stage == "pgd")
 
 
@@ -326,7 +326,7 @@ class MethodSettings(param.Parameterized):
         return SettingError(name, getattr(self, name), allowed, remedy)
 
     def applies(self, name: str) -> bool:
-        """Return whether a setting changes anything under the present values."""
+        """Check whether a setting changes anything under the present values."""
         record = about(self.definitions()[name])
         if record.path and not isinstance(getattr(self, record.path), str):
             return False

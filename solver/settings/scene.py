@@ -120,7 +120,7 @@ class Settings(LoadSettings):
 
     @property
     def loop_is_over_displacement(self) -> bool:
-        """Return whether the loop of the scene is a force over a displacement, m."""
+        """Check whether the loop of the scene is a force over a displacement, m."""
         return True
 
     @property
@@ -129,7 +129,7 @@ class Settings(LoadSettings):
         return self.n_bodies - 1
 
     def has(self, name: str) -> bool:
-        """Return whether the scene has a setting that applies and is not 0."""
+        """Check whether the scene has a setting that applies and is not 0."""
         return bool(self.values().get(name)) and self.applies(name)
 
     def changed_meanings(self) -> Mapping[str, str]:

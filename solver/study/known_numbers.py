@@ -331,7 +331,8 @@ def corbelled_wall(answer: SolvedCase) -> Iterator[Number]:
 
     Each course reaches over the gap by half a brick at both ends, held down by what
     presses on it: n bricks of the lowest course fall with the ground, n - 1 of the next
-    one, and so on.
+    one, and so on, as long as the arch passes above them: in four courses over three
+    bricks it passes through the tip of this triangle, and holds a brick.
     """
     settings = answer.settings
     _, brick = _forces(answer)

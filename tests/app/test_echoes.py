@@ -2,29 +2,42 @@
 
 from __future__ import annotations
 
-import app.browser
-from app.controls import SettingControl
+import pytest
+
+from app.controls import Controls, SettingControl
 from app.state import PageState, default_settings
 
 
-def changed_twice() -> tuple[PageState, SettingControl]:
-    """Page whose peak load was 1000 N and is 1100 N, and the control of the peak."""
+def changed_twice(name: str, *values: object) -> tuple[PageState, SettingControl]:
+    """Page on which a setting had two values in turn, and the control of it."""
     state = PageState(default_settings("bar"))
-    control = SettingControl("peak", state)
-    for peak in (1000.0, 1100.0):
-        state.change(peak=peak)
+    control = SettingControl(name, state)
+    for value in values:
+        state.change(**{name: value})
         control.update()
     return state, control
 
 
-def test_a_value_that_a_field_showed_on_the_way_changes_nothing_later() -> None:
-    state, control = changed_twice()
-    control.field.value = "1000"
-    assert state.settings.values()["peak"] == 1100.0
+@pytest.mark.parametrize(
+    ("name", "values", "echo"),
+    [
+        ("peak", (1000.0, 1100.0), "1000"),
+        ("load", ("cycles", "ramp"), "cycles"),
+        ("multiscale", (False, True), False),
+    ],
+)
+def test_a_value_that_a_field_showed_on_the_way_changes_nothing_later(
+    name: str, values: tuple[object, object], echo: object
+) -> None:
+    state, control = changed_twice(name, *values)
+    present = control.field.value
+    control.field.value = echo
+    assert state.settings.values()[name] == values[1]
+    assert control.field.value == present
 
 
 def test_a_position_that_a_slider_showed_on_the_way_changes_nothing_later() -> None:
-    state, control = changed_twice()
+    state, control = changed_twice("peak", 1000.0, 1100.0)
     control.slider.value = 1000.0
     assert state.settings.values()["peak"] == 1100.0
     assert control.slider.value == 1100.0
@@ -32,8 +45,18 @@ def test_a_position_that_a_slider_showed_on_the_way_changes_nothing_later() -> N
     assert state.settings.values()["peak"] == 1300.0
 
 
-def test_later_the_same_value_is_typed_by_hand(monkeypatch) -> None:
-    monkeypatch.setattr(app.browser, "LASTS", 0.0)
-    state, control = changed_twice()
+def test_the_scene_that_was_left_meanwhile_is_not_chosen_again() -> None:
+    state = PageState(default_settings("bar"))
+    controls = Controls(state)
+    for scene in ("block", "bar"):
+        state.choose_scene(scene)
+    controls.view[0].value = "block"
+    assert state.settings.scene == "bar"
+    assert controls.view[0].value == "bar"
+
+
+def test_the_same_value_is_a_persons_once_the_browser_has_shown_all() -> None:
+    state, control = changed_twice("peak", 1000.0, 1100.0)
+    state.shown = state.given
     control.field.value = "1000"
     assert state.settings.values()["peak"] == 1000.0

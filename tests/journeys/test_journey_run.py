@@ -27,6 +27,8 @@ from solver.scenes import CATALOGUE
 
 HIGH = {"block", "fault", "incline", "arch", "belt", "bundle"}
 """Scenes whose bodies are not long."""
+BESIDE = "(element) => element.scrollWidth - element.clientWidth"
+"""Width by which an element can be scrolled sideways, px."""
 WHOLE = """() => {
   const models = Bokeh.documents.flatMap((document) => [...document.all_models])
   return models.every((model) => {
@@ -127,6 +129,7 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
         told.append(sentence.inner_text())
         wait_for(lambda scene=scene: has_plots_beside(page) == (scene in HIGH))
         assert min(heights_of_plots(page)) >= 200.0
+        assert page.locator(".live").evaluate(BESIDE) == 0
         page.wait_for_function(WHOLE)
         page.wait_for_function(PIECES)
     assert len(set(told)) == 1 + len(CATALOGUE)

@@ -47,6 +47,9 @@ def words(scene: str, changes: dict[str, Any]) -> str:
             "4 steel layers, held at the left, are pressed together and rub; ",
         ),
         ("layers", {"layers": 2, "pull": 1e6}, "bent up and down, and pulled."),
+        ("belt", {}, "one end is pulled, and a force pulls at the other."),
+        ("belt", {"pull": 0.0}, "both ends are pulled alike."),
+        ("belt", {"pull": 0.0, "tail_force": 0.0}, "one end is not pulled, and"),
     ],
 )
 def test_a_scene_says_what_it_is(

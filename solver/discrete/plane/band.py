@@ -29,7 +29,7 @@ slides turns on the arc and not on the spans.
 
 
 @dataclass(frozen=True)
-class Guide:
+class GuideCurve:
     """A circular arc, and lines of a band on it that goes on straight beyond its ends.
 
     Attributes
@@ -135,7 +135,7 @@ class Band(Bodies):
         The guide.
     """
 
-    guide: Guide
+    guide: GuideCurve
 
     @property
     def axes(self) -> Axes:

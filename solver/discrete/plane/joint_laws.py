@@ -18,7 +18,7 @@ from solver.laws.friction import compliance_of
 from solver.laws.stiffness import of_whole_mesh
 
 
-class _Pairs(NamedTuple):
+class _JointPairs(NamedTuple):
     """Pairs of nodes of joints, joint by joint and piece by piece.
 
     Attributes
@@ -43,7 +43,7 @@ class _Pairs(NamedTuple):
     weights: Array
 
 
-def _pairs_of(cut: CutBodies, joints: Sequence[int]) -> _Pairs:
+def _pairs_of(cut: CutBodies, joints: Sequence[int]) -> _JointPairs:
     """Pairs of nodes of joints, by the numbers of these."""
     owners = np.array([piece.joint for piece in cut.pieces])
     numbers = np.flatnonzero(np.isin(owners, joints)).tolist()
@@ -53,7 +53,7 @@ def _pairs_of(cut: CutBodies, joints: Sequence[int]) -> _Pairs:
     sizes = [len(cut.structure.joints[number].nodes) for number in joints]
     firsts = np.cumsum([0, *sizes])
     places = np.concatenate([piece.places for piece in pieces])
-    return _Pairs(
+    return _JointPairs(
         joints=joints,
         pieces=numbers,
         joint_of_pairs=joint_of_pairs,
@@ -90,7 +90,7 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
 
 
 def _normal_law(
-    cut: CutBodies, component: Component, pairs: _Pairs, gap: Array
+    cut: CutBodies, component: Component, pairs: _JointPairs, gap: Array
 ) -> Unilateral:
     """Unilateral law across joints, whose opening is `gap`, (n_pairs,), m."""
     scales = cut.length, cut.young * cut.length
@@ -103,7 +103,7 @@ def _normal_law(
 
 
 def _friction(
-    cut: CutBodies, component: Component, pairs: _Pairs, gap: Array, mu: Array
+    cut: CutBodies, component: Component, pairs: _JointPairs, gap: Array, mu: Array
 ) -> Friction:
     """Friction law along joints of opening `gap`, m, and coefficient mu, (n_pairs,)."""
     scales = cut.length, cut.young * cut.length
@@ -163,7 +163,7 @@ def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Compo
 
 
 def _stiffness_beside(
-    cut: CutBodies, pairs: _Pairs, tangent: Component, normal: Component
+    cut: CutBodies, pairs: _JointPairs, tangent: Component, normal: Component
 ) -> NodalStiffness:
     """Stiffness of the bodies at joints, for their search direction.
 
@@ -192,18 +192,18 @@ def _stiffness_beside(
     return NodalStiffness(whole, local, squeezed)
 
 
-def _bodies(cut: CutBodies, pairs: _Pairs, side: int) -> list[int]:
+def _bodies(cut: CutBodies, pairs: _JointPairs, side: int) -> list[int]:
     """Numbers of the bodies on a side of joints, 0 above and 1 below."""
     return [cut.structure.joints[number].sides[side][0] for number in pairs.joints]
 
 
-def _is_mesh(cut: CutBodies, pairs: _Pairs, side: int) -> Flags:
+def _is_mesh(cut: CutBodies, pairs: _JointPairs, side: int) -> Flags:
     """Check which bodies on a side of joints are meshes, (n_joints,)."""
     return np.array([cut.is_mesh(number) for number in _bodies(cut, pairs, side)])
 
 
 def _whole_joints(
-    cut: CutBodies, pairs: _Pairs, side: int, lengths: Array, on_support: bool
+    cut: CutBodies, pairs: _JointPairs, side: int, lengths: Array, on_support: bool
 ) -> tuple[Array, Array]:
     """Stiffness of bodies on a side of whole joints: as a whole, and squeezed.
 
