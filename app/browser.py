@@ -311,3 +311,45 @@ class Echoes:
         """Forget the values that the browser has shown."""
         shown = self._state.shown
         self._given = [each for each in self._given if each[0] > shown]
+
+
+def linked(
+    widget: Any,
+    state: PageState,
+    present: Callable[[], Any],
+    choose: Callable[[Any], object],
+) -> Callable[[], None]:
+    """Link a widget to a value that it shows, and that a person chooses by it.
+
+    The present value is None where the widget has no such choice. Returns the function
+    that shows the present value.
+    """
+    echoes = Echoes(state)
+
+    def show() -> None:
+        value = present()
+        if value is not None:
+            echoes.show(widget, value)
+
+    def take(event: Any) -> None:
+        # The page itself sets the widget, too.
+        if event.new == present():
+            return
+        if echoes.has(event.new):
+            show()
+        else:
+            choose(event.new)
+
+    widget.param.watch(take, "value")
+    return show
+
+
+def linked_to(state: PageState, name: str, widget: Any) -> Any:
+    """Link a widget to a value of the state, by its name, and return the widget."""
+
+    def choose(value: Any) -> None:
+        state.param.update(**{name: value})
+
+    show = linked(widget, state, lambda: getattr(state, name), choose)
+    state.param.watch(lambda event: show(), name)
+    return widget

@@ -10,7 +10,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from app.browser import Echoes, fade_first
+from app.browser import Echoes, fade_first, linked
 from app.files.opener import files_panel
 from app.files.points import CurveDialog
 from app.state import PageState
@@ -304,7 +304,6 @@ class Controls:
 
     def __init__(self, state: PageState) -> None:
         self._state = state
-        self._echoes = Echoes(state)
         self._controls: list[SettingControl] = []
         # Toggle buttons have no pictures of their own: rules of style give each of them
         # one.
@@ -321,7 +320,9 @@ class Controls:
             sx=pictures,
             **looks("pictures"),
         )
-        self._scene.param.watch(lambda event: self._choose_scene(event.new), "value")
+        self._show_scene = linked(
+            self._scene, state, lambda: state.settings.scene, self._choose_scene
+        )
         self._chief = pn.Column(margin=0)
         self._groups = pmui.Accordion(
             margin=(10, 0),
@@ -340,13 +341,7 @@ class Controls:
         self.update()
 
     def _choose_scene(self, scene: str) -> None:
-        # The page itself sets the widget, too.
-        if scene == self._state.settings.scene:
-            return
-        if self._echoes.has(scene):
-            self._echoes.show(self._scene, self._state.settings.scene)
-        else:
-            fade_first(self._state, partial(self._state.choose_scene, scene))
+        fade_first(self._state, partial(self._state.choose_scene, scene))
 
     def update(self) -> None:
         """Show the present values.
@@ -363,7 +358,7 @@ class Controls:
     def _build(self) -> None:
         settings = self._state.settings
         self._built = settings.scene
-        self._echoes.show(self._scene, settings.scene)
+        self._show_scene()
         self._scene.label = settings.title
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]

@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
-from app.browser import Browser
+from app.browser import Browser, linked_to
 from app.class_dialog import ClassDialog
 from app.classroom import ClassMember, begin_with_class
 from app.controls import Controls
@@ -197,13 +197,14 @@ class Page:
             "Take away": ("download", lambda event: self._take_away()),
             "Keys and words (?)": ("help_outline", lambda event: self._help()),
         }
-        tabs = pmui.RadioButtonGroup.from_param(
-            self.state.param.tab,
-            label="",
+        tabs = pmui.RadioButtonGroup(
+            options=TABS,
+            value=self.state.tab,
             size="small",
             margin=(7, 8, 0, 8),
             **looks("in-header"),
         )
+        linked_to(self.state, "tab", tabs)
         space = pn.layout.HSpacer()
         look = {"margin": 0, **looks("in-header")}
         buttons = [

@@ -9,7 +9,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from app.browser import Echoes
+from app.browser import Echoes, linked, linked_to
 from app.frame import Selection
 from app.server import PAGES
 from app.state import ANSWER, PACES, SEARCH, PageState, known
@@ -58,7 +58,7 @@ class Transport:
         self._is_lively = False
         self._is_touched = self._is_guided or state.selection != Selection()
         self._moved_at = -math.inf
-        self._echoes = {name: Echoes(state) for name in ("scrub", "finish", "scene")}
+        self._echoes = Echoes(state)
         self._run = _button("pause", "Run or pause (space)", self._toggle)
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
@@ -105,7 +105,7 @@ class Transport:
     def _make_presented(self) -> list[Any]:
         """Widgets of the view for a projector: the scene, and the way out."""
         state = self._state
-        self._scene = pmui.Select(
+        scene = pmui.Select(
             label="Scene",
             options={name.capitalize(): name for name in CATALOGUE},
             value=state.settings.scene,
@@ -114,16 +114,18 @@ class Transport:
             margin=(6, 4),
             **looks("large"),
         )
-        self._scene.param.watch(lambda event: self._choose_scene(event.new), "value")
+        self._show_scene = linked(
+            scene, state, lambda: state.settings.scene, state.choose_scene
+        )
 
         def leave() -> None:
             state.view = "page"
 
-        return [self._scene, _button("close", "Back to the page (p)", leave)]
+        return [scene, _button("close", "Back to the page (p)", leave)]
 
     def _make_choices(self) -> list[Any]:
         """Widgets to choose search or answer, and the pace."""
-        self._finish = pmui.RadioButtonGroup(
+        finish = pmui.RadioButtonGroup(
             options=WATCH,
             value="accuracy",
             size="small",
@@ -131,15 +133,23 @@ class Transport:
             description="Watch the search from nothing, or have the answer at once.",
             **looks("words"),
         )
-        self._finish.param.watch(lambda event: self._choose_finish(event.new), "value")
-        pace = pmui.Select.from_param(
-            self._state.param.pace,
+
+        def present() -> str | None:
+            # A run may end in other ways, of which there is no button.
+            chosen = self._state.settings.finish
+            return chosen if chosen in WATCH.values() else None
+
+        self._show_finish = linked(finish, self._state, present, self._choose_finish)
+        pace = pmui.Select(
+            label="Pace",
             options=list(PACES),
+            value=self._state.pace,
+            description="Iterations a second.",
             size="small",
             width=136,
             margin=(6, 4),
         )
-        return [self._finish, pace]
+        return [finish, linked_to(self._state, "pace", pace)]
 
     def _make_scrub(self) -> pmui.IntSlider:
         """The slider that goes back through the iterations.
@@ -277,7 +287,7 @@ class Transport:
     def _seek(self, back: int) -> None:
         """Show the iterate to which a person moved the slider, from the newest back."""
         # The browser sends back what the page had set: nobody moved the slider.
-        if self._echoes["scrub"].has(back):
+        if self._echoes.has(back):
             return
         self._moved_at = time.monotonic()
         iteration = None
@@ -287,20 +297,7 @@ class Transport:
         if self._state.frame is not None:
             self.scrub.label = self._name()
 
-    def _choose_scene(self, scene: str) -> None:
-        if scene == self._state.settings.scene:
-            return
-        if self._echoes["scene"].has(scene):
-            self._show()
-        else:
-            self._state.choose_scene(scene)
-
     def _choose_finish(self, finish: str) -> None:
-        if finish == self._state.settings.finish:
-            return
-        if self._echoes["finish"].has(finish):
-            self._show()
-            return
         values = ANSWER
         if finish == SEARCH["finish"]:
             values = SEARCH
@@ -326,10 +323,9 @@ class Transport:
         for turn in self._turns:
             turn.visible = has_several
         self._pin.color = "default" if state.pinned is None else "primary"
-        if state.settings.finish in WATCH.values():
-            self._echoes["finish"].show(self._finish, state.settings.finish)
+        self._show_finish()
         if self._presented:
-            self._echoes["scene"].show(self._scene, state.settings.scene)
+            self._show_scene()
 
     def _name(self) -> str:
         """Name of the iterate that is shown, among all."""
@@ -364,7 +360,7 @@ class Transport:
         if is_newest and not self._state.is_over and start <= slider.start <= start / 2:
             start = slider.start
         if (start, back) != (slider.start, slider.value):
-            self._echoes["scrub"].show(slider, back, start=start)
+            self._echoes.show(slider, back, start=start)
 
     @property
     def _last(self) -> int:

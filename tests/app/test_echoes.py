@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import panel_material_ui as pmui
 import pytest
 
+from app.browser import linked_to
 from app.controls import Controls, SettingControl
-from app.state import PageState, default_settings
+from app.state import TABS, PageState, default_settings
 
 
 def changed_twice(name: str, *values: object) -> tuple[PageState, SettingControl]:
@@ -60,3 +62,14 @@ def test_the_same_value_is_a_persons_once_the_browser_has_shown_all() -> None:
     state.shown = state.given
     control.field.value = "1000"
     assert state.settings.values()["peak"] == 1000.0
+
+
+def test_a_tab_that_the_page_left_meanwhile_is_not_turned_to_again() -> None:
+    state = PageState(default_settings("bar"))
+    tabs = linked_to(state, "tab", pmui.RadioButtonGroup(options=TABS, value="Live"))
+    state.tab = "Fit"
+    state.tab = "Live"
+    tabs.value = "Fit"
+    assert (state.tab, tabs.value) == ("Live", "Live")
+    tabs.value = "Reports"
+    assert state.tab == "Reports"
