@@ -60,7 +60,7 @@ class ArchSettings(PlaneSettings):
         load="M41 29H47M45 27L47 29L45 31",
     )
     CHIEF = ("abutment_load", "displacement", "live", "place", "thickness", "span")
-    ALSO_CHIEF = ("friction", "voussoirs", "multiscale")
+    ALSO_CHIEF = ("centres", "friction", "voussoirs", "multiscale")
     GROWS = ("voussoirs",)
     SMALL: ClassVar = {"voussoirs": 7, "elements": 2, "instants": 13}
     has_joints = True
@@ -147,9 +147,19 @@ class ArchSettings(PlaneSettings):
         ROUND,
         (1.0, ROUND),
         (60.0, ROUND),
-        "Angle of the arch about its centre; 180° is a semicircle.",
+        "Angle of the arch about its centre; 180° is a semicircle. Of a pointed arch, "
+        "twice the angle from upright to the joints on the abutments.",
         title="Angle of the arch",
         unit="°",
+    )
+    centres = BODY.quantity(
+        0.0,
+        (0.0, 10.0),
+        (0.0, 2.0),
+        "Distance between the centres of the left and the right half, over the clear "
+        "width between the abutments. 0: a round arch; more: a pointed one; 1: an "
+        "equilateral one, of 180°.",
+        title="Centres apart over clear width",
     )
     length = shared.size(
         1.0, (0.5, 10.0), "Mean radius R", "Radius of the middle of the ring.", BODY
@@ -204,6 +214,7 @@ class ArchSettings(PlaneSettings):
             radius=self.length,
             thickness=self.thickness * self.length,
             elements=self.elements,
+            offset=self.statics.offset * self.length,
         )
 
     @property
@@ -256,7 +267,7 @@ class ArchSettings(PlaneSettings):
     @property
     def _filled(self) -> Array:
         """Weight of the fill on the back, (voussoirs, n_nodes, n_instants), N."""
-        columns = self.ring.under_fill(self.ring.outer + self.cover)
+        columns = self.ring.under_fill(self.ring.crown + self.cover)
         return np.multiply.outer(self.fill * columns, self._hold)
 
     @property
@@ -270,7 +281,7 @@ class ArchSettings(PlaneSettings):
         ring = self.ring
         backs = ring.backs().reshape(-1, 2)
         shown = np.linspace(0, len(backs) - 1, SHOWN).round().astype(np.intp)
-        heights = ring.outer + self.cover - backs[shown, 1]
+        heights = ring.crown + self.cover - backs[shown, 1]
         pressures = np.multiply.outer(self.fill * heights, self._hold)
         yield Act("top fill", "σ", backs[shown], DOWN, pressures, "Pa")
         if self.has_live:
@@ -314,10 +325,11 @@ class ArchSettings(PlaneSettings):
         return VoussoirArch(
             voussoirs=self.voussoirs,
             thickness=self.thickness,
-            span=self.ring.span,
+            span=float(np.radians(self.span)),
             friction=self.friction,
             fill=fill,
             cover=self.cover / self.length,
+            centres=self.centres,
         )
 
     def sentence(self) -> str:
@@ -325,6 +337,8 @@ class ArchSettings(PlaneSettings):
         kind = "A segment of an arch"
         if self.span == ROUND:
             kind = "A round arch"
+        if self.centres:
+            kind = "A pointed arch"
         touch = "slide freely on"
         if self.is_rough:
             touch = "rub on"

@@ -59,6 +59,48 @@ def test_a_semicircle_of_smooth_joints_never_stands():
     assert VoussoirArch(15, 0.1).least_friction() is None
 
 
+@pytest.mark.parametrize("span", [np.pi, 2.0])
+@pytest.mark.parametrize("centres", [0.3, 1.0, 3.0])
+def test_a_pointed_arch_thrusts_at_most_as_its_half_leans_on_the_other(span, centres):
+    """The half turns about its outer foot, and presses at the lowest of the crown."""
+    arch = VoussoirArch(30, 0.15, span, fill=0.4, cover=0.2, centres=centres)
+    inner, outer = arch.radii
+    offset = arch.offset
+    foot = 0.5 * span
+    clear = 2.0 * (inner * np.sin(foot) - offset)
+    assert 2.0 * offset == pytest.approx(centres * clear)
+
+    def width(radius):
+        return radius * (foot - np.arcsin(offset / radius))
+
+    def moment(radius):
+        # About the centre, of an arc from the crown on.
+        return radius**2 * (np.sqrt(1.0 - (offset / radius) ** 2) - np.cos(foot))
+
+    def column(along):
+        highest = np.sqrt(outer**2 - offset**2) + 0.2
+        return 0.4 * (highest - np.sqrt(outer**2 - along**2))
+
+    ends = offset, outer * np.sin(foot)
+    filled = quad(column, *ends)[0]
+    half = quad(width, inner, outer)[0] + filled
+    assert arch.weight == pytest.approx(2.0 * half)
+    turning = quad(moment, inner, outer)[0]
+    turning += quad(lambda along: along * column(along), *ends)[0]
+    lever = outer * np.sin(foot) * half - turning
+    rise = np.sqrt(inner**2 - offset**2) - outer * np.cos(foot)
+    _, largest = arch.thrusts()
+    assert largest == pytest.approx(lever / rise / arch.weight)
+
+
+def test_a_more_pointed_ring_may_be_thinner():
+    thinnest = [
+        VoussoirArch(400, 0.15, centres=centres).thinnest()
+        for centres in (0.0, 0.25, 0.5, 1.0)
+    ]
+    assert np.all(np.diff(thinnest) < 0.0)
+
+
 def test_the_fill_weighs_as_its_columns_do():
     arch = VoussoirArch(16, 0.2, 2.0, fill=0.7, cover=0.3)
     outer = 1.1

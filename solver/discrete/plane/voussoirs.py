@@ -28,7 +28,12 @@ RIGHT = "right abutment"
 
 @dataclass(frozen=True)
 class Ring:
-    """Equal voussoirs between radial joints, about a centre at the origin.
+    """Voussoirs between radial joints, about a centre at the origin.
+
+    Halves of a pointed arch have radial joints about centres of their own, at the height
+    of the origin, each beyond the crown; where they meet, a joint is upright. Voussoirs
+    are equal, but those at the crown of a pointed arch have only the length of the inner
+    side in common with the others.
 
     Attributes
     ----------
@@ -40,6 +45,8 @@ class Ring:
         Mean radius and thickness, m.
     elements
         Number of elements across the ring.
+    offset
+        Distance of the centre of each half beyond the crown, m; 0 is a round arch.
     """
 
     voussoirs: int
@@ -47,16 +54,30 @@ class Ring:
     radius: float
     thickness: float
     elements: int
+    offset: float = 0.0
 
     @property
     def outer(self) -> float:
         """Outer radius, m."""
         return self.radius + 0.5 * self.thickness
 
+    @property
+    def crown(self) -> float:
+        """Height of the outer side at the crown above the centres, m."""
+        return float(np.sqrt(self.outer**2 - self.offset**2))
+
+    @property
+    def half(self) -> float:
+        """Angle of the inner side of a half about its centre, rad."""
+        inner = self.outer - self.thickness
+        return float(0.5 * self.span - np.arcsin(self.offset / inner))
+
     @cached_property
     def angles(self) -> Array:
-        """Clockwise angles of the joints from the crown, (voussoirs + 1,), rad."""
-        return np.linspace(-0.5 * self.span, 0.5 * self.span, self.voussoirs + 1)
+        """Clockwise angles of the joints from upright, (voussoirs + 1,), rad."""
+        beside = np.linspace(-self.half, self.half, self.voussoirs + 1)
+        sides = np.sign(np.arange(-self.voussoirs, self.voussoirs + 1, 2))
+        return beside + sides * (0.5 * self.span - self.half)
 
     @property
     def joint_names(self) -> list[str]:
@@ -74,17 +95,80 @@ class Ring:
     @cached_property
     def along(self) -> int:
         """Number of elements of a voussoir along the ring, about square ones."""
-        arc = self.radius * self.span / self.voussoirs
-        return max(round(self.elements * arc / self.thickness), 1)
+        arc = 2.0 * self.radius * self.half / self.voussoirs
+        along = max(round(self.elements * arc / self.thickness), 1)
+        if self.offset and self.voussoirs % 2:
+            # The point of the arch is in the middle of a voussoir.
+            along += along % 2
+        return along
+
+    @property
+    def _radii(self) -> Array:
+        """Radii of the nodes at corners of elements, (elements + 1,), m."""
+        return self.outer - self.thickness * np.linspace(1.0, 0.0, self.elements + 1)
 
     @cached_property
     def wedge(self) -> Mesh:
-        """A voussoir at the crown, about the centre of the ring."""
-        half = 0.5 * self.span / self.voussoirs
+        """A voussoir of a round arch at the crown, about its centre."""
+        half = self.half / self.voussoirs
         angles = np.linspace(-half, half, self.along + 1)
-        radii = self.outer - self.thickness * np.linspace(1.0, 0.0, self.elements + 1)
         directions = np.stack([np.sin(angles), np.cos(angles)], axis=1)
-        return _mapped(radii[:, None, None] * directions)
+        return _mapped(self._radii[:, None, None] * directions)
+
+    def _beside_crown(self, columns: int) -> Array:
+        """Corners from the crown to the first joint on its right, m.
+
+        Of a number of columns of elements, shape (elements + 1, columns + 1, 2).
+        """
+        radii = self._radii[:, None]
+        joint = self.angles[self.voussoirs // 2 + 1]
+        angles = np.linspace(
+            np.arcsin(self.offset / self._radii), joint, columns + 1, axis=1
+        )
+        across = radii * np.sin(angles) - self.offset
+        # Both halves meet in one line, to the last digit.
+        across[:, 0] = 0.0
+        return np.stack([across, radii * np.cos(angles)], axis=-1)
+
+    @property
+    def _at_crown(self) -> slice:
+        """The voussoirs that end, or have their middle, at the crown of two halves."""
+        if not self.offset:
+            return slice(0)
+        return slice((self.voussoirs - 1) // 2, self.voussoirs // 2 + 1)
+
+    @cached_property
+    def shapes(self) -> list[Mesh]:
+        """Meshes of the voussoirs from left to right."""
+        shapes = [self.wedge] * self.voussoirs
+        if not self.offset:
+            return shapes
+        mirrored = np.array([-1.0, 1.0])
+        if self.voussoirs % 2:
+            right = self._beside_crown(self.along // 2)
+            left = right[:, :0:-1] * mirrored
+            crown = [_mapped(np.concatenate([left, right], axis=1))]
+        else:
+            right = self._beside_crown(self.along)
+            crown = [_mapped(right[:, ::-1] * mirrored), _mapped(right)]
+        shapes[self._at_crown] = crown
+        return shapes
+
+    @cached_property
+    def turns(self) -> Array:
+        """Clockwise angles by which the meshes are turned, (voussoirs,), rad."""
+        turns = 0.5 * (self.angles[:-1] + self.angles[1:])
+        turns[self._at_crown] = 0.0
+        return np.asarray(turns)
+
+    @cached_property
+    def origins(self) -> Array:
+        """Positions of the axes of the meshes, (voussoirs, 2), m."""
+        origins = np.zeros((self.voussoirs, 2))
+        sides = np.sign(np.arange(1 - self.voussoirs, self.voussoirs, 2))
+        origins[:, 0] -= sides * self.offset
+        origins[self._at_crown] = 0.0
+        return origins
 
     @cached_property
     def block(self) -> Mesh:
@@ -123,15 +207,15 @@ class Ring:
 
         `weight` is that of voussoirs along x and y, shape (2, n_instants), N/m^3.
         """
-        middles = 0.5 * (self.angles[:-1] + self.angles[1:])
         bodies = []
-        for number, angle in enumerate(middles.tolist(), start=1):
+        for number, shape in enumerate(self.shapes):
             body = Body(
-                f"voussoir {number}",
-                self.wedge,
+                f"voussoir {number + 1}",
+                shape,
                 young,
                 poisson,
-                angle=-angle,
+                origin=self.origins[number],
+                angle=-float(self.turns[number]),
                 weight=weight,
                 substructures=substructures,
             )
@@ -143,6 +227,7 @@ class Ring:
             (RIGHT, self.angles[-1], -1),
         ):
             origin = self.radius * np.array([np.sin(angle), np.cos(angle)])
+            origin[0] += sign * self.offset
             turn = np.arctan2(-sign * np.cos(angle), -sign * np.sin(angle))
             ends.append(
                 Body(name, self.block, young, poisson, origin=origin, angle=float(turn))
@@ -188,18 +273,18 @@ class Ring:
 
     def backs(self) -> Array:
         """Positions of the nodes on the outer side, (voussoirs, n_nodes, 2), m."""
-        shape = self.wedge.nodes[self.back]
-        middles = 0.5 * (self.angles[:-1] + self.angles[1:])
-        c = np.cos(middles)
-        s = np.sin(middles)
+        shapes = np.stack([shape.nodes[self.back] for shape in self.shapes])
+        c = np.cos(self.turns)
+        s = np.sin(self.turns)
         turns = np.stack([np.stack([c, s], axis=1), np.stack([-s, c], axis=1)], axis=1)
-        return np.asarray(shape @ turns.swapaxes(1, 2))
+        turned = shapes @ turns.swapaxes(1, 2)
+        return np.asarray(turned + self.origins[:, None])
 
     def under_fill(self, top: float) -> Array:
         """Volumes of columns from the outer side up to a height.
 
         Their shares of each node, (voussoirs, n_nodes), m^3 for a metre of thickness.
-        The height is above the centre of the ring, m.
+        The height is above the centres, m.
         """
         points = self.backs()
         widths = np.diff(points[:, ::2, 0], axis=1)

@@ -4,6 +4,7 @@ The voussoirs are equal parts of a ring between radial joints. Lengths are share
 mean radius, weights are per area. By symmetry the crown passes a horizontal thrust H,
 and no shear. H and its moment about the centre of the ring are all that statics leaves
 open: forces at every joint are linear in both (J. Heyman, The Stone Skeleton, 1966).
+Each half of a pointed arch has a centre of its own, on the other side of the crown.
 """
 
 from __future__ import annotations
@@ -23,15 +24,16 @@ ROUGHEST = 100.0
 LEAST = 1e-4
 """Smallest thickness or coefficient of friction that is looked at: of less the linear
 program leaves no digits."""
-
-
 UNBOUNDED = 3
 """Status of `linprog` where the thrust has no bound."""
 
 
 @dataclass(frozen=True)
 class VoussoirArch:
-    """An arch of equal voussoirs under its own weight, and a fill above it.
+    """An arch of voussoirs under its own weight, and a fill above it.
+
+    Voussoirs are equal, but those at the crown of a pointed arch have only the length of
+    the inner side in common with the others.
 
     Attributes
     ----------
@@ -48,6 +50,9 @@ class VoussoirArch:
         the outer side.
     cover
         Height of the fill above the outer side at the crown, over the mean radius.
+    centres
+        Distance between the centres of both halves over the clear width between the
+        springings: 0 is a round arch, 1 an equilateral one.
     """
 
     voussoirs: int
@@ -56,6 +61,7 @@ class VoussoirArch:
     friction: float = np.inf
     fill: float = 0.0
     cover: float = 0.0
+    centres: float = 0.0
 
     @property
     def radii(self) -> tuple[float, float]:
@@ -63,10 +69,30 @@ class VoussoirArch:
         return 1.0 - 0.5 * self.thickness, 1.0 + 0.5 * self.thickness
 
     @property
+    def offset(self) -> float:
+        """Distance of the centre of a half beyond the crown, over the mean radius."""
+        share = self.centres / (1.0 + self.centres)
+        return float(share * self.radii[0] * np.sin(0.5 * self.span))
+
+    @property
+    def crown(self) -> tuple[float, float]:
+        """Heights of both sides at the crown above the centres."""
+        inner, outer = self.radii
+        offset = self.offset
+        lowest = np.sqrt(inner**2 - offset**2)
+        highest = np.sqrt(outer**2 - offset**2)
+        return float(lowest), float(highest)
+
+    @property
     def joints(self) -> Array:
-        """Angles of the joints of one half from the crown, (n_joints,), rad."""
+        """Upright angles of the joints of one half from the crown, (n_joints,), rad.
+
+        A joint at the crown is upright.
+        """
         numbers = np.arange(self.voussoirs % 2, self.voussoirs + 1, 2)
-        return 0.5 * self.span * numbers / self.voussoirs
+        first = np.arcsin(self.offset / self.radii[0])
+        angles = first + (0.5 * self.span - first) * numbers / self.voussoirs
+        return np.where(numbers, angles, 0.0)
 
     @property
     def weight(self) -> float:
@@ -74,21 +100,33 @@ class VoussoirArch:
         return float(2.0 * self._loads(np.array([0.5 * self.span]))[0, 0])
 
     def _loads(self, angles: Array) -> Array:
-        """Weight from the crown to angles, and its moment, (2, n_angles)."""
+        """Weight from the crown to angles, and its moment, (2, n_angles).
+
+        The moment is about the centre of the half.
+        """
         inner, outer = self.radii
-        sine = np.sin(angles)
+        below, above = self.crown
         cosine = np.cos(angles)
         ring = 0.5 * angles * (outer**2 - inner**2)
         ring_moment = (outer**3 - inner**3) / 3.0 * (1.0 - cosine)
-        # A column at an angle is outer + cover - outer cos(angle) high.
-        top = outer + self.cover
+        # Of a pointed arch, what is beyond the crown does not belong to the half.
+        beyond = _beyond(self.offset, outer, above) - _beyond(self.offset, inner, below)
+        beyond_moment = ((outer**3 - above**3) - (inner**3 - below**3)) / 3.0
+        columns = self._columns(angles)
+        columns -= self._columns(np.arcsin([self.offset / outer]))
+        own = np.stack([ring - beyond, ring_moment - beyond_moment])
+        return np.asarray(own + self.fill * columns)
+
+    def _columns(self, angles: Array) -> Array:
+        """Area of columns on the outer side from the angle 0, and its moment."""
+        _, outer = self.radii
+        sine = np.sin(angles)
+        cosine = np.cos(angles)
+        # A column at an angle is top - outer cos(angle) high.
+        top = self.crown[1] + self.cover
         column = outer * (top * sine - 0.5 * outer * (angles + sine * cosine))
-        column_moment = outer**2 * (
-            0.5 * top * sine**2 - outer * (1.0 - cosine**3) / 3.0
-        )
-        return np.stack(
-            [ring + self.fill * column, ring_moment + self.fill * column_moment]
-        )
+        moment = outer**2 * (0.5 * top * sine**2 - outer * (1.0 - cosine**3) / 3.0)
+        return np.stack([column, moment])
 
     @property
     def _conditions(self) -> tuple[Array, Array]:
@@ -97,8 +135,13 @@ class VoussoirArch:
         H and its moment are over the weight of the whole.
         """
         angles = self.joints
-        weight, moment = self._loads(angles) / self.weight
-        inner, outer = self.radii
+        loads = self._loads(angles) / self.weight
+        edges = np.repeat(np.array(self.radii)[:, None], len(angles), axis=1)
+        if not angles[0]:
+            loads[:, 0] = 0.0
+            edges[:, 0] = self.crown
+        weight, moment = loads
+        inner, outer = edges[:, :, None]
         zero = np.zeros_like(angles)
         # Columns: what H, its moment about the centre, and the weight add.
         pressing = np.stack([np.cos(angles), zero, weight * np.sin(angles)], axis=1)
@@ -161,6 +204,14 @@ class VoussoirArch:
         return _onset(
             lambda friction: replace(self, friction=friction).reserve, ROUGHEST
         )
+
+
+def _beyond(offset: float, radius: float, height: float) -> float:
+    """Area of a disc between its upright radius and the upright line at the offset.
+
+    On this line the circle is at the height above the centre.
+    """
+    return 0.5 * float(radius**2 * np.arcsin(offset / radius) + offset * height)
 
 
 def _onset(reserve: Callable[[float], float], largest: float) -> float | None:
