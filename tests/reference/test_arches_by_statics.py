@@ -96,9 +96,10 @@ def test_a_pointed_arch_thrusts_at_most_as_its_half_leans_on_the_other(span, cen
 def test_a_more_pointed_ring_may_be_thinner():
     thinnest = [
         VoussoirArch(400, 0.15, centres=centres).thinnest()
-        for centres in (0.0, 0.25, 0.5, 1.0)
+        for centres in (0.0, 0.5, 1.0)
     ]
-    assert np.all(np.diff(thinnest) < 0.0)
+    # The numbers of MATHEMATICS.md.
+    assert thinnest == pytest.approx([0.1075, 0.0546, 0.0399], abs=5e-5)
 
 
 def test_the_fill_weighs_as_its_columns_do():

@@ -30,10 +30,10 @@ RIGHT = "right abutment"
 class Ring:
     """Voussoirs between radial joints, about a centre at the origin.
 
-    Halves of a pointed arch have radial joints about centres of their own, at the height
-    of the origin, each beyond the crown; where they meet, a joint is upright. Voussoirs
-    are equal, but those at the crown of a pointed arch have only the length of the inner
-    side in common with the others.
+    Halves of a pointed arch have radial joints about centres of their own, at the
+    height of the origin, each beyond the crown; where they meet, a joint is upright.
+    Voussoirs are equal, but those at the crown of a pointed arch have only the length
+    of the inner side in common with the others.
 
     Attributes
     ----------

@@ -32,8 +32,8 @@ UNBOUNDED = 3
 class VoussoirArch:
     """An arch of voussoirs under its own weight, and a fill above it.
 
-    Voussoirs are equal, but those at the crown of a pointed arch have only the length of
-    the inner side in common with the others.
+    Voussoirs are equal, but those at the crown of a pointed arch have only the length
+    of the inner side in common with the others.
 
     Attributes
     ----------
