@@ -22,7 +22,7 @@ STILL = {"displacement": 0.0, "instants": 5}
 
 
 def settings_of(**changes):
-    return CATALOGUE["arch"].checked({**EQUILATERAL, **changes})
+    return CATALOGUE["arch"].checked(EQUILATERAL | changes)
 
 
 def moved(distance):
