@@ -273,20 +273,20 @@ class Newton:
                 return None
             pieces.append(piece)
             step = system(states, tangent)
-            n_singular += system.is_singular
-            if n_singular > SINGULAR_STEPS:
-                return None
             # Systems with springs cost as much as others, and are counted with them.
             if system is not self.system:
                 self.system.solutions += 1
+            n_singular += system.is_singular
+            if n_singular > SINGULAR_STEPS:
+                return None
             corrected = self._corrected(states, step, tangent, system.friction)
             if rules.is_nonlinear:
                 slip = np.where(rules.normal, 0.0, step.jump - sides.held)
             force = step.force
             reached = InstantSolution(states, step, slip)
-            repeats = np.array_equal(corrected, states)
-            if repeats and self._obeys(system, reached, sides):
-                return reached
+            if np.array_equal(corrected, states):
+                if self._obeys(system, reached, sides):
+                    return reached
             states = corrected
         return None
 
