@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import singledispatch
 
 from solver.discrete.plane import stack_problem
+from solver.discrete.plane.band import Band
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held, Joint, Load
@@ -73,3 +74,11 @@ def _of_bodies(structure: Bodies) -> Problem:
     from solver.discrete.plane import bodies_problem
 
     return bodies_problem.problem_of(structure)
+
+
+@discretise.register
+def _of_band(structure: Band) -> Problem:
+    """Discrete problem of a band on a guide."""
+    from solver.discrete.plane import bodies_problem
+
+    return bodies_problem.problem_of_band(structure)

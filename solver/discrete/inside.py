@@ -271,11 +271,16 @@ class Inside:
         largest = np.abs(free).reshape(-1, len(moving), 3).max(axis=(0, 2))
         return np.asarray(moving[largest > MOVES], dtype=np.intp)
 
-    def rigid_modes(self, dofs: Indices) -> Array:
-        """Translations and rotation about the mean position, (n, 3), of dofs, (n,)."""
+    def rigid_modes(self, dofs: Indices, centre: Array | None = None) -> Array:
+        """Translations and rotation about a centre, (n, 3), of dofs, (n,).
+
+        The centre, (2,), scaled, is by default the mean position, where translations
+        and rotation are independent.
+        """
         along_x, along_y, turn = self.directions[dofs].T
-        x, y = (self.positions[dofs] - self.positions[dofs].mean(axis=0)).T
-        # About the mean position, where translations and rotation are independent. A
-        # turn is an angle, not over the unit of length as displacements are.
+        if centre is None:
+            centre = self.positions[dofs].mean(axis=0)
+        x, y = (self.positions[dofs] - centre).T
+        # A turn is an angle, not over the unit of length as displacements are.
         rotation = x * along_y - y * along_x + turn / self._length
         return np.stack([along_x, along_y, rotation], axis=1)

@@ -63,7 +63,8 @@ class Problem:
         Nodes and elements inside condensed substructures; None where none is condensed.
     rest
         Displacement that the method may start from, scaled, shape (n_dofs, n_instants):
-        that of a body which falls onto its support as if it were rigid. None is zero.
+        that of a body which falls onto its support, or slides along it, as if it were
+        rigid. None is zero.
     carried
         Displacement of the support that rods lie on, scaled, shape (n_dofs,
         n_instants), where it moves: all displacements of the problem are relative to

@@ -107,6 +107,11 @@ class LinearSystem:
             return condensed.pulls_of_gauge
         return np.asarray(self._of_unknowns[:, : len(self._base)] @ self._gauge)
 
+    @property
+    def is_singular(self) -> bool:
+        """Check whether the states of the last system leave a motion free."""
+        return self._factors.singular
+
     def set_friction(self, friction: Array, growth: Array) -> None:
         """Change coefficients of friction and growths of bounds per slip, (n,) each."""
         self.friction = friction

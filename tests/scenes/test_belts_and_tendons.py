@@ -13,6 +13,7 @@ from solver.discrete.plane.band import PULL, TAIL
 from solver.latin import iterations, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
+from solver.reference.newton import FEWEST_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.definitions import SettingError
@@ -159,7 +160,16 @@ def test_a_rope_of_turns_is_cut_along_itself_and_the_answer_stays():
 
 @pytest.mark.parametrize(
     ("changes", "most"),
-    [({}, 60), ({"elements": 20}, 60), (TENDON | {"instants": 21}, 60)],
+    [
+        ({}, 60),
+        ({"elements": 20}, 60),
+        (TENDON | {"instants": 21}, 60),
+        # Ends that are moved far beyond the elongation, so that all of it slides.
+        ({"driven": "jacked"}, 60),
+        ({"driven": "jacked", "draw_in": 0.02}, 60),
+        ({"driven": "moved", "displacement": 0.005}, 60),
+        ({"driven": "moved", "displacement": -0.005}, 60),
+    ],
 )
 def test_the_search_needs_few_iterations_whatever_the_mesh(changes, most):
     settings = settings_of(finish="none", **changes)
@@ -170,6 +180,48 @@ def test_the_search_needs_few_iterations_whatever_the_mesh(changes, most):
         if distance.of_friction_force(iterate) <= 0.01:
             break
         assert iterate.number < most
+
+
+@pytest.mark.parametrize("moved", [0.005, -0.005])
+def test_a_belt_that_runs_starts_from_a_turn_near_its_solution(moved):
+    settings = settings_of(driven="moved", displacement=moved, elements=80)
+    problem, reference, _ = solved(settings)
+    slide = settings.structure().slide()
+    # Rigid: no part of the band is strained, in units of what a tension strains.
+    size = max(
+        np.abs(part.elasticity.stiffness).max() for part in problem.substructures
+    )
+    for part in problem.substructures:
+        force = part.elasticity.stiffness @ problem.rest[part.dofs]
+        assert np.abs(force).max() <= 1e-12 * size * np.abs(problem.rest).max()
+    slip = reference.contact("guide").slip
+    assert slide[0] == slip[0, 0] == 0.0
+    elongation = 1000.0 * settings.capstan.ratio / 5e5 * settings.curve.length
+    assert np.abs(slip - slide).max() < elongation
+    assert np.abs(slip).max() > 3.0 * elongation
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"tail": "held"}, {"driven": "jacked", "tail": "alike"}]
+)
+def test_a_belt_that_cannot_run_starts_from_zero(changes):
+    assert discretise(settings_of(**changes)).rest is None
+
+
+def test_a_front_of_slip_is_followed_along_a_long_belt(monkeypatch):
+    seek = Newton.seek
+    counts = []
+
+    def counted(self, system, guess, sides):
+        before = self.system.solutions
+        found = seek(self, system, guess, sides)
+        if found is not None:
+            counts.append(self.system.solutions - before)
+        return found
+
+    monkeypatch.setattr(Newton, "seek", counted)
+    solved(settings_of(elements=120, instants=5))
+    assert max(counts) > FEWEST_STEPS
 
 
 def test_friction_that_grows_with_slip_carries_by_its_largest():

@@ -18,6 +18,8 @@ from solver.laws import OPEN, FrictionLaw, SlipFactor
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.reference.limit_analysis import collapse_of
+from solver.reference.linear_system import LinearSystem
+from solver.reference.newton import SINGULAR_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.definitions import SettingError
@@ -333,3 +335,34 @@ def test_a_run_ends_by_itself_within_its_accuracy():
     run = solve(problem, Latin(finish=None), distance=distance)
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.01
+
+
+def test_states_that_leave_bricks_free_are_given_up_for_springs(monkeypatch):
+    solved = LinearSystem.__call__
+    sought = Newton.seek
+    free = []
+
+    def counted(self, states, sides):
+        found = solved(self, states, sides)
+        free[-1] += self.is_singular
+        return found
+
+    def seek(self, system, guess, sides):
+        free.append(0)
+        return sought(self, system, guess, sides)
+
+    monkeypatch.setattr(LinearSystem, "__call__", counted)
+    monkeypatch.setattr(Newton, "seek", seek)
+    settings = CATALOGUE["wall"].checked(
+        {
+            "bricks": 4,
+            "courses": 3,
+            "elements": 4,
+            "elements_up": 2,
+            "instants": 17,
+            "displacement": 5e-4,
+        }
+    )
+    reference = reference_of(discretise(settings))
+    assert reference.converged.all()
+    assert max(free) == SINGULAR_STEPS + 1

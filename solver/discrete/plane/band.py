@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.special import exprel
 
 from solver.arrays import Array, Indices
 from solver.discrete.plane.beams import Beam
@@ -26,6 +27,9 @@ LIMP = 1e-3
 bending keeps free spans in place, and carries next to nothing, though a band that
 slides turns on the arc and not on the spans.
 """
+
+MOST_EXPONENT = 100.0
+"""Largest exponent mu a that counts: with more, no tension makes a band slide."""
 
 
 @dataclass(frozen=True)
@@ -167,6 +171,42 @@ class Band(Bodies):
         x = x.times(by_x)
         y = y.times(by_y)
         return lambda fields: x.of(fields) + y.of(fields)
+
+    def slide(self) -> Array | None:
+        """Displacement of the first end along the guide, (n_instants,), m, about.
+
+        The first end is pulled by a force, and the last one is moved; None for other
+        ends. While the band sticks somewhere, its elongation is between those of a band
+        that slides as a whole one way, and the other way: so the first end follows the
+        last one with play.
+        """
+        by_name = {load.name: load.force[0] for load in self.loads}
+        held = {held.name: held.displacement for held in self.held}
+        if TAIL not in by_name or f"{PULL} x" not in held:
+            return None
+        outwards, along = self.guide.outwards
+        tension = outwards @ by_name[TAIL]
+        moved = along @ [held[f"{PULL} {name}"] for _, name in _AXES]
+        friction = np.max(self.joints[0].friction) * self.friction_law.strongest
+        exponent = min(float(friction) * self.guide.angle, MOST_EXPONENT)
+        lowest = moved - tension * self._elongation(exponent)
+        highest = moved - tension * self._elongation(-exponent)
+        slide = [0.0]
+        for low, high in zip(lowest.tolist(), highest.tolist(), strict=True):
+            slide.append(min(max(slide[-1], low), high))
+        return np.array(slide[1:])
+
+    def _elongation(self, exponent: float) -> float:
+        """Elongation over the tension of the first end, m/N, of a band that slides.
+
+        The tension at the last end is exp(exponent) times that of the first.
+        """
+        guide = self.guide
+        body = self.bodies[0]
+        assert isinstance(body.shape, Beam)
+        spans = guide.span * (1.0 + np.exp(exponent))
+        stiffness = body.young * np.mean(body.shape.area)
+        return float((guide.length * exprel(exponent) + spans) / stiffness)
 
     def tensions(self, problem: Problem, fields: LoopFields) -> Array:
         """Tension of all elements, those of the spans too, (n_elements, n_instants), N.

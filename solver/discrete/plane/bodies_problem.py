@@ -6,6 +6,7 @@ Parts of one body are glued where they were cut. Contact forces are lumped at th
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.inside import Inside, substructure_of
 from solver.discrete.loose import loose_bodies
+from solver.discrete.plane.band import Band
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
@@ -61,6 +63,24 @@ def problem_of(structure: Bodies) -> Problem:
             "hold one more node or axis, or add a joint",
         )
     return problem
+
+
+def problem_of_band(band: Band) -> Problem:
+    """Discrete problem of a band on a guide.
+
+    A band that slides as a whole goes far beyond its elongation against friction alone,
+    and a search from zero with it, by a share of the elongation an iteration: so it
+    starts where the band has slid to.
+    """
+    problem = problem_of(band)
+    slide = band.slide()
+    inside = problem.inside
+    if slide is None or inside is None:
+        return problem
+    # The guide turns clockwise about the origin.
+    modes = inside.rigid_modes(np.arange(problem.n_dofs), np.zeros(2))
+    turn = modes[:, 2]
+    return replace(problem, rest=np.outer(turn, -slide / band.guide.radius))
 
 
 def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
