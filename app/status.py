@@ -174,7 +174,9 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     figures = {}
     hints = {}
     for figure in _of_loop(frame):
-        figures[figure.title] = _unit_of(figure)(figure.at(column))
+        # What forces leave where nothing acts is rounding.
+        value = settled(figure.at(column), figure.largest)
+        figures[figure.title] = _unit_of(figure)(value)
         hints[figure.title] = _over_time(frame, figure)
     # Springs stand beside the surfaces, and neither stick nor slip.
     springs = []

@@ -151,6 +151,26 @@ class Mesh:
             return None
         return edges
 
+    def chains_of(self, nodes: Indices) -> list[Indices]:
+        """Chains of edges, (n,) each, one after the other in nodes; none if any are not.
+
+        Those of both ends of a plate are two, say.
+        """
+        chains = []
+        first = 0
+        while first < len(nodes):
+            last = first + 3
+            while (
+                last < len(nodes)
+                and self.edges_of(nodes[first : last + 2]) is not None
+            ):
+                last += 2
+            if self.edges_of(nodes[first:last]) is None:
+                return []
+            chains.append(nodes[first:last])
+            first = last
+        return chains
+
     @property
     def n_corners(self) -> int:
         """Number of corners."""
