@@ -188,7 +188,7 @@ class Picture:
         foot = np.array([[edge[-1, 0], low], [edge[0, 0], low]])
         if self._is_around and self._is_of_any_shape:
             # It has no other side that is like the lower one: it is behind all bodies.
-            edge = edge + [0.0, self._top + GROUND]
+            edge = edge + np.array([0.0, self._top + GROUND])
         patch = np.concatenate([edge, foot])
         patches = [patch]
         if self._is_around and not self._is_of_any_shape:

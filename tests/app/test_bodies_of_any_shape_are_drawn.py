@@ -374,12 +374,12 @@ def test_the_ground_of_a_case_is_all_that_supports_bodies_of_any_shape(
     assert picture is not None
     # Bands lie on the contact alone, and not on an image of it, too.
     bands = picture._bands()
-    drawn = np.concatenate([line for line, _, width in bands[2:]])
+    drawn = np.concatenate([line for line, _, _ in bands[2:]])
     away = picture.points[:, None] - drawn[~np.isnan(drawn[:, 0])]
     assert np.hypot(*np.moveaxis(away, -1, 0)).min(axis=0).max() < 10.0
     ground = view.sources["ground"].data
     assert len(ground["xs"]) == 1
-    x, y = picture.page(picture.nodes).T
+    _, y = picture.page(picture.nodes).T
     if case.surroundings is not None and case.surroundings.place == "around":
         assert min(ground["ys"][0]) < y.min() < y.max() < max(ground["ys"][0])
     hatches = picture._holds()

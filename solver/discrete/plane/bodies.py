@@ -203,7 +203,7 @@ class Bodies:
         yield Act("body", "W", middle, *_directed(self.weights), "N")
 
     def _held_by_nodes(self) -> list[list[Held]]:
-        """What is held along an axis, together where it is held along both."""
+        """Nodes held along an axis, together with those held along the other, too."""
         axes = dict[tuple[int, bytes], list[Held]]()
         for held in self.held:
             if held.axis < 2:

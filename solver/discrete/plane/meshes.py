@@ -152,7 +152,7 @@ class Mesh:
         return edges
 
     def chains_of(self, nodes: Indices) -> list[Indices]:
-        """Chains of edges, (n,) each, one after the other in nodes; none if any are not.
+        """Chains of edges, (n,) each, that nodes make one after the other, if all do.
 
         Those of both ends of a plate are two, say.
         """
@@ -161,8 +161,7 @@ class Mesh:
         while first < len(nodes):
             last = first + 3
             while (
-                last < len(nodes)
-                and self.edges_of(nodes[first : last + 2]) is not None
+                last < len(nodes) and self.edges_of(nodes[first : last + 2]) is not None
             ):
                 last += 2
             if self.edges_of(nodes[first:last]) is None:
