@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -347,6 +348,14 @@ def test_an_end_that_is_moved_at_an_angle_has_one_arrow_along_its_way() -> None:
     assert along[1] < -0.5
     assert np.asarray(act.towards) == pytest.approx(along)
     assert act.values[-1] == pytest.approx(frame.run.settings.displacement)
+
+
+def test_a_figure_is_zero_where_an_iterate_leaves_next_to_nothing() -> None:
+    frame = ran(default_settings("bundle").replace(rings=1, instants=9), ends=False)
+    loop = frame.loop.copy()
+    loop[1, 0] = 1e-6 * np.abs(loop[1]).max()
+    line = figures_line(replace(frame, loop=loop), Selection(0.0))
+    assert re.search(r"Force on plate x .*>0 k?N<", line), line
 
 
 def test_a_plate_that_is_held_at_both_ends_has_rollers_at_each() -> None:
