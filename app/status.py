@@ -48,8 +48,8 @@ TERMS = (
 )
 """Words of the glossary in the status and its details."""
 LEFT = 1e-5
-"""Share of its largest value below which a key figure is 0: iterates leave as much where
-nothing acts."""
+"""Share of its largest value below which a key figure is 0: iterates leave as much
+where nothing acts."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
 OWNER = "after the linear stage that follows:"
