@@ -227,10 +227,11 @@ class Live:
         self.look()
 
     def _write(self) -> None:
-        """Set the status, the key figures and the sentence to those of the frame."""
+        """Set all words on the run to those of the frame: status, figures, sentence."""
         frame = self.state.frame
         self._status.object = status_line(self.state)
         if frame is not None:
+            self.transport.name_iterate()
             self._figures.object = figures_line(frame, self.state.selection)
             sentence = frame.run.sentence
             if self.state.trade_case is not None:

@@ -47,6 +47,9 @@ TERMS = (
     "incremental solver",
 )
 """Words of the glossary in the status and its details."""
+LEFT = 1e-5
+"""Share of its largest value below which a key figure is 0: iterates leave as much
+where nothing acts."""
 LOST = "no figures are told, as no solution is found at some instants"
 """Hint over figures in place of which there is a dash."""
 OWNER = "after the linear stage that follows:"
@@ -174,7 +177,10 @@ def figures_line(frame: Frame, selection: Selection) -> str:
     figures = {}
     hints = {}
     for figure in _of_loop(frame):
-        figures[figure.title] = _unit_of(figure)(figure.at(column))
+        value = figure.at(column)
+        if abs(value) < LEFT * abs(figure.largest):
+            value = 0.0
+        figures[figure.title] = _unit_of(figure)(value)
         hints[figure.title] = _over_time(frame, figure)
     # Springs stand beside the surfaces, and neither stick nor slip.
     springs = []

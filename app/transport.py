@@ -110,7 +110,7 @@ class Transport:
             options={name.capitalize(): name for name in CATALOGUE},
             value=state.settings.scene,
             size="small",
-            width=136,
+            width=176,
             margin=(6, 4),
             **looks("large"),
         )
@@ -294,8 +294,6 @@ class Transport:
         if back < 0:
             iteration = self._last + back
         self._state.seek(iteration)
-        if self._state.frame is not None:
-            self.scrub.label = self._name()
 
     def _choose_finish(self, finish: str) -> None:
         values = ANSWER
@@ -327,27 +325,25 @@ class Transport:
         if self._presented:
             self._show_scene()
 
-    def _name(self) -> str:
-        """Name of the iterate that is shown, among all."""
+    def name_iterate(self) -> None:
+        """Name the iterate that a picture shows, among all, at the slider."""
         frame = self._state.frame
         if frame.is_followed:
-            return "Answer"
-        if frame.is_answer:
-            return f"Answer after {frame.iteration} iterations"
-        return f"Iteration {frame.iteration} of {self._state.newest.iteration}"
+            self.scrub.label = "Answer"
+        elif frame.is_answer:
+            self.scrub.label = f"Answer after {frame.iteration} iterations"
+        else:
+            last = self._state.newest.iteration
+            self.scrub.label = f"Iteration {frame.iteration} of {last}"
 
     def _follow(self) -> None:
-        """Name the shown iterate at the slider, and set it to that iterate.
-
-        After a move by hand its value rests.
-        """
+        """Set the slider to the shown iterate; after a move by hand it rests."""
         frame = self._state.frame
         slider = self.scrub
         if self._state.is_over and not self._is_touched:
             self._enliven()
         if frame is None:
             return
-        slider.label = self._name()
         if time.monotonic() < self._moved_at + HELD:
             return
         is_newest = frame is self._state.newest

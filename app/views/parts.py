@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
+from bokeh.core.property.descriptors import UnsetValueError
 from bokeh.models import (
     ColorBar,
     Glyph,
@@ -14,6 +16,10 @@ from bokeh.models import (
     Range1d,
 )
 from bokeh.plotting import figure
+
+LEAST = 60.0
+"""Least width and height for which a figure is laid out, px: one that is out of sight
+has a size of zero."""
 
 
 def bare(
@@ -40,6 +46,19 @@ def bare(
     plot.background_fill_alpha = 0.0
     plot.border_fill_alpha = 0.0
     return plot
+
+
+def size_told(plot: figure, known: Mapping[str, float]) -> dict[str, float]:
+    """Sizes of a figure in px by their names, as the browser told them, or as known.
+
+    Of a figure that has gone to another card the browser tells, and nothing is called.
+    """
+    sizes = {}
+    for name, size in known.items():
+        sizes[name] = size
+        with suppress(UnsetValueError):
+            sizes[name] = max(float(getattr(plot, name)), LEAST)
+    return sizes
 
 
 def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:

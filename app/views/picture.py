@@ -159,6 +159,21 @@ class Picture:
         }
 
     @property
+    def _has_ground(self) -> bool:
+        """Check whether the ground of a case is drawn."""
+        return self.layout.surroundings is not None and not self.layout.is_bare
+
+    @property
+    def _is_of_any_shape(self) -> bool:
+        """Check whether bodies have any shape, and not straight sides alone."""
+        return self._description.footings is not None
+
+    @property
+    def _top(self) -> float:
+        """Height of all bodies, px."""
+        return float(self.layout.size[1] * self.layout.scale[1])
+
+    @property
     def _is_around(self) -> bool:
         """Check whether the ground of a case is all around the bodies."""
         surroundings = self.layout.surroundings
@@ -166,16 +181,18 @@ class Picture:
 
     def _ground(self) -> Columns:
         """Patches of the ground of a case, below the bodies or on both sides."""
-        if self.layout.surroundings is None or self.layout.is_bare:
+        if not self._has_ground:
             return {"xs": [], "ys": []}
         edge = ground_edge(self.layout, self._factor)
         low = edge[:, 1].min() - GROUND
         foot = np.array([[edge[-1, 0], low], [edge[0, 0], low]])
+        if self._is_around and self._is_of_any_shape:
+            # It has no other side that is like the lower one: it is behind all bodies.
+            edge = edge + np.array([0.0, self._top + GROUND])
         patch = np.concatenate([edge, foot])
         patches = [patch]
-        if self._is_around:
-            top = self.layout.size[1] * self.layout.scale[1]
-            patches.append([0.0, top] - [-1.0, 1.0] * patch)
+        if self._is_around and not self._is_of_any_shape:
+            patches.append([0.0, self._top] - [-1.0, 1.0] * patch)
         return self.many(np.stack(patches))
 
     def _image(self, bodies: Array) -> Array:
@@ -289,6 +306,9 @@ class Picture:
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
         strokes = strokes_of(layout, self._factor, self._now, feet)
         for footing in self._description.footings or ():
+            if footing.kind == "support" and self._has_ground:
+                # The ground of the case is what supports the bodies.
+                continue
             points = footing.points * layout.size
             places = layout.local(points)
             if footing.kind != "support":
@@ -305,16 +325,16 @@ class Picture:
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
-        if self._is_around:
+        if self._is_around and not self._is_of_any_shape:
             # The other side of bodies that the ground is all around of.
-            top = self.layout.size[1] * self.layout.scale[1]
             for kind, line in lines.items():
-                lines[kind] = np.concatenate([line, [0.0, top] - [-1.0, 1.0] * line])
+                other = [0.0, self._top] - [-1.0, 1.0] * line
+                lines[kind] = np.concatenate([line, other])
         height = self.layout.body_height * self.layout.scale[1]
         width = min(BAND, 0.35 * height)
         # Broad bands of many interfaces, as in a wall, would cover the bodies.
         most = self._description.bodies
-        if self._description.footings is not None:
+        if self._is_of_any_shape:
             most = 1
         if chains.max() >= most:
             width = min(width, 5.0)
@@ -441,7 +461,7 @@ class Picture:
         room = NAMED * self.layout.size[0] * self.layout.scale[0]
         if self.layout.letter * len(self._selected) > room:
             return []
-        if self._description.footings is None or not len(line):
+        if not self._is_of_any_shape or not len(line):
             return []
         places = []
         for name in self._names_at_ends(line):

@@ -16,7 +16,7 @@ from app.units import number, unit_for
 from app.views.acts import gapped, hatched
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
-from app.views.parts import bare
+from app.views.parts import LEAST, bare, size_told
 from app.views.view import TEXT, ExtraView
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
@@ -143,6 +143,7 @@ class PiecesView(ExtraView):
 
     def _box(self) -> Array:
         """Corners of the room between text and legend, (2, 2), px."""
+        self._size = size_told(self._figure, self._size)
         width, height = self._size.values()
         self._figure.x_range.end = width
         self._figure.y_range.end = height
@@ -233,8 +234,7 @@ class PiecesView(ExtraView):
         return ", ".join(texts)
 
     def _resize(self, name: str, old: float, new: float) -> None:
-        # A figure that is out of sight reports a size of zero.
-        self._size[name] = max(float(new), 60.0)
+        self._size[name] = max(float(new), LEAST)
         if self._last is not None:
             with pn.io.hold():
                 self._show(*self._last)

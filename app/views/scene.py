@@ -28,7 +28,7 @@ from app.views.colors import (
 )
 from app.views.hints import NONE, hints_of
 from app.views.layout import NARROW, Layout, layout_of
-from app.views.parts import bare, color_bar
+from app.views.parts import LEAST, bare, color_bar, size_told
 from app.views.picture import Picture
 from app.views.view import View
 from solver.settings.scene import Settings
@@ -143,6 +143,7 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         plot = self.figure
         run = frame.run
+        self._size = size_told(plot, self._size)
         layout = self._layout_of(frame)
         self._scale(frame, layout)
         self._shown = frame, selection, ghost
@@ -252,8 +253,7 @@ class Scene(View):
             self._peaks[act.where] = peak
 
     def _resize(self, name: str, old: float, new: float) -> None:
-        # A figure that is out of sight reports a size of zero.
-        self._size[name] = max(float(new), 60.0)
+        self._size[name] = max(float(new), LEAST)
         if self._shown is not None:
             with pn.io.hold():
                 self.update(*self._shown)

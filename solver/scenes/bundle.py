@@ -61,16 +61,17 @@ class BundleSettings(PlaneSettings):
         "hexagon",
         ["hexagon", "heap"],
         "hexagon: rings of wires round one in the middle, held together by a band. "
-        "heap: rows on the ground, each with one wire less than the row below.",
+        "heap: rows on the ground, each with one wire less than the row below; with "
+        "three rows it holds by much friction alone.",
         title="Wires lie in a",
     )
     rings = BODY.count(
         2,
         (1, 6),
         (1, 3),
-        "Rings round the wire in the middle: 1, 2 and 3 make 7, 19 and 37 wires. Of a "
-        "heap rows above the lowest one.",
-        title="Rings of wires",
+        "Rings round the wire in the middle: 1, 2 and 3 make 7, 19 and 37 wires. Rows "
+        "of a heap: 1, 2 and 3 make 1, 3 and 6 wires.",
+        title="Rings or rows of wires",
     )
     length = shared.size(
         2.5e-3, (5e-4, 0.2), "Radius of a wire r", "Radius of a wire.", BODY
@@ -283,9 +284,9 @@ class BundleSettings(PlaneSettings):
 
     def sentence(self) -> str:
         """Describe the bundle in a sentence."""
-        touch = "slide freely on"
+        touch = "slide freely on each other"
         if self.is_rough:
-            touch = "rub on"
+            touch = "rub on each other"
         lie = "in a heap on the ground"
         if self.arrangement == "hexagon":
             lie = "side by side on the ground"
@@ -298,4 +299,8 @@ class BundleSettings(PlaneSettings):
             done = "; a plate presses on them"
             if np.any(path):
                 done = f"{done}, and is {shared.acting(path, *words)}"
-        return f"{self.n_wires} round wires lie {lie}, and {touch} each other{done}."
+        if self.n_wires == 1:
+            # A heap of a single row.
+            done = done.replace("them", "it")
+            return f"One round wire lies on the ground{done}."
+        return f"{self.n_wires} round wires lie {lie}, and {touch}{done}."

@@ -9,6 +9,7 @@ import numpy as np
 from solver.arrays import Array, Flags
 from solver.discrete.drives import loads_at
 from solver.discrete.inside import Inside
+from solver.discrete.plane.band import Band
 from solver.discrete.plane.rigid_stack import is_upright
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
@@ -138,12 +139,17 @@ def largest_strain(
     """Largest strain or slope of a solution: the largest derivative of displacement.
 
     A translation has none. Along rods it is the strain of an element; in the plane the
-    mean derivative over an element, rotation included; of wires the axial strain plus
-    the strain of bending. `displacement` is that of the problem's degrees of freedom,
+    mean derivative over an element, rotation included; of a band on a guide its strain
+    and its slope to the guide; of wires the axial strain plus the strain of bending.
+    `displacement` is that of the problem's degrees of freedom,
     (n_dofs, n_instants), m.
     """
     if isinstance(structure, Rope):
         return _of_wires(structure, displacement)
+    if isinstance(structure, Band):
+        strains = np.abs(structure.strains(problem, displacement))
+        lifts = np.abs(structure.lifts(problem, displacement))
+        return float(max(strains.max(), lifts.max()))
     if problem.inside is None:
         return _of_rods(problem.positions, displacement)
     return _in_plane(problem.inside, displacement)

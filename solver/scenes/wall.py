@@ -412,7 +412,7 @@ class WallSettings(RectangleSettings):
         if self.opening:
             bricks = f"{bricks} round an opening"
         if self.cap != "none":
-            bricks = f"{bricks}, with a stiff cap,"
+            pressed = f", with a stiff cap{pressed or ','}"
         if self._settles:
             ground = f"{ground}, of which a part settles"
         touch = "slide freely on"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -323,6 +324,76 @@ def test_the_weight_of_an_arch_is_read_at_its_arrow() -> None:
     tail, head = picture.page(weight.lines[0])
     assert head[0] < box[0, 0] < head[0] + 20.0
     assert head[1] < box[:, 1].mean() < tail[1]
+
+
+def test_the_weight_of_a_wall_is_read_beside_it_and_not_at_its_pressure() -> None:
+    frame = ran(default_settings("wall").replace(instants=9), ends=False)
+    view = shown(frame, 0.5)
+    view.lay_out(950.0, 220.0)
+    view.update(frame, Selection(0.5), None)
+    assert view.picture is not None
+    corners = view.picture.page(view.picture.nodes)
+    (box,) = (box for text, box in boxes_of_words(view).items() if text[0] == "W")
+    assert box[1, 0] < corners[:, 0].min()
+    assert corners[:, 1].min() < box[:, 1].mean() < corners[:, 1].max()
+
+
+def test_an_end_that_is_moved_at_an_angle_has_one_arrow_along_its_way() -> None:
+    changes = {"guide": "duct", "driven": "moved", "pull_load": "jack", "wrap": 60.0}
+    settings = default_settings("belt").replace(**changes)
+    frame = ran(settings, ends=False)
+    (act,) = (act for act in frame.run.geometry.description.acts if act.unit == "m")
+    assert act.symbol == "u"
+    _, along = settings.structure().guide.outwards
+    assert along[1] < -0.5
+    assert np.asarray(act.towards) == pytest.approx(along)
+    assert act.values[-1] == pytest.approx(frame.run.settings.displacement)
+
+
+def test_a_figure_is_zero_where_an_iterate_leaves_next_to_nothing() -> None:
+    frame = ran(default_settings("bundle").replace(rings=1, instants=9), ends=False)
+    loop = frame.loop.copy()
+    loop[1, 0] = 1e-6 * np.abs(loop[1]).max()
+    line = figures_line(replace(frame, loop=loop), Selection(0.0))
+    assert re.search(r"Force on plate x .*>0 k?N<", line), line
+
+
+def test_a_plate_that_is_held_at_both_ends_has_rollers_at_each() -> None:
+    frame = ran(default_settings("bundle").replace(rings=1, instants=9), ends=False)
+    description = frame.run.geometry.description
+    rollers = [each for each in description.footings if each.kind == "rollers"]
+    assert [np.ptp(each.points[:, 0]) for each in rollers] == pytest.approx([0, 0])
+    sides = [each.outward.mean(axis=0).tolist() for each in rollers]
+    assert sides == [pytest.approx([-1.0, 0.0]), pytest.approx([1.0, 0.0])]
+    (act,) = (act for act in description.acts if act.symbol == "u_x")
+    # It stands where a displacement to the right pulls.
+    assert act.outward == pytest.approx((1.0, 0.0))
+
+
+@pytest.mark.parametrize("name", ["tendon-draw-in", "heap-of-logs"])
+def test_the_ground_of_a_case_is_all_that_supports_bodies_of_any_shape(
+    name: str,
+) -> None:
+    case = CASES[name]
+    frame = ran(case.settings.replace(instants=9), ends=False)
+    view = Scene(PageState(frame.run.settings, case=name, frame=frame))
+    _ = view.figure
+    view.update(frame, Selection(1.0), None)
+    picture = view.picture
+    assert picture is not None
+    # Bands lie on the contact alone, and not on an image of it, too.
+    bands = picture._bands()
+    drawn = np.concatenate([line for line, _, _ in bands[2:]])
+    away = picture.points[:, None] - drawn[~np.isnan(drawn[:, 0])]
+    assert np.hypot(*np.moveaxis(away, -1, 0)).min(axis=0).max() < 10.0
+    ground = view.sources["ground"].data
+    assert len(ground["xs"]) == 1
+    _, y = picture.page(picture.nodes).T
+    if case.surroundings is not None and case.surroundings.place == "around":
+        assert min(ground["ys"][0]) < y.min() < y.max() < max(ground["ys"][0])
+    hatches = picture._holds()
+    clamps = [each for each in picture._description.footings if each.kind == "clamp"]
+    assert bool(len(hatches)) == bool(clamps)
 
 
 def test_the_name_of_a_joint_lies_on_no_body_where_one_end_is_free() -> None:

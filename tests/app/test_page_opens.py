@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -14,10 +16,13 @@ from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
 import app.supervisor
-from app.messages import WHOLE, Needs, Order, Pace, Start
+from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
 from app.page import Page, open_page
 from app.server import PAGES
 from app.state import PageState, default_settings
+from app.status import status_line
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
 
 
 @pytest.fixture
@@ -49,6 +54,29 @@ def test_a_first_run_goes_on_once_its_first_picture_is_painted(
     pulse.painted = 1
     pulse.painted = 2
     assert [order for order in orders if isinstance(order, Pace)] == [Pace(WHOLE)]
+
+
+@pytest.mark.usefixtures("orders")
+def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> None:
+    settings = default_settings("bar").replace(elements=10, instants=11)
+    state = PageState(settings)
+    page = Page(state)
+    start = Start(state.number, settings, math.inf)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    pulse = document.get_model_by_name("pulse")
+    last = 0
+    for count in (2, 5, 9):
+        while len(runner.history) < count:
+            runner._iterate()
+        # Also where frames follow each other more quickly than the slider's value.
+        state.take(NewFrame(runner.frame(Needs())))
+        pulse.painted = pulse.sent
+        words = status_line(state)
+        found = re.search(r"iteration(?:</abbr>)? (\d+)", words)
+        assert found, words
+        assert last < int(found[1]) == state.newest.iteration
+        last = int(found[1])
+        assert page._live.transport.scrub.label == f"Iteration {last} of {last}"
 
 
 @pytest.mark.usefixtures("document")

@@ -15,7 +15,7 @@ from solver.scenes import CATALOGUE, discretise
 
 LOGS = {
     "arrangement": "heap",
-    "rings": 1,
+    "rings": 2,
     "length": 0.15,
     "press": 0.0,
     "unit_weight": 6e3,
@@ -54,7 +54,7 @@ def test_wires_of_a_hexagon_touch_all_their_neighbours(rings, wires, contacts):
 
 
 def test_wires_under_plates_have_contacts_up_and_down():
-    packing = Packing.heap(2)
+    packing = Packing.heap(3)
     assert packing.rows == (3, 2, 1)
     assert DOWN in packing.directions(0, has_plate=True)
     assert UP in packing.directions(5, has_plate=True)

@@ -156,6 +156,9 @@ def test_a_cap_stays_straight_and_a_guided_one_level(cap):
     line = np.polynomial.polynomial.polyval(x, np.polyfit(x, moved, 1)[::-1]).T
     turns = np.abs(slope).max() * np.ptp(x)
     assert np.abs(moved - line).max() < 1e-8
+    # What moves both ends of a guided cap, too, is drawn at the top alone.
+    drawn = [act.symbol for act in settings.bodies.description().acts]
+    assert drawn.count("u_x") == 1
     if cap == "free":
         assert turns > 1e-6
     else:

@@ -140,6 +140,26 @@ def test_scenes_by_default_are_within_small_strain_and_soft_ones_beyond(scene):
     assert message.startswith("this model does not hold: strains or slopes reach")
 
 
+@pytest.mark.parametrize("wrap", [180.0, 900.0])
+def test_a_belt_that_slides_far_along_its_drum_is_strained_by_its_tension(wrap):
+    changes = {
+        "driven": "moved",
+        "displacement": 0.03,
+        "pull_load": "jack",
+        "wrap": wrap,
+        "instants": 5,
+    }
+    settings = CATALOGUE["belt"].checked(SMALL["belt"] | {"elements": 60} | changes)
+    structure = settings.structure()
+    problem = discretise(settings)
+    answer = reference_of(problem)
+    # It turns by 0.3 with the drum, which strains nothing.
+    found = largest_strain(structure, problem, answer.displacement)
+    tension = np.abs(structure.tensions(problem, answer)).max()
+    assert found == pytest.approx(tension / (settings.young * settings.section))
+    assert 0.03 / settings.drum_radius > 0.05
+
+
 def test_the_strain_of_a_bar_is_force_over_stiffness():
     values = {"friction": 0.0, "load": "ramp", "peak": 900.0}
     settings = CATALOGUE["bar"].checked(values)

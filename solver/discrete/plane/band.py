@@ -213,14 +213,38 @@ class Band(Bodies):
 
         From the first end to the last.
         """
-        assert problem.inside is not None
-        moved = problem.inside.displacement(fields.displacement, slice(None))
         body = self.bodies[0]
         assert isinstance(body.shape, Beam)
-        along = np.diff(body.nodes, axis=0) / body.shape.lengths[:, None]
+        strains = self.strains(problem, fields.displacement)
+        return np.asarray(body.young * body.shape.area * strains)
+
+    def strains(self, problem: Problem, displacement: Array) -> Array:
+        """Strain of all elements, those of the spans too, (n_elements, n_instants).
+
+        `displacement` is that of the problem's degrees of freedom, (n_dofs,
+        n_instants), m.
+        """
+        moved = self._moved_nodes(problem, displacement)
+        shape = self.bodies[0].shape
+        assert isinstance(shape, Beam)
+        lengths = shape.lengths[:, None]
+        along = np.diff(self.bodies[0].nodes, axis=0) / lengths
         stretch = np.einsum("ea,eat->et", along, np.diff(moved, axis=0))
-        stiffness = body.young * body.shape.area / body.shape.lengths
-        return np.asarray(stiffness[:, None] * stretch)
+        return np.asarray(stretch / lengths)
+
+    def lifts(self, problem: Problem, displacement: Array) -> Array:
+        """Slope of the elements on the guide to it, shape (elements, n_instants).
+
+        A band that slides along its guide turns with it, which is no such slope.
+        """
+        moved = self._moved_nodes(problem, displacement)[self.guide.nodes]
+        away = np.einsum("na,nat->nt", self.guide.normals, moved)
+        return np.asarray(np.diff(away, axis=0) / self.guide.span)
+
+    def _moved_nodes(self, problem: Problem, displacement: Array) -> Array:
+        """Displacement of all nodes, shape (n_nodes, 2, n_instants), m."""
+        assert problem.inside is not None
+        return problem.inside.displacement(displacement, slice(None))
 
 
 _AXES = (0, "x"), (1, "y")

@@ -31,8 +31,11 @@ from solver.discrete.plane.body import Body, Held, Joint, Load
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
 from solver.discrete.problem import Problem
-from solver.discrete.structure import Act, Axes, Description, Footing, Loop
+from solver.discrete.structure import Act, Axes, Description, Direction, Footing, Loop
 from solver.laws import FrictionLaw
+
+STRAIGHT = 1e-9
+"""Motion aside, over the largest motion, of displacements along one direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,54 +191,84 @@ class Bodies:
 
     def _acts(self) -> Iterator[Act]:
         """Loads, prescribed displacements, and the weight."""
+        for alike in self._held_by_nodes():
+            yield from self._acts_of_held(alike)
         for held in self.held:
             if held.axis == 2:
                 yield self._act(held, "φ", (0.0, 1.0), held.mean, "rad")
-                continue
-            towards = ((1.0, 0.0), (0.0, 1.0))[held.axis]
-            yield self._act(held, f"u_{'xy'[held.axis]}", towards, held.mean, "m")
         for load in self.loads:
             whole = load.force.sum(axis=0)
             yield self._act(load, "F", *_directed(whole), "N")
         middle = np.array([[0.5, 0.5]])
         yield Act("body", "W", middle, *_directed(self.weights), "N")
 
+    def _held_by_nodes(self) -> list[list[Held]]:
+        """Nodes held along an axis, together with those held along the other, too."""
+        axes = dict[tuple[int, bytes], list[Held]]()
+        for held in self.held:
+            if held.axis < 2:
+                axes.setdefault((held.body, held.nodes.tobytes()), []).append(held)
+        return list(axes.values())
+
+    def _acts_of_held(self, alike: Sequence[Held]) -> Iterator[Act]:
+        """Displacements of the same nodes: one, where they go along one direction."""
+        moved = [held for held in alike if np.any(held.mean)]
+        if len(moved) == 2:
+            motion = np.zeros((2, len(self.instants)))
+            for held in moved:
+                motion[held.axis] = held.mean
+            directions, sizes = _directed(motion)
+            towards = directions[:, sizes.argmax()]
+            values = towards @ motion
+            aside = motion - np.outer(towards, values)
+            if np.abs(aside).max() <= STRAIGHT * sizes.max():
+                yield self._act(moved[0], "u", towards, values, "m")
+                return
+        for held in moved:
+            towards = np.eye(2)[held.axis]
+            yield self._act(held, f"u_{'xy'[held.axis]}", towards, held.mean, "m")
+
     def _act(
         self,
         given: Held | Load,
         symbol: str,
-        towards: tuple[float, float] | Array,
+        towards: Direction | Array,
         values: Array,
         unit: str,
     ) -> Act:
         """Act at the middle one of the nodes of what is given."""
-        nodes, outward = self._line(given)
+        along = np.asarray(towards)
+        if along.ndim > 1:
+            along = along[:, np.abs(values).argmax()]
+        # Of several sides the one that is farthest in the direction of positive values.
+        lines = self._lines(given)
+        nodes, outward = max(lines, key=lambda line: along @ line[1].mean(axis=0))
         middle = len(nodes) // 2
         points = self._as_shares(self.bodies[given.body].nodes[nodes[[middle]]])
         away = outward[middle]
-        if not self._has_edges(given):
+        if not self._chains_of(given):
             # At a point without a normal there is room along the load.
-            along = np.asarray(towards)
-            if along.ndim > 1:
-                along = along[:, np.abs(values).argmax()]
             away = np.copysign(1.0, along @ away) * along
         x, y = away.tolist()
         return Act(given.name, symbol, points, towards, values, unit, (x, y))
 
-    def _has_edges(self, given: Held | Load) -> bool:
-        """Check whether the nodes of what is given are a chain of edges of a mesh."""
+    def _chains_of(self, given: Held | Load) -> list[Indices]:
+        """Chains of edges of a mesh that the nodes of what is given make, if all do."""
         shape = self.bodies[given.body].shape
-        return isinstance(shape, Mesh) and shape.edges_of(given.nodes) is not None
+        if not isinstance(shape, Mesh):
+            return []
+        return shape.chains_of(given.nodes)
 
-    def _line(self, given: Held | Load) -> tuple[Indices, Array]:
-        """Nodes of what is given in order along a line, (n,), and unit vectors there.
+    def _lines(self, given: Held | Load) -> list[tuple[Indices, Array]]:
+        """Nodes of what is given in order along lines, (n,), and unit vectors there.
 
         The vectors point out of the body, (n, 2): those of its edges, or where the
-        nodes are no chain of edges all the way from its middle to theirs.
+        nodes are no chains of edges all the way from its middle to theirs.
         """
         body = self.bodies[given.body]
-        if self._has_edges(given):
-            return given.nodes, body.outward(given.nodes)
+        chains = self._chains_of(given)
+        if chains:
+            return [(chain, body.outward(chain)) for chain in chains]
         places = body.nodes[given.nodes]
         order = np.argsort(places[:, int(np.ptp(places, axis=0).argmax())])
         beyond = places.mean(axis=0) - body.nodes.mean(axis=0)
@@ -243,7 +276,7 @@ class Bodies:
         outward = np.array([0.0, -1.0])
         if size > 0.0:
             outward = beyond / size
-        return given.nodes[order], np.tile(outward, (len(order), 1))
+        return [(given.nodes[order], np.tile(outward, (len(order), 1)))]
 
     def _footings(self) -> Iterator[Footing]:
         """Rigid supports, and nodes that are held, whether they are moved or not."""
@@ -253,17 +286,13 @@ class Bodies:
                 gap = np.broadcast_to(joint.gap, len(points))
                 yield Footing("support", self._as_shares(points), -joint.normals, gap)
         # Nodes that are held along both axes are clamped.
-        axes = dict[tuple[int, bytes], list[Held]]()
-        for held in self.held:
-            if held.axis < 2:
-                axes.setdefault((held.body, held.nodes.tobytes()), []).append(held)
-        for alike in axes.values():
-            nodes, outward = self._line(alike[0])
-            points = self._as_shares(self.bodies[alike[0].body].nodes[nodes])
+        for alike in self._held_by_nodes():
             kind: Literal["clamp", "rollers"] = "rollers"
             if len(alike) > 1:
                 kind = "clamp"
-            yield Footing(kind, points, outward)
+            for nodes, outward in self._lines(alike[0]):
+                points = self._as_shares(self.bodies[alike[0].body].nodes[nodes])
+                yield Footing(kind, points, outward)
 
     def _as_shares(self, points: Array) -> Array:
         """Points, (n, 2, ...), m, as shares of the length and height of all bodies."""

@@ -151,6 +151,25 @@ class Mesh:
             return None
         return edges
 
+    def chains_of(self, nodes: Indices) -> list[Indices]:
+        """Chains of edges, (n,) each, that nodes make one after the other, if all do.
+
+        Those of both ends of a plate are two, say.
+        """
+        chains = []
+        first = 0
+        while first < len(nodes):
+            last = first + 3
+            while (
+                last < len(nodes) and self.edges_of(nodes[first : last + 2]) is not None
+            ):
+                last += 2
+            if self.edges_of(nodes[first:last]) is None:
+                return []
+            chains.append(nodes[first:last])
+            first = last
+        return chains
+
     @property
     def n_corners(self) -> int:
         """Number of corners."""

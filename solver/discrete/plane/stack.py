@@ -405,11 +405,21 @@ class Stack:
         )
 
     def _acts(self) -> Iterator[Act]:
-        """Loads and prescribed displacements of the sides, and the weight."""
+        """Loads and prescribed displacements of the sides, and the weight.
+
+        A displacement that is one of several sides is drawn at the first of them.
+        """
+        drawn: list[tuple[int, Given]] = []
         for name, side in self.sides.items():
             if name == "bottom" and self.support is not None:
                 continue
             for component, given in enumerate(side):
+                is_same = [
+                    across == component and given is other for across, other in drawn
+                ]
+                if given.prescribed and any(is_same):
+                    continue
+                drawn.append((component, given))
                 yield self._act_on_side(given, name, component)
         if np.any(self.settlement):
             yield self._act_of_ground()

@@ -232,9 +232,9 @@ class Packing:
         return cls(tuple(rows))
 
     @classmethod
-    def heap(cls, rings: int) -> Packing:
-        """Rows of wires above those on the ground, the highest of a single one."""
-        return cls(tuple(range(rings + 1, 0, -1)))
+    def heap(cls, rows: int) -> Packing:
+        """Rows of wires on the ground, the highest of a single one."""
+        return cls(tuple(range(rows, 0, -1)))
 
     @cached_property
     def centres(self) -> Array:
