@@ -16,6 +16,7 @@ from typing import Any
 
 from solver.discrete.problem import Problem
 from solver.files.disk import check_place, read_bytes, why
+from solver.files.paraview import PARAVIEW, contacts_of_series
 from solver.files.saved import settings_from_command
 from solver.files.tables import Table, read_table
 from solver.latin.end.cost import run_cost
@@ -64,10 +65,11 @@ def given(chosen: argparse.Namespace) -> tuple[Settings, Mapping[str, str]]:
 
 
 def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
-    """Table of the file that `--with` names."""
-    data = read_bytes(
-        chosen.file, partial(SettingError, "--with", str(chosen.file), allowed)
-    )
+    """Table of the file that `--with` names, which may be a series for ParaView."""
+    refuse = partial(SettingError, "--with", str(chosen.file), allowed)
+    data: bytes | str = read_bytes(chosen.file, refuse)
+    if chosen.file.suffix == PARAVIEW:
+        data = contacts_of_series(chosen.file, refuse)
     return read_table(data, chosen.file.name, "--with", allowed)
 
 

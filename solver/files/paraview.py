@@ -1,11 +1,16 @@
 """Results in the plane as a series of files that ParaView opens, by meshio.
 
 FILE.pvd lists two files for each instant, in a folder FILE beside it: the bodies, with
-displacement and stress, and lines along the contacts, with their fields.
+displacement and stress, and lines along the contacts, with their fields. Contacts are
+read again as a table: for that it also lists the names of the interfaces, which
+ParaView passes over.
 """
 
 from __future__ import annotations
 
+import csv
+import io
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
@@ -14,7 +19,7 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.inside import Inside
-from solver.files.disk import whole_file
+from solver.files.disk import Refuse, whole_file
 from solver.latin import Iterate
 from solver.settings.definitions import SettingError
 
@@ -23,6 +28,12 @@ if TYPE_CHECKING:
 
 PARAVIEW = ".pvd"
 """End of the names of these files."""
+INTERFACES = "interfaces"
+"""Attribute with the names of the interfaces, a list in JSON."""
+CONTACTS = "contacts"
+"""Beginning of the names of files with the lines along the contacts."""
+HEAD = ["x [m]", "t [s]", "friction force [Pa]", "interface"]
+"""Head of the table of the contacts."""
 KINDS = {
     4: "quad",
     3: "triangle",
@@ -65,11 +76,12 @@ def write_series(path: Path, iterate: Iterate) -> None:
     folder = path.with_suffix("")
     folder.mkdir(exist_ok=True)
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
-    listed = ElementTree.SubElement(root, "Collection")
+    names = list(iterate.problem.rubbing)
+    listed = ElementTree.SubElement(root, "Collection", {INTERFACES: json.dumps(names)})
     displacement = inside.displacement(iterate.displacement, slice(None))
     parts: dict[str, _Bodies | _Contacts] = {
         "bodies": _Bodies(inside, displacement),
-        "contacts": _Contacts(iterate),
+        CONTACTS: _Contacts(iterate),
     }
     for instant, time in enumerate(iterate.problem.instants.tolist()):
         for number, (name, part) in enumerate(parts.items()):
@@ -84,6 +96,57 @@ def write_series(path: Path, iterate: Iterate) -> None:
             )
     with whole_file(path, "wb") as whole:
         ElementTree.ElementTree(root).write(whole, "utf-8", xml_declaration=True)
+
+
+def contacts_of_series(path: Path, refuse: Refuse) -> str:
+    """Friction along the contacts of a series, as the text of a table.
+
+    Its rows are those of all instants and all points, its columns those of `HEAD`.
+
+    Parameters
+    ----------
+    path
+        The file that lists the others, as `write_series` writes it.
+    refuse
+        Makes a refusal from a remedy.
+
+    Raises
+    ------
+    SettingError
+        For what is no such file, or where a file that it lists is none.
+    """
+    # Only comparisons with such files pay for the import.
+    import meshio
+
+    text = io.StringIO()
+    rows = csv.writer(text)
+    rows.writerow(HEAD)
+    try:
+        (listed,) = ElementTree.parse(path).getroot()
+        names = np.array(json.loads(listed.attrib[INTERFACES]))
+        for each in listed:
+            if not Path(each.attrib["file"]).name.startswith(CONTACTS):
+                continue
+            data = meshio.read(path.parent / each.attrib["file"]).point_data
+            time = float(each.attrib["timestep"])
+            interfaces = names[data["interface"].ravel().astype(int) - 1]
+            for x, friction, name in zip(
+                data["x"].tolist(), data["friction"].tolist(), interfaces, strict=True
+            ):
+                rows.writerow([repr(x), repr(time), repr(friction), name])
+    # meshio ends the program where a file is of no kind that it knows.
+    except (OSError, SystemExit, meshio.ReadError):
+        raise refuse("a file that it lists cannot be read: give all of them") from None
+    except (
+        AttributeError,
+        IndexError,
+        KeyError,
+        TypeError,
+        ValueError,
+        ElementTree.ParseError,
+    ):
+        raise refuse("give a series that `run --out FILE.pvd` wrote") from None
+    return text.getvalue()
 
 
 class _Bodies:
@@ -122,12 +185,15 @@ class _Contacts:
         problem = iterate.problem
         contacts = problem.rubbing
         positions = []
+        along = []
         areas = []
         for law in contacts.laws.values():
             of_pairs = problem.positions[problem.row_dofs[law.tangent.above]]
             positions.append(law.mean_by_point(of_pairs))
+            along.append(law.positions[:, None])
             areas.append(law.by_point(law.weights))
         self._points = contacts.of_points(positions)
+        self._places = contacts.of_points(along)[:, 0]
         self._areas = contacts.of_points([area[:, None] for area in areas])[:, 0]
         self._fields = [iterate.contact(name) for name in contacts]
         self._opens = problem.opens
@@ -144,6 +210,7 @@ class _Contacts:
             "slip": self._along("slip", instant),
             "status": self._along("status", instant),
             "interface": self._interfaces,
+            "x": self._places,
         }
         # Where the pressure is known beforehand it is no unknown of the run.
         if self._opens:

@@ -258,6 +258,11 @@ class WallSettings(RectangleSettings):
         return len(self._bricks)
 
     @property
+    def reach(self) -> float:
+        """Largest position along the contacts, m: the length of the wall."""
+        return float(self.bricks * self.length)
+
+    @property
     def n_substructures(self) -> int:
         """Number of substructures: each brick is one."""
         return self.n_bodies

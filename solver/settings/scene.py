@@ -119,6 +119,11 @@ class Settings(LoadSettings):
         return components * self.n_interfaces * (self.elements + 1)
 
     @property
+    def reach(self) -> float:
+        """Largest position along the contacts, m: of a body, or of several in a row."""
+        return float(self.length)
+
+    @property
     def loop_is_over_displacement(self) -> bool:
         """Check whether the loop of the scene is a force over a displacement, m."""
         return True

@@ -123,12 +123,13 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
     table, names = _with_contacts(table)
     reading = in_si(table, used)
     x, t, values = reading.numbers
-    _check_places(x, t, reading.lines, settings, table.refuse)
+    _check_places(x, reading.lines, settings.reach, table.refuse)
+    _check_times(t, settings.duration, table.refuse)
     if names is not None:
         names = names[np.isin(table.lines, reading.lines)]
     return OtherResults(
         quantity=quantity,
-        positions=np.clip(x, 0.0, settings.length),
+        positions=np.clip(x, 0.0, settings.reach),
         times=t,
         values=values,
         source=table.source,
@@ -196,24 +197,20 @@ def _columns(table: Table) -> tuple[str, list[TableColumn]]:
     raise table.refuse(f"its head names {named}: give one of them")
 
 
-def _check_places(
-    x: Array, t: Array, lines: Indices, settings: Settings, refuse: Refuse
-) -> None:
-    """Refuse positions outside of the body, and too few rows during the run.
+def _check_places(x: Array, lines: Indices, length: float, refuse: Refuse) -> None:
+    """Refuse positions outside of the body.
 
     Parameters
     ----------
-    x, t
-        Positions, m, and times, s, shape (n_rows,).
+    x
+        Positions, m, shape (n_rows,).
     lines
         Lines of the rows in the file, shape (n_rows,).
-    settings
-        Settings of the scene.
+    length
+        Largest position of the body, m.
     refuse
         Makes the refusal of the table.
     """
-    length = settings.length
-    duration = settings.duration
     beyond = np.flatnonzero((x < -EDGE * length) | (x > (1.0 + EDGE) * length))
     # A position outside is mostly one in millimetres.
     if len(beyond):
@@ -222,6 +219,10 @@ def _check_places(
             f"line {lines[first]} has x = {x[first]:g} m, outside of the body, which "
             f"goes from 0 to {length:g} m: name its unit (x [mm]), or shift or scale x"
         )
+
+
+def _check_times(t: Array, duration: float, refuse: Refuse) -> None:
+    """Refuse too few times, s, (n_rows,), during a run of a duration, s."""
     during = int(((t >= 0.0) & (t <= duration)).sum())
     if during < FEWEST:
         raise refuse(

@@ -1,5 +1,6 @@
 """Series of files for ParaView hold the fields of a run in the plane."""
 
+import json
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -71,6 +72,43 @@ def test_pressure_times_length_is_the_pressing_force(tmp_path: Path) -> None:
     assert areas[is_pressed].min() > 0.0
     assert areas.sum() <= 2.0 * 0.1 * (1.0 + 1e-9)
     assert (ends >= 0.0).all()
+
+
+@pytest.mark.parametrize("scene", PLANE)
+def test_a_run_is_no_distance_from_its_own_files(
+    scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kind = CATALOGUE[scene]
+    small = [f"--set={name}={value}" for name, value in kind.SMALL.items()]
+    command = [scene, *small, "--set=instants=5"]
+    path = tmp_path / "run.pvd"
+    main(["run", *command, "--no-reference", "--out", str(path)])
+    capsys.readouterr()
+    main(["compare", *command, "--with", str(path), "--json"])
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["distance"] == pytest.approx(0.0, abs=1e-12)
+    assert figures["rows_compared"] > 4
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("nothing", "give a series"),
+        ("<VTKFile><Collection/></VTKFile>", "give a series"),
+        (
+            '<VTKFile><Collection interfaces="[]"><DataSet timestep="0" '
+            'file="contacts_0000.vtu"/></Collection></VTKFile>',
+            "give all of them",
+        ),
+    ],
+)
+def test_what_is_no_series_is_refused(
+    content: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "other.pvd"
+    path.write_text(content, encoding="utf-8")
+    assert main(["compare", "mesh", "--with", str(path)]) == 2
+    assert said in capsys.readouterr().err
 
 
 def test_rods_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
