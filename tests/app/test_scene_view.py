@@ -48,9 +48,12 @@ def frame_of(
 
 def small(scene: str) -> Settings:
     settings = default_settings(scene)
-    return settings.checked(
-        {n: v for n, v in SMALL.items() if n in settings.definitions()}
-    )
+    fewer = {
+        name: min(most, getattr(settings, name))
+        for name, most in SMALL.items()
+        if name in settings.definitions()
+    }
+    return settings.checked(fewer)
 
 
 @pytest.fixture(scope="module", params=SCENES)

@@ -41,6 +41,10 @@ MODEL = """(name) => {
     if (model) { return model }
   }
 }"""
+GO = """(query) => {
+  history.pushState(null, "", query)
+  dispatchEvent(new PopStateEvent("popstate"))
+}"""
 Visit = Callable[..., Page]
 
 
@@ -84,6 +88,15 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     lines = CLOSED.sub("", said).splitlines()
     faults = [line for line in lines if FAULT.search(line)]
     assert all(ALLOWED.search(line) for line in faults), said
+
+
+def go(page: Page, query: str) -> None:
+    """Have an open page show the state of another address, as Back and Forward do.
+
+    An opening takes seconds of a processor. What is there may be of the state before:
+    wait for something that both do not share.
+    """
+    page.evaluate(GO, query)
 
 
 def status(page: Page) -> Locator:

@@ -3,9 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
+import pytest
 from axe_playwright_python.sync_playwright import Axe
-from pages import ANSWER, Visit, button, close_dialog, field, figure, is_solved, status
+from browser import Chrome, Server
+from pages import (
+    ANSWER,
+    Visit,
+    button,
+    close_dialog,
+    field,
+    figure,
+    go,
+    is_solved,
+    status,
+    visits,
+)
 from playwright.sync_api import Page, expect
 
 WIDTH = 390
@@ -40,9 +54,14 @@ def violations(page: Page) -> list[str]:
     return found
 
 
-def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(visit: Visit) -> None:
-    page = visit(f"?{ANSWER}&theme=dark")
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page in the dark that is opened once for those with mouse or keys."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{ANSWER}&theme=dark")
 
+
+def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(page: Page) -> None:
     def is_clean() -> None:
         # No tooltip is on its way.
         page.mouse.move(640.0, 5.0)
@@ -88,8 +107,9 @@ def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
     figure(page, 0).click(trial=True)
 
 
-def test_keys_open_dialogs_and_the_view_for_a_projector(visit: Visit) -> None:
-    page = visit(f"?{ANSWER}")
+def test_keys_open_dialogs_and_the_view_for_a_projector(page: Page) -> None:
+    go(page, f"?{ANSWER}")
+    expect(field(page, "Peak load")).to_be_visible()
     is_solved(page)
     page.locator(".sentence").click()
     page.keyboard.press("?")

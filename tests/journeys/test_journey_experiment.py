@@ -3,10 +3,22 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
-from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved
-from playwright.sync_api import expect
+import pytest
+from browser import Chrome, Server
+from pages import (
+    ANSWER,
+    button,
+    close_dialog,
+    field,
+    figures,
+    go,
+    is_solved,
+    visits,
+)
+from playwright.sync_api import Page, expect
 
 from app.state import default_settings
 from solver.study.quantities.finished import finished_run
@@ -26,8 +38,14 @@ def measured() -> str:
     return "\n".join(["time [s],displacement [mm],force [kN]", *lines])
 
 
-def test_a_case_is_opened_by_its_picture_and_meets_its_number(visit: Visit) -> None:
-    page = visit(f"?{ANSWER}")
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page that is opened once: that takes longer than what is done with it."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{ANSWER}")
+
+
+def test_a_case_is_opened_by_its_picture_and_meets_its_number(page: Page) -> None:
     is_solved(page)
     button(page, "Cases").click()
     page.get_by_role("button", name="Bolted lap joint").click()
@@ -40,11 +58,12 @@ def test_a_case_is_opened_by_its_picture_and_meets_its_number(visit: Visit) -> N
 
 
 def test_a_measured_loop_is_compared_and_fitted_and_the_fit_is_run(
-    visit: Visit, tmp_path: Path
+    page: Page, tmp_path: Path
 ) -> None:
     path = tmp_path / "rig.csv"
     path.write_text(measured(), encoding="utf-8")
-    page = visit(f"?{QUERY}&{ANSWER}&load=cycle&friction=0.4")
+    go(page, f"?{QUERY}&{ANSWER}&load=cycle&friction=0.4")
+    expect(field(page, "Friction coefficient")).to_have_value("0.4")
     is_solved(page)
     button(page, "Fit").click()
     with page.expect_file_chooser() as chooser:

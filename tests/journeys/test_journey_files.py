@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+import pytest
 from browser import ROOT, Chrome, Server
 from pages import (
     ANSWER,
@@ -22,7 +23,9 @@ from pages import (
     enter,
     field,
     figures,
+    go,
     is_solved,
+    visits,
 )
 from playwright.sync_api import Browser, Dialog, Page, Request, expect
 
@@ -99,10 +102,26 @@ def lie_apart(boxes: Sequence[Any]) -> None:
         assert is_beside or is_below, (one, other)
 
 
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page that is opened once: that takes longer than what is done with it."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{SMALL}")
+
+
+def open_files(page: Page) -> None:
+    """Show the run of the address anew, with the place where files are opened."""
+    go(page, f"?{SMALL}")
+    expect(field(page, "Peak load")).to_have_value("900")
+    is_solved(page)
+    if not page.get_by_role("button", name="Save settings").is_visible():
+        button(page, "Files").click()
+    expect(page.get_by_role("button", name="Save settings")).to_be_visible()
+
+
 def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_program_and_page(
-    visit: Visit, tmp_path: Path
+    page: Page, tmp_path: Path
 ) -> None:
-    page = visit(f"?{SMALL}")
     is_solved(page)
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
@@ -140,14 +159,12 @@ def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_program_and_page
 
 
 def test_a_file_is_opened_by_keys_and_what_is_said_of_it_is_spoken(
-    visit: Visit, tmp_path: Path
+    page: Page, tmp_path: Path
 ) -> None:
-    page = visit(f"?{SMALL}")
-    is_solved(page)
+    open_files(page)
     spoken = page.get_by_role("status")
     expect(spoken).to_have_text(re.compile("solved.*certified"))
     region = spoken.element_handle()
-    button(page, "Files").click()
     label = page.locator("label", has=page.locator("input[type=file]"))
     expect(label).to_be_visible()
     before = label.inner_text()
@@ -174,11 +191,9 @@ def test_a_file_is_opened_by_keys_and_what_is_said_of_it_is_spoken(
 
 
 def test_what_a_file_has_is_drawn_beside_or_run_and_what_was_understood_is_said(
-    visit: Visit, tmp_path: Path
+    page: Page, tmp_path: Path
 ) -> None:
-    page = visit(f"?{SMALL}")
-    is_solved(page)
-    button(page, "Files").click()
+    open_files(page)
     expect(page.get_by_text("Open settings, a table or a mesh").first).to_be_visible()
     upload(page, tmp_path / "theirs.csv", RESULTS)
     expect(figures(page)).to_contain_text("Distance to theirs.csv")
@@ -254,11 +269,9 @@ def watched(page: Page) -> Iterator[None]:
 
 
 def test_nothing_runs_that_a_file_says_or_is_called(
-    visit: Visit, chrome: Chrome, tmp_path: Path
+    page: Page, chrome: Chrome, tmp_path: Path
 ) -> None:
-    page = visit(f"?{SMALL}")
-    is_solved(page)
-    button(page, "Files").click()
+    open_files(page)
     said = page.locator(".line div").first
     with watched(page):
         for number, (name, text) in enumerate(HOSTILE.items()):

@@ -18,6 +18,7 @@ from pages import (
     field,
     figure,
     figures,
+    go,
     is_solved,
     status,
     visits,
@@ -62,10 +63,16 @@ def follow(visit: Visit, code: str) -> Page:
     return page
 
 
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page that takes a lesson, and later leads a class."""
+    with visits(server, chrome) as visit:
+        yield visit()
+
+
 def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
-    visit: Visit,
+    page: Page,
 ) -> None:
-    page = visit()
     choose(page, QUESTION)
     expect(page.get_by_role("heading", name=QUESTION)).to_be_visible()
     expect(page).to_have_url(re.compile("lesson=small-indicator"))
@@ -103,10 +110,13 @@ class School:
 
 
 @pytest.fixture(scope="module")
-def school(chrome: Chrome, server: Server) -> Iterator[School]:
+def school(page: Page, chrome: Chrome, server: Server) -> Iterator[School]:
     """A class whose pages are opened once: that takes longer than what they do."""
     with visits(server, chrome) as visit:
-        leader = visit(f"?{ANSWER}")
+        leader = page
+        # Whoever took a lesson looks at another instant.
+        go(leader, f"?{ANSWER}&instant=0.75")
+        expect(status(leader)).to_contain_text("answer:")
         is_solved(leader)
         code = lead(leader)
         first = follow(visit, code)

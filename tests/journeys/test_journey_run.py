@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
+import pytest
+from browser import Chrome, Server
 from pages import (
     ANSWER,
     ENDLESS,
@@ -14,12 +17,14 @@ from pages import (
     field,
     figure,
     figures,
+    go,
     holds,
     is_solved,
     iteration,
     slider,
     status,
-)  # fmt: skip
+    visits,
+)
 from playwright.sync_api import Page, expect
 from processes import wait_for
 
@@ -44,6 +49,14 @@ PIECES = """() => {
   return arrows?.data_source.get_array("x").length > 2
 }"""
 """Whether the pieces of the structure have forces."""
+
+
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page that is opened once: that takes longer than what most do with it."""
+    with visits(server, chrome) as visit:
+        yield visit("?pace=fastest")
+
 
 MEANING = "(term) => getComputedStyle(term, '::after').content"
 MET = "localStorage.getItem('slipfront')"
@@ -100,6 +113,17 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     assert page.evaluate(MET) == "met"
 
 
+def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
+    page: Page,
+) -> None:
+    # The first test of this page: nobody has done anything.
+    is_solved(page)
+    expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
+    figure(page, 1).click()
+    expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
+    expect(figures(page)).to_contain_text(re.compile(r"Force −?\d\d? N"))
+
+
 def heights_of_plots(page: Page) -> list[float]:
     """Heights of the figures in the cards, px."""
     boxes = [figure(page, number).bounding_box() for number in (2, 3)]
@@ -113,9 +137,9 @@ def has_plots_beside(page: Page) -> bool:
 
 
 def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
-    visit: Visit,
+    page: Page,
 ) -> None:
-    page = visit("?pace=fastest&plots=Pieces")
+    go(page, "?pace=fastest&plots=Pieces")
     told = [""]
     sentence = page.locator(".sentence div").first
     for scene in CATALOGUE:
@@ -136,10 +160,9 @@ def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
 
 
 def test_typed_values_run_or_are_refused_and_leave_the_pinned_run_and_the_views(
-    visit: Visit,
+    page: Page,
 ) -> None:
-    page = visit(f"?{ANSWER}")
-    is_solved(page)
+    go(page, f"?{ANSWER}")
     enter(page, "Peak load", "1.2 kN", over="900")
     expect(field(page, "Peak load")).to_have_value("1200")
     expect(figures(page)).to_contain_text("Force −1.2 kN")
@@ -192,9 +215,8 @@ def test_typed_values_run_or_are_refused_and_leave_the_pinned_run_and_the_views(
     )
 
 
-def test_the_load_path_is_the_time_line_which_one_plays_and_stops(visit: Visit) -> None:
-    page = visit(f"?{ANSWER}")
-    is_solved(page)
+def test_the_load_path_is_the_time_line_which_one_plays_and_stops(page: Page) -> None:
+    go(page, f"?{ANSWER}&instant=0.75")
     expect(figures(page)).to_contain_text("Force −900 N")
     drag(page, figure(page, 1), 0.75, 0.26)
     expect(figures(page)).to_contain_text(re.compile(r"Force (8|9)\d\d N"))
@@ -211,21 +233,10 @@ def test_the_load_path_is_the_time_line_which_one_plays_and_stops(visit: Visit) 
     expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
 
 
-def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
-    visit: Visit,
-) -> None:
-    page = visit("?pace=fastest")
-    is_solved(page)
-    expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
-    figure(page, 1).click()
-    expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
-    expect(figures(page)).to_contain_text(re.compile(r"Force −?\d\d? N"))
-
-
 def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(
-    visit: Visit,
+    page: Page,
 ) -> None:
-    page = visit(f"?{ENDLESS}&plots=Zigzag")
+    go(page, f"?{ENDLESS}&plots=Zigzag")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
     button(page, "Run or pause").click()
     expect(status(page)).to_contain_text("paused")

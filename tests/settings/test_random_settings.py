@@ -32,6 +32,7 @@ MOST = {
     "layers": 3,
     "bricks": 3,
     "courses": 3,
+    "voussoirs": 6,
 }
 """Bounds that keep a run short."""
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}

@@ -14,7 +14,7 @@ from solver.study.random_runs import draw
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_files_addresses_commands_and_results_give_the_same_settings_again(scene):
-    for row in range(20):
+    for row in range(8):
         chosen = draw(scene, 5, row)
         values = chosen.values()
         again = settings_from_toml(dump(chosen))

@@ -106,7 +106,7 @@ def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> No
     if scene == "mesh":
         changes = {"substructures": 1, "displacement": 1.5e-5}
     plan = tiny(
-        ["friction=0.4:0.5:6"], ["peak_displacement", "dissipation"], scene, **changes
+        ["friction=0.4:0.5:3"], ["peak_displacement", "dissipation"], scene, **changes
     )
     warm = rows_of(plan)
     cold = rows_of(plan, warm=False)
