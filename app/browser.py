@@ -52,9 +52,11 @@ TELL = """
 // Once idle, React has shown all values, and sent back those that it sends back.
 const idle = window.requestIdleCallback ?? ((tell) => setTimeout(tell, 500))
 const given = browser.given
-idle(() => { browser.shown = given }, {timeout: 10000})
+idle(() => { browser.shown = given }, {timeout: 1000})
 """
-"""Script that tells that the values are shown which the page gave to widgets."""
+"""Script that tells that the values are shown which the page gave to widgets. Beside
+pictures that follow each other the browser may never be idle, and a person's choice of
+such a value is not to wait."""
 LISTEN = """
 const measure = () => {
   browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
@@ -296,10 +298,7 @@ class Echoes:
         if value != widget.value:
             self._forget()
             self._state.given += 1
-            for each in (widget.value, value):
-                # An empty value was never shown, and so does not come back.
-                if each != "":
-                    self._given.append((self._state.given, each))
+            self._given.append((self._state.given, value))
         widget.param.update(value=value, **more)
 
     def has(self, value: Any) -> bool:

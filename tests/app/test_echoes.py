@@ -73,3 +73,13 @@ def test_a_tab_that_the_page_left_meanwhile_is_not_turned_to_again() -> None:
     assert (state.tab, tabs.value) == ("Live", "Live")
     tabs.value = "Reports"
     assert state.tab == "Reports"
+
+
+def test_a_value_that_a_person_had_typed_may_be_typed_again() -> None:
+    state = PageState(default_settings("bar"))
+    control = SettingControl("peak", state)
+    control.field.value = "1100"
+    state.change(peak=900.0)
+    control.update()
+    control.field.value = "1100"
+    assert state.settings.values()["peak"] == 1100.0

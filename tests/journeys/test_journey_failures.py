@@ -107,7 +107,7 @@ def test_a_reload_keeps_the_settings_and_back_undoes_them(page: Page) -> None:
     go(page, f"?{ANSWER}")
     expect(field(page, "Peak load")).to_have_value("900")
     is_solved(page)
-    enter(page, "Peak load", "1050", over="900")
+    enter(page, "Peak load", "1100", over="900")
     expect(figures(page)).to_contain_text("Force −1.05 kN")
     button(page, "Block").click()
     expect(page.locator(".sentence")).to_contain_text("block")
@@ -119,7 +119,7 @@ def test_a_reload_keeps_the_settings_and_back_undoes_them(page: Page) -> None:
     expect(figures(page)).to_contain_text("Force −1.05 kN")
     page.reload()
     expect(figures(page)).to_contain_text("Force −1.05 kN")
-    expect(field(page, "Peak load")).to_have_value("1050")
+    expect(field(page, "Peak load")).to_have_value("1100")
 
 
 def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed(
