@@ -250,25 +250,11 @@ class Browser(DataModel):
                 partial(state.param.update, shown=new), BEHIND
             ),
         )
-        self._follow_values(state)
+        self.given = state.given
+        state.param.watch(lambda event: self.update(given=event.new), "given")
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
         document.js_on_event(DocumentReady, CustomJS(args=args, code=TELL))
-
-    def _follow_values(self, state: PageState) -> None:
-        """Number the values that the page gives to widgets."""
-        self.given = state.given
-
-        def count() -> None:
-            self.given = state.given
-
-        def on_given(event: Any) -> None:
-            # A model changes under the document's lock, which a click does not have.
-            # One message tells of all values of a step.
-            if event.old == self.given:
-                pn.state.execute(count, schedule=True)
-
-        state.param.watch(on_given, "given")
 
 
 def fade_first(state: PageState, act: Callable[[], None]) -> None:
@@ -295,11 +281,13 @@ class Echoes:
 
     def show(self, widget: Any, value: Any, **more: Any) -> None:
         """Give a widget a value, with more of its parameters."""
-        if value != widget.value:
-            self._forget()
-            self._state.given += 1
-            self._given.append((self._state.given, value))
-        widget.param.update(value=value, **more)
+        # In one message: the number must not be there before the value.
+        with pn.io.hold():
+            if value != widget.value:
+                self._forget()
+                self._state.given += 1
+                self._given.append((self._state.given, value))
+            widget.param.update(value=value, **more)
 
     def has(self, value: Any) -> bool:
         """Check whether a value that the widget reports may be one given to it."""
