@@ -280,7 +280,7 @@ class Echoes:
         self._given: list[tuple[int, Any]] = []
 
     def show(self, widget: Any, value: Any, **more: Any) -> None:
-        """Give a widget a value, with more of its parameters."""
+        """Have a widget show a value, and set more of its parameters."""
         # In one message: the number must not be there before the value.
         with pn.io.hold():
             if value != widget.value:

@@ -189,12 +189,10 @@ class Band(Bodies):
         moved = along @ [held[f"{PULL} {name}"] for _, name in _AXES]
         friction = np.max(self.joints[0].friction) * self.friction_law.strongest
         exponent = min(float(friction) * self.guide.angle, MOST_EXPONENT)
-        lowest = moved - tension * self._elongation(exponent)
-        highest = moved - tension * self._elongation(-exponent)
-        slide = [0.0]
-        for low, high in zip(lowest.tolist(), highest.tolist(), strict=True):
-            slide.append(min(max(slide[-1], low), high))
-        return np.array(slide[1:])
+        return _with_play(
+            moved - tension * self._elongation(exponent),
+            moved - tension * self._elongation(-exponent),
+        )
 
     def _elongation(self, exponent: float) -> float:
         """Elongation over the tension of the first end, m/N, of a band that slides.
@@ -248,3 +246,11 @@ class Band(Bodies):
 
 
 _AXES = (0, "x"), (1, "y")
+
+
+def _with_play(lowest: Array, highest: Array) -> Array:
+    """Displacement that moves no further than bounds push it; all (n_instants,), m."""
+    places = [0.0]
+    for low, high in zip(lowest.tolist(), highest.tolist(), strict=True):
+        places.append(min(max(places[-1], low), high))
+    return np.array(places[1:])
