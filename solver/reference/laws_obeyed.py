@@ -23,8 +23,8 @@ from solver.laws.interface import Component
 from solver.reference.distance import HIDDEN, Fields, force_size
 
 ROUNDED = 1e-4
-"""Share of the displacement that counts as a size of jumps: the displacement leaves
-rounding, and may be much larger."""
+"""Share of the displacement, and of the length of a spring under the largest force,
+that counts as a size of jumps: both leave rounding, and may be much larger."""
 OPENED = 1e-9
 """Opening, as a share of the largest, from which on a bond is broken."""
 KNOWN = Contact, Dirichlet, Neumann, Perfect
@@ -36,7 +36,7 @@ class LawResiduals:
     """Largest violation of every kind of law over all places and instants.
 
     Forces are a share of `force_size`; lengths a share of the largest jump, or of
-    `ROUNDED` of the displacement where that is more.
+    `ROUNDED` of the displacement or of the softest spring's length where that is more.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ def law_residuals(
     held, prescribed = _prescribed(problem)
     missing, size = _missing_force(problem, displacement, force, held)
     interfaces = _interface_fields(problem, displacement, force)
-    length = ROUNDED * largest_size(displacement)
+    length = ROUNDED * max(largest_size(displacement), size * _softest(problem))
     length = max([length] + [each.largest_jump for each in interfaces])
 
     balance = [np.delete(missing, held, axis=0)]
@@ -138,6 +138,16 @@ def _missing_force(
     inner, elastic = _inner_force(problem, displacement)
     missing = inner - outer - _contact_force(problem, force)
     return missing, force_size(force, outer, elastic, missing[held], HIDDEN)
+
+
+def _softest(problem: Problem) -> float:
+    """Largest compliance of springs in series with contacts, scaled; 0 without any."""
+    springs = []
+    for law in problem.rubbing.values():
+        springs.append(law.in_parallel(law.tangential.compliance))
+        if law.normal is not None:
+            springs.append(law.in_parallel(law.normal.compliance))
+    return largest_size(*springs)
 
 
 def _check_known(problem: Problem) -> None:

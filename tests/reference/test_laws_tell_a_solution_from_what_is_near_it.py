@@ -326,3 +326,23 @@ def test_a_run_whose_body_flies_away_is_not_called_solved():
     run = solve(discretise(settings), method_of(settings))
     assert run.status.ending is not Ending.CONVERGED
     assert not run.is_certified
+
+
+def test_rounding_of_forces_in_a_spring_far_softer_than_its_body_breaks_no_law():
+    settings = CATALOGUE["belt"].checked(
+        {
+            "friction_law": "general",
+            "cohesion": 2.5e6,
+            "normal_stiffness": 653.0,
+            "wrap": 916.0,
+            "pull": 6.3,
+            "tail_force": 0.2,
+            "elements": 47,
+            "substructures": 12,
+            "instants": 11,
+        }
+    )
+    problem = discretise(settings)
+    answer = solve(problem, method_of(settings))
+    assert answer.is_certified
+    assert law_residuals(answer.iterate, problem).largest < 1e-8
