@@ -52,7 +52,7 @@ TELL = """
 // Once idle, React has shown all values, and sent back those that it sends back.
 const idle = window.requestIdleCallback ?? ((tell) => setTimeout(tell, 500))
 const given = browser.given
-idle(() => { browser.shown = given }, {timeout: 1000})
+idle(() => { browser.shown = given }, {timeout: 5000})
 """
 """Script that tells that the values are shown which the page gave to widgets. Beside
 pictures that follow each other the browser may never be idle, and a person's choice of
@@ -278,6 +278,7 @@ class Echoes:
     def __init__(self, state: PageState) -> None:
         self._state = state
         self._given: list[tuple[int, Any]] = []
+        self._last: Any = None
 
     def show(self, widget: Any, value: Any, **more: Any) -> None:
         """Have a widget show a value, and set more of its parameters."""
@@ -286,7 +287,13 @@ class Echoes:
             if value != widget.value:
                 self._forget()
                 self._state.given += 1
-                self._given.append((self._state.given, value))
+                number = self._state.given
+                # What is replaced comes back later than the browser may have told: it
+                # is known until what replaces it is shown. A person's value never does.
+                if widget.value == self._last:
+                    self._given.append((number, self._last))
+                self._given.append((number, value))
+                self._last = value
             widget.param.update(value=value, **more)
 
     def has(self, value: Any) -> bool:

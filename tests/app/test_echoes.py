@@ -83,3 +83,12 @@ def test_a_value_that_a_person_had_typed_may_be_typed_again() -> None:
     control.update()
     control.field.value = "1100"
     assert state.settings.values()["peak"] == 1100.0
+
+
+def test_a_value_is_known_until_what_replaced_it_is_shown() -> None:
+    state, control = changed_twice("peak", 1000.0)
+    state.shown = state.given
+    state.change(peak=1100.0)
+    control.update()
+    control.field.value = "1000"
+    assert state.settings.values()["peak"] == 1100.0
