@@ -207,7 +207,7 @@ class ClassMember(param.Parameterized):
     def enter(self, address: str) -> bool:
         """Follow the class of an address, or lead it on with its key.
 
-        Check whether the page follows a class. Where there is no such class, `message`
+        Return whether the page follows a class. Where there is no such class, `message`
         says so, and all stays as it is.
         """
         code, _, key = address.partition(".")

@@ -69,7 +69,8 @@ def read_brought(chosen: argparse.Namespace, allowed: str) -> Table:
     refuse = partial(SettingError, "--with", str(chosen.file), allowed)
     data: bytes | str = read_bytes(chosen.file, refuse)
     if chosen.file.suffix == PARAVIEW:
-        data = contacts_of_series(chosen.file, refuse)
+        interface = getattr(chosen, "interface", "")
+        data = contacts_of_series(chosen.file, refuse, interface)
     return read_table(data, chosen.file.name, "--with", allowed)
 
 

@@ -98,8 +98,8 @@ def write_series(path: Path, iterate: Iterate) -> None:
         ElementTree.ElementTree(root).write(whole, "utf-8", xml_declaration=True)
 
 
-def contacts_of_series(path: Path, refuse: Refuse) -> str:
-    """Friction along the contacts of a series, as the text of a table.
+def contacts_of_series(path: Path, refuse: Refuse, interface: str = "") -> str:
+    """Friction along an interface of a series, as the text of a table.
 
     Its rows are those of all instants and all points, its columns those of `HEAD`.
 
@@ -107,6 +107,9 @@ def contacts_of_series(path: Path, refuse: Refuse) -> str:
     ----------
     path
         The file that lists the others, as `write_series` writes it.
+    interface
+        Name of the interface; of a name that the file has not, and by default, the
+        first one.
     refuse
         Makes a refusal from a remedy.
 
@@ -123,17 +126,18 @@ def contacts_of_series(path: Path, refuse: Refuse) -> str:
     rows.writerow(HEAD)
     try:
         (listed,) = ElementTree.parse(path).getroot()
-        names = np.array(json.loads(listed.attrib[INTERFACES]))
+        names = json.loads(listed.attrib[INTERFACES])
+        number = names.index(interface) if interface in names else 0
         for each in listed:
             if not Path(each.attrib["file"]).name.startswith(CONTACTS):
                 continue
             data = meshio.read(path.parent / each.attrib["file"]).point_data
             time = float(each.attrib["timestep"])
-            interfaces = names[data["interface"].ravel().astype(int) - 1]
-            for x, friction, name in zip(
-                data["x"].tolist(), data["friction"].tolist(), interfaces, strict=True
-            ):
-                rows.writerow([repr(x), repr(time), repr(friction), name])
+            is_on = data["interface"].ravel() == number + 1
+            x = data["x"].ravel()[is_on].tolist()
+            friction = data["friction"].ravel()[is_on].tolist()
+            for place, traction in zip(x, friction, strict=True):
+                rows.writerow([repr(place), repr(time), repr(traction), names[number]])
     # meshio ends the program where a file is of no kind that it knows.
     except (OSError, SystemExit, meshio.ReadError):
         raise refuse("a file that it lists cannot be read: give all of them") from None

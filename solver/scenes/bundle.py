@@ -61,8 +61,8 @@ class BundleSettings(PlaneSettings):
         "hexagon",
         ["hexagon", "heap"],
         "hexagon: rings of wires round one in the middle, held together by a band. "
-        "heap: rows on the ground, each with one wire less than the row below; with "
-        "three rows it holds by much friction alone.",
+        "heap: rows on the ground, each with one wire less than the row below; three "
+        "rows or more need much friction to hold.",
         title="Wires lie in a",
     )
     rings = BODY.count(

@@ -90,6 +90,22 @@ def test_a_run_is_no_distance_from_its_own_files(
     assert figures["rows_compared"] > 4
 
 
+def test_any_interface_of_a_series_is_compared(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kind = CATALOGUE["wall"]
+    *_, last = discretise(kind.checked(kind.SMALL)).rubbing
+    command = ["wall", *[f"--set={name}={value}" for name, value in kind.SMALL.items()]]
+    path = tmp_path / "run.pvd"
+    main(["run", *command, "--no-reference", "--out", str(path)])
+    capsys.readouterr()
+    compared = ["--with", str(path), "--interface", last, "--json"]
+    main(["compare", *command, *compared])
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["interface"] == last
+    assert figures["distance"] == pytest.approx(0.0, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("content", "said"),
     [
