@@ -127,7 +127,9 @@ def contacts_of_series(path: Path, refuse: Refuse, interface: str = "") -> str:
     try:
         (listed,) = ElementTree.parse(path).getroot()
         names = json.loads(listed.attrib[INTERFACES])
-        number = names.index(interface) if interface in names else 0
+        number = 0
+        if interface in names:
+            number = names.index(interface)
         for each in listed:
             if not Path(each.attrib["file"]).name.startswith(CONTACTS):
                 continue

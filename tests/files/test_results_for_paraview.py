@@ -95,7 +95,8 @@ def test_any_interface_of_a_series_is_compared(
 ) -> None:
     kind = CATALOGUE["wall"]
     *_, last = discretise(kind.checked(kind.SMALL)).rubbing
-    command = ["wall", *[f"--set={name}={value}" for name, value in kind.SMALL.items()]]
+    small = [f"--set={name}={value}" for name, value in kind.SMALL.items()]
+    command = ["wall", *small]
     path = tmp_path / "run.pvd"
     main(["run", *command, "--no-reference", "--out", str(path)])
     capsys.readouterr()
