@@ -271,8 +271,8 @@ class Echoes:
 
     Panel's React wrapper sends a value back after it has shown it. Where the page gave
     the next value meanwhile, that looks as if a person had chosen the one before
-    (panel/models/react_component.ts, `useState`). No value comes back once the browser
-    has told that it has shown it (`PageState.shown`).
+    (panel/models/react_component.ts, `useState`). A value is known until the browser
+    has told that it has shown it, and what replaced it (`PageState.shown`).
     """
 
     def __init__(self, state: PageState) -> None:
@@ -288,8 +288,8 @@ class Echoes:
                 self._forget()
                 self._state.given += 1
                 number = self._state.given
-                # What is replaced comes back later than the browser may have told: it
-                # is known until what replaces it is shown. A person's value never does.
+                # A browser that is never idle may tell too soon, and what is replaced
+                # comes back yet. A person's value never does.
                 if widget.value == self._last:
                     self._given.append((number, self._last))
                 self._given.append((number, value))
