@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum, auto
 
 import numpy as np
 from scipy import sparse
@@ -34,6 +35,9 @@ of HiGHS."""
 TURNED = 1e-3
 """Difference of displacements in a body, over the largest of all, from which on it
 turns."""
+ALIKE = 1e-3
+"""Difference of the angles of bodies, over the largest, up to which they turn as
+one."""
 MOST = 1e6
 """Largest load over the other loads that counts as bounded."""
 INFEASIBLE = 2
@@ -55,15 +59,23 @@ class Collapse:
     mechanism
         Rigid motions of all bodies in which they begin to move, shape (n_dofs,), the
         largest 1.
-    tips
-        A body turns in the mechanism, and does not only slide.
+    motion
+        Kind of the mechanism.
     """
 
     time: float
     instant: int
     share: float
     mechanism: Array
-    tips: bool
+    motion: Motion
+
+
+class Motion(Enum):
+    """Kinds of mechanisms: bodies slide, turn as one, or turn about each other."""
+
+    SLIDES = auto()
+    TIPS = auto()
+    FOLDS = auto()
 
 
 class _Program:
@@ -228,17 +240,25 @@ def _collapse_at(
     # The multipliers of the balance are the motions that the loads do work on.
     moved = -problem.motions @ shares
     mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
-    return Collapse(time, instant, share, mechanism, _tips(problem, mechanism))
+    return Collapse(time, instant, share, mechanism, _motion_of(problem, mechanism))
 
 
-def _tips(problem: Problem, mechanism: Array) -> bool:
-    """Check whether points of a body move apart in a mechanism, shape (n_dofs,)."""
+def _motion_of(problem: Problem, mechanism: Array) -> Motion:
+    """Kind of a mechanism, shape (n_dofs,), by how far its bodies turn."""
     assert problem.inside is not None
+    turns = []
     for part in problem.substructures:
         moved = mechanism[part.dofs]
         modes = problem.inside.rigid_modes(part.dofs)
         # All but what a translation explains.
         shares, *_ = np.linalg.lstsq(modes[:, :2], moved)
-        if float(np.ptp(moved - modes[:, :2] @ shares)) > TURNED:
-            return True
-    return False
+        is_turned = float(np.ptp(moved - modes[:, :2] @ shares)) > TURNED
+        if is_turned:
+            angles, *_ = np.linalg.lstsq(modes, moved)
+            turns.append(angles[2])
+    if not turns:
+        return Motion.SLIDES
+    largest = np.abs(turns).max()
+    if np.ptp(turns) > ALIKE * largest:
+        return Motion.FOLDS
+    return Motion.TIPS

@@ -104,7 +104,8 @@ def _tipping(problem: Problem, first: int) -> str:
 def contact_growth(iterate: Iterate) -> int:
     """Largest number of points with friction that a contact gains between two instants.
 
-    The first closing of a contact does not count.
+    The first closing of a contact does not count, nor does a contact of sides that fit:
+    what load opens and closes there takes its size at once, with any instants.
     """
     growth = 0
     for law, _, points, _ in iterate.problem.rubbing.stacks:
@@ -114,8 +115,9 @@ def contact_growth(iterate: Iterate) -> int:
         is_closed = iterate.status[points] != OPEN
         before = is_closed[:, :-1]
         gained = is_closed[:, 1:] & ~before
-        for some, _ in law.ranges:
-            if rubs[some].any():
+        for some, pairs in law.ranges:
+            is_curved = np.ptp(law.normal.gap[pairs]) > 0.0
+            if is_curved and rubs[some].any():
                 counted = gained[some].sum(axis=0) * before[some].any(axis=0)
                 growth = max(growth, int(counted.max(initial=0)))
     return growth

@@ -404,6 +404,8 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
         return value
     if isinstance(definition, param.Selector):
         if value not in definition.objects:
+            if len(definition.objects) == 1:
+                raise refuse("this scene has no other")
             raise refuse("choose one of these")
         return value
     if isinstance(definition, TextParameter):

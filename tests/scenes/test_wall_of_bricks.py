@@ -17,7 +17,7 @@ from solver.latin.end.status import collapses
 from solver.laws import OPEN, FrictionLaw, SlipFactor
 from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.limit_analysis import collapse_of
+from solver.reference.limit_analysis import Motion, collapse_of
 from solver.reference.linear_system import LinearSystem
 from solver.reference.newton import SINGULAR_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
@@ -186,7 +186,8 @@ def test_a_pile_slides_or_tips_at_the_limit_of_rigid_blocks(courses, friction, l
         assert bool(found.converged[-1]) is stands
         assert found.converged[:5].all()
     collapse = collapse_of(discrete.discretise(made))
-    assert collapse.tips is (limit < friction)
+    motion = Motion.TIPS if limit < friction else Motion.SLIDES
+    assert collapse.motion is motion
 
 
 @pytest.mark.parametrize(

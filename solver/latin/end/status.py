@@ -10,7 +10,7 @@ from solver.discrete.drives import beyond, loads_at
 from solver.discrete.problem import Problem
 from solver.latin.end.certified import Answer
 from solver.latin.end.status_step import Certificate
-from solver.reference.limit_analysis import Collapse
+from solver.reference.limit_analysis import Collapse, Motion
 
 AT_LIMIT = "The run has come to its limit"
 INACCURATE = "The contact force of the iterates is not accurate enough"
@@ -100,6 +100,21 @@ OF_MESH = (
     "This is the limit of the mesh, whose upright joints touch inside their ends "
     "alone: rigid stones carry up to 5 % more."
 )
+_MECHANISMS = {
+    Motion.SLIDES: (
+        "slides away",
+        "Lower the load, or raise friction or pressure.",
+    ),
+    Motion.TIPS: (
+        "tips over",
+        "Lower the load, or make it wider, or press it more.",
+    ),
+    Motion.FOLDS: (
+        "comes apart, as bodies turn about each other",
+        "Lower the load, raise friction, or make it thicker or wider.",
+    ),
+}
+"""What a structure does, and what to do, by the kind of its mechanism."""
 _LOST_JUMP = (
     "At {} no equilibrium goes on from the one before: friction falls with slip "
     "faster than the structure unloads, so that it jumps, and none is found beyond. "
@@ -144,11 +159,7 @@ _LONGER = (
 
 def collapses(problem: Problem, collapse: Collapse) -> Status:
     """Status of a run without equilibrium from a point of the load path on."""
-    motion = "slides away"
-    remedy = "Lower the load, or raise friction or pressure."
-    if collapse.tips:
-        motion = "tips over"
-        remedy = "Lower the load, or make it wider, or press it more."
+    motion, remedy = _MECHANISMS[collapse.motion]
     mesh = ""
     if problem.has_short_joints:
         mesh = f" {OF_MESH}"
