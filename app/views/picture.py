@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +33,7 @@ from app.views.layout import (
     is_opposite,
     turned,
 )
+from app.views.words import Word, in_rows, inside, lies_on, meets
 from solver.arrays import Array
 from solver.discrete.structure import Act
 
@@ -47,25 +47,12 @@ ASKEW = 0.3
 its name stands beside it and not above or below."""
 HANDLE = 5.5
 """Half of the size of the handle of an arrow, px."""
-LINE = 0.8
-"""Height of letters over the distance of rows."""
 MOST_ROWS = 3
 """Largest number of rows by which a word makes way for another."""
-LEFT_OF = {"left": 0.0, "center": 0.5, "right": 1.0}
-"""Share of a text at the left of its anchor, by its alignment."""
 Columns = dict[str, Any]
 """Columns of one source by their names."""
 Strokes = list[tuple[Array, str, float]]
 """Lines with NaN between them, shape (n, 2), px, a colour, and a width, px."""
-
-
-class Word(NamedTuple):
-    """A text in the figure: its anchor, (2,), px, the side it is at, and a colour."""
-
-    text: str
-    anchor: Array
-    align: str
-    color: str
 
 
 class Picture:
@@ -370,7 +357,7 @@ class Picture:
             slope = f"slope {number(float(np.degrees(self.tilt)))}°"
             anchor = np.array([x, -14.0]) + self.layout.origin
             words.append(Word(slope, anchor, "left", FORCE))
-        words = self._apart(_inside(self.layout, words))
+        words = self._apart(inside(self.layout, words))
         x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
         return {
             "x": x,
@@ -415,7 +402,7 @@ class Picture:
     def _covers(self, word: Word) -> bool:
         """Check whether a word lies on bodies or on the handle of an arrow."""
         corners = self.page(self.nodes[self._geometry.cells])
-        is_on_bodies = _lies_on(
+        is_on_bodies = lies_on(
             self.layout, word, corners.min(axis=1), corners.max(axis=1)
         )
         return is_on_bodies or self._hides_handle(word)
@@ -424,7 +411,7 @@ class Picture:
         """Check whether a word lies on the handle of an arrow."""
         handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
         marks = self.page(handles)
-        return _lies_on(self.layout, word, marks - HANDLE, marks + HANDLE)
+        return lies_on(self.layout, word, marks - HANDLE, marks + HANDLE)
 
     def _apart(self, words: Sequence[Word]) -> list[Word]:
         """Words, moved up or down by rows off earlier ones and off handles.
@@ -434,9 +421,9 @@ class Picture:
         placed: list[Word] = []
         for word in words:
             moved = word
-            if _meets(self.layout, word, placed) or self._hides_handle(word):
-                places = _in_rows(self.layout, word, MOST_ROWS)
-                free = [one for one in places if not _meets(self.layout, one, placed)]
+            if meets(self.layout, word, placed) or self._hides_handle(word):
+                places = in_rows(self.layout, word, MOST_ROWS)
+                free = [one for one in places if not meets(self.layout, one, placed)]
                 moved = min(free, key=self._covers, default=word)
             placed.append(moved)
         return placed
@@ -466,7 +453,7 @@ class Picture:
         places = []
         for name in self._names_at_ends(line):
             # Beside a joint that ends within bodies the next row may be free.
-            places += [name, *_in_rows(self.layout, name, 1)]
+            places += [name, *in_rows(self.layout, name, 1)]
         return [min(places, key=self._covers)]
 
     def _names_at_ends(self, line: Array) -> list[Word]:
@@ -494,59 +481,6 @@ class Picture:
             return False
         above = [act for act in self._description.acts if act.where.startswith("top")]
         return any(is_opposite(act, other) for other in above)
-
-
-def _inside(layout: Layout, words: Sequence[Word]) -> list[Word]:
-    """Words, moved so that no text is cut."""
-    inside = []
-    for word in words:
-        width = _width_of(layout, word)
-        left = width * LEFT_OF[word.align]
-        right = max(layout.width - width + left, left)
-        limits = [left, 8.0], [right, layout.height - 8.0]
-        inside.append(word._replace(anchor=np.clip(word.anchor, *limits)))
-    return inside
-
-
-def _width_of(layout: Layout, word: Word) -> float:
-    """Width of a word, about, px."""
-    return layout.letter * len(word.text) + 4.0
-
-
-def _box_of(layout: Layout, word: Word) -> tuple[Array, Array]:
-    """Lower left and upper right corner of a word, (2,) each, px."""
-    width = _width_of(layout, word)
-    size = np.array([width, LINE * layout.row])
-    low = word.anchor - size * [LEFT_OF[word.align], 0.5]
-    return low, low + size
-
-
-def _lies_on(layout: Layout, word: Word, low: Array, high: Array) -> bool:
-    """Check whether a word lies on boxes between corners, shape (n, 2) each, px."""
-    first, last = _box_of(layout, word)
-    return bool(np.any(np.all((low < last) & (high > first), axis=1)))
-
-
-def _meets(layout: Layout, word: Word, others: Sequence[Word]) -> bool:
-    """Check whether a word lies on one of others."""
-    boxes = [_box_of(layout, other) for other in others]
-    low, high = np.reshape(boxes, (-1, 2, 2)).swapaxes(0, 1)
-    return _lies_on(layout, word, low, high)
-
-
-def _in_rows(layout: Layout, word: Word, most: int) -> list[Word]:
-    """A word moved up or down by up to a number of rows, inside the figure.
-
-    Of two places equally far away the one farther from the middle comes first.
-    """
-    outward = math.copysign(layout.row, word.anchor[1] - 0.5 * layout.height)
-    places = []
-    for rows in range(1, most + 1):
-        for shift in (rows * outward, -rows * outward):
-            anchor = np.add(word.anchor, [0.0, shift])
-            if 8.0 <= anchor[1] <= layout.height - 8.0:
-                places.append(word._replace(anchor=anchor))
-    return places
 
 
 def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:

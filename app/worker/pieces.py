@@ -9,45 +9,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 
 from app.frame import LINEAR, LOCAL, Floats
 from app.messages import Needs
-from app.worker.cells import (
-    NONE,
-    Drawing,
-    drawings_of_shapes,
-    floats,
-    ring_of,
-    thinned,
+from app.worker.cells import NONE, floats, thinned
+from app.worker.outlines import (
+    Outline,
+    outlines_of_bodies,
+    outlines_of_rods,
+    outlines_of_shapes,
 )
-from app.worker.geometry import PITCH, THICKNESS
+from app.worker.piece_joints import PieceJoints, pairs_of
 from solver.arrays import Array, Flags, Indices
 from solver.discrete import Bodies, Problem
-from solver.discrete.substructure import Substructure
 from solver.latin import Iterate
 from solver.settings.scene import Settings
 
-MOST_JOINTS = 240
-"""Largest number of joints whose forces are shown."""
-MOST_DETAILED = 40
-"""Number of joints up to which all have their micro forces, and not the selected
-interface alone."""
 MOST_RODS = 6
 """Largest number of rods whose pieces are shown."""
-BENT = 0.05
-"""Largest distance of a straight side from its chord, over half of that."""
-ASIDE = 0.1
-"""Angle between a chord and the direction that tells components apart, rad."""
-MOST_CORNERS = 600
 MOST_MOMENTS = 101
-"""Largest numbers of corners of outlines, about, and of instants that are shown."""
-ABOVE = 0
-BELOW = 1
-"""Sides of a joint: of the piece above or to the right, and of the other one."""
+"""Largest number of instants that are shown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,11 +127,11 @@ class Cutter:
         if self._kind == "plane":
             positions = problem.positions[problem.row_dofs]
             if isinstance(self._structure, Bodies):
-                outlines = _outlines_of_shapes(problem, self._structure)
+                outlines = outlines_of_shapes(problem, self._structure)
                 # From the corner on from which bodies are drawn.
                 positions = positions - self._structure.box[0]
             else:
-                outlines = _outlines_of_bodies(problem)
+                outlines = outlines_of_bodies(problem)
         else:
             count = min(self._bodies, MOST_RODS)
             if self._kind == "helices":
@@ -157,327 +141,9 @@ class Cutter:
             per_rod = len(numbers) // self._bodies
             numbers = numbers[first * per_rod : (first + count) * per_rod]
             rods = np.arange(len(numbers)) // per_rod
-            outlines, positions = _outlines_of_rods(problem, numbers, rods)
-        joints = _Joints(problem, numbers, positions, name)
+            outlines, positions = outlines_of_rods(problem, numbers, rods)
+        joints = PieceJoints(problem, numbers, positions, name)
         return _Apart(problem, numbers, outlines, joints, self._columns)
-
-
-@dataclass(frozen=True, eq=False)
-class _Outline:
-    """Outline of a piece: its corners, (n, 2), m, and how they move.
-
-    `motion` is the map from the rows of the piece, (2 n, n_boundary), and `given` what
-    is added, (2 n, n_instants), scaled, or None.
-    """
-
-    corners: Array
-    motion: Array
-    given: Array | None
-
-
-def _mean_of_rows(part: Substructure) -> Array:
-    """Mean over the rows of each degree of freedom of a piece, (n_dofs, n_boundary)."""
-    trace = part.elasticity.trace
-    mean = np.zeros((len(part.dofs), len(trace)))
-    mean[trace, np.arange(len(trace))] = 1.0
-    return np.asarray(mean / np.maximum(mean.sum(axis=1), 1.0)[:, None])
-
-
-def _outlines_of_bodies(problem: Problem) -> list[_Outline]:
-    """Outlines of the substructures of bodies in the plane."""
-    inside = problem.inside
-    assert inside is not None
-    limit = int(np.clip(MOST_CORNERS / (4 * len(inside.grids)), 2, 9))
-    outlines = []
-    for number, grid in enumerate(inside.grids):
-        numbers = np.arange(grid.size).reshape(grid.shape)
-        up, across = [thinned(size, limit) for size in grid.shape]
-        ring = ring_of(numbers[np.ix_(up, across)])
-        matrix, given = inside.of_part(number, ring)
-        motion = matrix @ _mean_of_rows(problem.substructures[number])
-        corners = inside.nodes[grid.ravel()[ring]]
-        outlines.append(_Outline(corners, motion, given))
-    return outlines
-
-
-def _outlines_of_shapes(problem: Problem, structure: Bodies) -> list[_Outline]:
-    """Outlines of the substructures of bodies of any shape."""
-    inside = problem.inside
-    assert inside is not None
-    limit = max(MOST_CORNERS // len(inside.grids), 8)
-    longest = dict[int, tuple[Drawing, Indices]]()
-    for drawing in drawings_of_shapes(structure, inside):
-        for ring in drawing.rings:
-            if drawing.part not in longest or len(ring) > len(longest[drawing.part][1]):
-                longest[drawing.part] = drawing, ring
-    outlines = []
-    for number, (drawing, ring) in sorted(longest.items()):
-        kept = ring[thinned(len(ring), limit)]
-        nodes = inside.grids[number]
-        order = np.argsort(nodes)
-        numbers = order[np.searchsorted(nodes[order], drawing.numbers[kept])]
-        matrix, given = inside.of_part(number, numbers)
-        motion = matrix @ _mean_of_rows(problem.substructures[number])
-        corners = drawing.positions[kept] - structure.box[0]
-        outlines.append(_Outline(corners, motion, given))
-    return outlines
-
-
-def _outlines_of_rods(
-    problem: Problem, numbers: Indices, rods: Indices
-) -> tuple[list[_Outline], Array]:
-    """Outlines of the pieces of some rods, and positions of all rows, (n_rows, 2), m.
-
-    `numbers` are those of their substructures and `rods` those of their rods, from
-    below, (n_pieces,).
-    """
-    parts = [problem.substructures[number] for number in numbers]
-    length = max(float(np.ptp(problem.positions[part.dofs])) for part in parts)
-    length = max(length, float(problem.positions.max()))
-    thickness = THICKNESS * length
-    positions = np.zeros((problem.n_rows, 2))
-    positions[:, 0] = problem.positions[problem.row_dofs]
-    outlines = []
-    for part, rod in zip(parts, rods, strict=True):
-        low = PITCH * length * rod
-        # Cuts are in the middle of a rod, contacts at its foot or its top.
-        positions[part.rows, 1] = low + 0.5 * thickness
-        ends = [0, -1, -1, 0, 0]
-        x = problem.positions[part.dofs[ends]]
-        corners = np.stack([x, low + thickness * np.array([0, 0, 1, 1, 0])], axis=1)
-        motion = np.zeros((10, len(part.rows)))
-        motion[::2] = _mean_of_rows(part)[ends]
-        given = None
-        if problem.carried is not None:
-            given = np.zeros((10, problem.n_instants))
-            given[::2] = problem.carried[part.dofs[ends]]
-        outlines.append(_Outline(corners, motion, given))
-    for law in problem.rubbing.laws.values():
-        positions[law.tangent.above, 1] -= 0.5 * thickness
-        if law.tangent.below is not None:
-            positions[law.tangent.below, 1] += 0.5 * thickness
-    return outlines, positions
-
-
-class _SidePairs(NamedTuple):
-    """Rows that face each other, and the number of their interface, (n_pairs,) each.
-
-    The number is `NONE` at cuts, and so is the row below on a support.
-    """
-
-    above: Indices
-    below: Indices
-    numbers: Indices
-
-    def joints(self, owners: Indices) -> tuple[_SidePairs, Indices, Indices]:
-        """Pairs at shown joints; what tells these apart, (n_joints, 3); joint of each.
-
-        `owners` are the pieces of all rows, `NONE` where they are not shown, and `NONE`
-        behind the last, (n_rows + 1,).
-        """
-        keys = np.stack([self.numbers, owners[self.above], owners[self.below]], axis=1)
-        is_shown = (keys[:, 1] != NONE) & ((keys[:, 2] != NONE) | (self.below == NONE))
-        keys, of_pairs = np.unique(keys[is_shown], axis=0, return_inverse=True)
-        shown = _SidePairs(
-            self.above[is_shown], self.below[is_shown], self.numbers[is_shown]
-        )
-        return shown, keys, of_pairs.ravel()
-
-
-class _Joints:
-    """Sides of the joints between some pieces, and forces on them.
-
-    `joints`, `is_above`, `owners`, `quarters`, `is_straight`, `points` and `sides` are
-    as in `Pieces`.
-    `macro`, (4 n_sides, n_rows), and `micro`, (2 n_points, n_rows), are maps from the
-    forces on all rows, whose `positions` are (n_rows, 2), m. With many joints there are
-    micro forces on the interface of a name alone.
-    """
-
-    def __init__(
-        self, problem: Problem, numbers: Indices, positions: Array, name: str
-    ) -> None:
-        self._n_rows = problem.n_rows
-        owners = np.full(problem.n_rows + 1, NONE)
-        for piece, number in enumerate(numbers):
-            owners[problem.substructures[number].rows] = piece
-        pairs, keys, of_pairs = _pairs_of(problem).joints(owners)
-        kept = thinned(len(keys), MOST_JOINTS)
-        self.left_out = len(keys) - len(kept)
-        names = [*problem.rubbing, ""]
-        self.names = [names[number] for number in keys[kept, 0]]
-        turns = np.zeros(problem.n_rows, dtype=bool)
-        if problem.inside is not None:
-            turns = problem.inside.directions[problem.row_dofs, 2] != 0.0
-        self._gather(pairs, of_pairs, kept, turns)
-        self.owners = owners[self._rows[np.unique(self._sides, return_index=True)[1]]]
-        self._directions = np.tile([1.0, 0.0], (len(self._rows), 1))
-        if problem.inside is not None:
-            dofs = problem.row_dofs[self._rows]
-            self._directions = problem.inside.directions[dofs, :2]
-        self._positions = positions[self._rows]
-        self._measure()
-        self.macro = self._macro()
-        self.points, self.sides, self.micro = self._micro(name)
-
-    def _gather(
-        self, pairs: _SidePairs, of_pairs: Indices, kept: Indices, turns: Flags
-    ) -> None:
-        """Number the sides of the joints that are kept, and collect their rows.
-
-        `of_pairs` are the joints of the pairs, (n_pairs,). Rows of a turn, (n_rows,),
-        have no force.
-        """
-        rows = np.concatenate([pairs.below, pairs.above])
-        joints = np.tile(of_pairs, 2)
-        is_above = np.repeat([0, 1], len(of_pairs))
-        has_side = (rows != NONE) & np.isin(joints, kept) & ~turns[rows]
-        self._rows = rows[has_side]
-        sides = 2 * np.searchsorted(kept, joints[has_side]) + is_above[has_side]
-        each, self._sides = np.unique(sides, return_inverse=True)
-        self.joints = each // 2
-        self.is_above = each % 2
-
-    def _measure(self) -> None:
-        """Find quarter points, and the place of each row along its side, -1 to 1.
-
-        The place is the one on the chord from end to end of the side.
-        """
-        begin, end = self._ends()
-        middle = 0.5 * (begin + end)
-        half = 0.5 * (end - begin)
-        steps = np.array([-0.5, 0.5])[None, :, None]
-        self.quarters = middle[:, None] + steps * half[:, None]
-        chords = half[self._sides]
-        squares = (chords**2).sum(axis=1)
-        beyond = self._positions - middle[self._sides]
-        away = (beyond * chords).sum(axis=1)
-        has_length = squares > 0.0
-        self._along = np.divide(away, squares, np.zeros_like(away), where=has_length)
-        beside = beyond - self._along[:, None] * chords
-        is_off = (beside**2).sum(axis=1) > BENT**2 * squares
-        self.is_straight = np.bincount(self._sides, weights=is_off) == 0.0
-        self._components = self._components_along(chords)
-
-    def _components_along(self, chords: Array) -> Indices:
-        """Component of each row, (n_rows,), 0 nearly along its chord and 1 across.
-
-        Of both rows at a node one is of either. Chords have the shape (n_rows, 2), m.
-        """
-        # Turned a little: two directions that are askew by 45 degrees are told apart.
-        cos = np.cos(ASIDE)
-        sin = np.sin(ASIDE)
-        turned = chords @ np.array([[cos, sin], [-sin, cos]])
-        turned[~chords.any(axis=1)] = cos, sin
-        across = turned[:, ::-1] * [-1.0, 1.0]
-        of_chord = np.abs((self._directions * turned).sum(axis=1))
-        of_normal = np.abs((self._directions * across).sum(axis=1))
-        return (of_normal > of_chord).astype(np.intp)
-
-    def _ends(self) -> tuple[Array, Array]:
-        """Ends of each side along its longer direction, (n_sides, 2) both, m."""
-        shape = len(self.joints), 2
-        low = np.full(shape, np.inf)
-        high = np.full(shape, -np.inf)
-        np.minimum.at(low, self._sides, self._positions)
-        np.maximum.at(high, self._sides, self._positions)
-        longer = (high - low).argmax(axis=1)[self._sides]
-        place = self._positions[np.arange(len(self._rows)), longer]
-        order = np.lexsort((place, self._sides))
-        firsts = np.searchsorted(self._sides[order], np.arange(shape[0]))
-        lasts = np.append(firsts[1:], len(order)) - 1
-        return self._positions[order[firsts]], self._positions[order[lasts]]
-
-    def _macro(self) -> sparse.csr_array:
-        """Map to macro forces at quarter points, (4 n_sides, n_rows), as of a lever."""
-        shares = np.stack([0.5 - self._along, 0.5 + self._along], axis=1)
-        # Of every row to both quarter points, along x and y.
-        values = shares[:, :, None] * self._directions[:, None]
-        targets = 4 * self._sides[:, None] + np.arange(4)
-        rows = np.repeat(self._rows, 4)
-        shape = 4 * len(self.joints), self._n_rows
-        macro = sparse.csr_array((values.ravel(), (targets.ravel(), rows)), shape=shape)
-        macro.eliminate_zeros()
-        return macro
-
-    def _micro(self, name: str) -> tuple[Array, Indices, sparse.csr_array]:
-        """Points with micro forces, (n_points, 2), m, their sides, and a map to these.
-
-        The macro force is spread as a traction that is linear along the side.
-        """
-        groups = self._groups(name)
-        members = np.concatenate([np.zeros(0, dtype=np.intp), *groups])
-        keys = np.stack(
-            [self._sides[members], np.round(self._along[members], 9)], axis=1
-        )
-        keys, first, of_members = np.unique(
-            keys, axis=0, return_index=True, return_inverse=True
-        )
-        within = self._within(groups)
-        at, by = within.coords
-        values = within.data[:, None] * self._directions[members[at]]
-        targets = 2 * of_members.ravel()[at, None] + np.arange(2)
-        rows = np.repeat(self._rows[members][by], 2)
-        shape = 2 * len(keys), self._n_rows
-        micro = sparse.csr_array((values.ravel(), (targets.ravel(), rows)), shape=shape)
-        micro.eliminate_zeros()
-        points = self._positions[members[first]]
-        return points, keys[:, 0].astype(np.intp), micro
-
-    def _within(self, groups: list[Indices]) -> sparse.coo_array:
-        """Map from forces of rows to their micro part, group by group."""
-        blocks = [sparse.coo_array((0, 0))]
-        for group in groups:
-            blocks.append(sparse.coo_array(_without_macro(self._along[group])))
-        return sparse.block_diag(blocks, format="coo")
-
-    def _groups(self, name: str) -> list[Indices]:
-        """Rows of each side and component with micro forces, in order along it."""
-        is_chosen = np.ones(len(self.names), dtype=bool)
-        if len(self.names) > MOST_DETAILED:
-            is_chosen = np.array(self.names) == name
-        order = np.lexsort((self._along, self._components, self._sides))
-        order = order[is_chosen[self.joints[self._sides[order]]]]
-        numbers = 2 * self._sides[order] + self._components[order]
-        ends = np.flatnonzero(np.diff(numbers)) + 1
-        # Of two points the macro force is all.
-        return [group for group in np.split(order, ends) if len(group) > 2]
-
-
-def _pairs_of(problem: Problem) -> _SidePairs:
-    """Rows of both sides of all cuts and interfaces with friction."""
-    above = []
-    below = []
-    numbers = []
-    for cut in problem.cuts:
-        above.append(cut.second)
-        below.append(cut.first)
-        numbers.append(np.full(len(cut.first), NONE))
-    for stacked in problem.rubbing.stacks:
-        law = stacked.law
-        support = np.full(len(law.points), NONE)
-        for component in law.components:
-            above.append(component.above)
-            below.append(support if component.below is None else component.below)
-            numbers.append(stacked.numbers[law.interface_of_pairs])
-    return _SidePairs(
-        np.concatenate(above), np.concatenate(below), np.concatenate(numbers)
-    )
-
-
-def _without_macro(along: Array) -> Array:
-    """Map from nodal forces to the micro part of the traction, (n_points, n_points).
-
-    Points are at ascending places along a side, from -1 to 1, (n_points,); the traction
-    is given as the force of the whole side.
-    """
-    steps = 0.5 * np.diff(along)
-    weights = np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
-    modes = np.stack([np.ones_like(along), along], axis=1)
-    work = modes.T @ (weights[:, None] * modes)
-    macro = weights[:, None] * modes @ np.linalg.solve(work, modes.T)
-    share = weights / weights.sum()
-    return np.asarray((np.eye(len(along)) - macro) / share[:, None])
 
 
 class _Apart:
@@ -487,8 +153,8 @@ class _Apart:
         self,
         problem: Problem,
         numbers: Indices,
-        outlines: list[_Outline],
-        joints: _Joints,
+        outlines: list[Outline],
+        joints: PieceJoints,
         columns: Indices,
     ) -> None:
         self._scales = problem.scales
@@ -525,7 +191,7 @@ class _Apart:
             columns=shown,
             stages={},
         )
-        pairs = _pairs_of(problem)
+        pairs = pairs_of(problem)
         is_cut = (pairs.numbers == NONE) & np.isin(pairs.above, rows)
         self._cuts = pairs.above[is_cut], pairs.below[is_cut]
 
@@ -564,7 +230,7 @@ class _Apart:
         moved = moved.reshape(-1, 2, moved.shape[1]) * self._scales.displacement
         return floats(self._gapped(moved))
 
-    def _stacked(self, outlines: list[_Outline]) -> Array:
+    def _stacked(self, outlines: list[Outline]) -> Array:
         """Given displacement of all corners, (2 n_corners, n_instants), scaled."""
         stacked = []
         for outline in outlines:

@@ -12,7 +12,8 @@ from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState
 from app.views.pieces import PiecesView
-from app.worker.pieces import MOST_JOINTS, Cutter, Pieces
+from app.worker.piece_joints import MOST_JOINTS
+from app.worker.pieces import Cutter, Pieces
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from app.worker.sampling import Sampler

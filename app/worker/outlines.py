@@ -1,0 +1,113 @@
+"""Outlines of the pieces of a structure: their corners, and how these move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.worker.cells import Drawing, drawings_of_shapes, ring_of, thinned
+from app.worker.geometry import PITCH, THICKNESS
+from solver.arrays import Array, Indices
+from solver.discrete import Bodies, Problem
+from solver.discrete.substructure import Substructure
+
+MOST_CORNERS = 600
+"""Largest number of corners of outlines, about."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Outline of a piece: its corners, (n, 2), m, and how they move.
+
+    `motion` is the map from the rows of the piece, (2 n, n_boundary), and `given` what
+    is added, (2 n, n_instants), scaled, or None.
+    """
+
+    corners: Array
+    motion: Array
+    given: Array | None
+
+
+def _mean_of_rows(part: Substructure) -> Array:
+    """Mean over the rows of each degree of freedom of a piece, (n_dofs, n_boundary)."""
+    trace = part.elasticity.trace
+    mean = np.zeros((len(part.dofs), len(trace)))
+    mean[trace, np.arange(len(trace))] = 1.0
+    return np.asarray(mean / np.maximum(mean.sum(axis=1), 1.0)[:, None])
+
+
+def outlines_of_bodies(problem: Problem) -> list[Outline]:
+    """Outlines of the substructures of bodies in the plane."""
+    inside = problem.inside
+    assert inside is not None
+    limit = int(np.clip(MOST_CORNERS / (4 * len(inside.grids)), 2, 9))
+    outlines = []
+    for number, grid in enumerate(inside.grids):
+        numbers = np.arange(grid.size).reshape(grid.shape)
+        up, across = [thinned(size, limit) for size in grid.shape]
+        ring = ring_of(numbers[np.ix_(up, across)])
+        matrix, given = inside.of_part(number, ring)
+        motion = matrix @ _mean_of_rows(problem.substructures[number])
+        corners = inside.nodes[grid.ravel()[ring]]
+        outlines.append(Outline(corners, motion, given))
+    return outlines
+
+
+def outlines_of_shapes(problem: Problem, structure: Bodies) -> list[Outline]:
+    """Outlines of the substructures of bodies of any shape."""
+    inside = problem.inside
+    assert inside is not None
+    limit = max(MOST_CORNERS // len(inside.grids), 8)
+    longest = dict[int, tuple[Drawing, Indices]]()
+    for drawing in drawings_of_shapes(structure, inside):
+        for ring in drawing.rings:
+            if drawing.part not in longest or len(ring) > len(longest[drawing.part][1]):
+                longest[drawing.part] = drawing, ring
+    outlines = []
+    for number, (drawing, ring) in sorted(longest.items()):
+        kept = ring[thinned(len(ring), limit)]
+        nodes = inside.grids[number]
+        order = np.argsort(nodes)
+        numbers = order[np.searchsorted(nodes[order], drawing.numbers[kept])]
+        matrix, given = inside.of_part(number, numbers)
+        motion = matrix @ _mean_of_rows(problem.substructures[number])
+        corners = drawing.positions[kept] - structure.box[0]
+        outlines.append(Outline(corners, motion, given))
+    return outlines
+
+
+def outlines_of_rods(
+    problem: Problem, numbers: Indices, rods: Indices
+) -> tuple[list[Outline], Array]:
+    """Outlines of the pieces of some rods, and positions of all rows, (n_rows, 2), m.
+
+    `numbers` are those of their substructures and `rods` those of their rods, from
+    below, (n_pieces,).
+    """
+    parts = [problem.substructures[number] for number in numbers]
+    length = max(float(np.ptp(problem.positions[part.dofs])) for part in parts)
+    length = max(length, float(problem.positions.max()))
+    thickness = THICKNESS * length
+    positions = np.zeros((problem.n_rows, 2))
+    positions[:, 0] = problem.positions[problem.row_dofs]
+    outlines = []
+    for part, rod in zip(parts, rods, strict=True):
+        low = PITCH * length * rod
+        # Cuts are in the middle of a rod, contacts at its foot or its top.
+        positions[part.rows, 1] = low + 0.5 * thickness
+        ends = [0, -1, -1, 0, 0]
+        x = problem.positions[part.dofs[ends]]
+        corners = np.stack([x, low + thickness * np.array([0, 0, 1, 1, 0])], axis=1)
+        motion = np.zeros((10, len(part.rows)))
+        motion[::2] = _mean_of_rows(part)[ends]
+        given = None
+        if problem.carried is not None:
+            given = np.zeros((10, problem.n_instants))
+            given[::2] = problem.carried[part.dofs[ends]]
+        outlines.append(Outline(corners, motion, given))
+    for law in problem.rubbing.laws.values():
+        positions[law.tangent.above, 1] -= 0.5 * thickness
+        if law.tangent.below is not None:
+            positions[law.tangent.below, 1] += 0.5 * thickness
+    return outlines, positions
