@@ -109,6 +109,9 @@ def test_a_rope_that_runs_has_the_ratio_of_its_angle_both_ways():
     assert back == pytest.approx(1.0 / limit, rel=1e-3)
     torque = QUANTITIES["torque"](run)
     assert torque == pytest.approx(1000.0 * (limit - 1.0) * 0.1, rel=2e-3)
+    # 3.1 mm of each metre that passes.
+    creep = QUANTITIES["creep"](run)
+    assert creep == pytest.approx(1000.0 * (limit - 1.0) / (5e9 * 1e-4), rel=2e-3)
 
 
 def test_a_jack_reads_its_force_and_wedges_leave_the_known_one():

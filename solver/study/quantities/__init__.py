@@ -62,6 +62,7 @@ QUANTITIES = by_name(
     arches.live_factor,
     belts.tension_ratio,
     belts.torque,
+    belts.creep,
     contacts.end_displacement,
     contacts.residual_displacement,
     contacts.stiffness,

@@ -1,4 +1,4 @@
-"""Quantities of a band on a guide: ratio of its tensions, and torque on a drum."""
+"""Quantities of a band on a guide: ratio of tensions, torque on a drum, and creep."""
 
 from __future__ import annotations
 
@@ -57,3 +57,16 @@ def torque(run: FinishedRun, at: float | None) -> float:
     tail, pulled = _ends(run)
     radius = run.settings.values()["drum_radius"]
     return _largest(run, (pulled - tail) * radius, at)
+
+
+@quantity("Creep of a belt that runs on", parameter=AT, applies=_is_drum)
+def creep(run: FinishedRun, at: float | None) -> float:
+    """Creep that is largest in size, or that at a share of the interval.
+
+    Share by which a belt that runs over a turning drum with these tensions leaves it
+    slower than it comes, (T2 - T1) / (E A): as much of it passes both ends, stretched
+    by more and by less (K. L. Johnson, Contact Mechanics, 1985, 8.3).
+    """
+    tail, pulled = _ends(run)
+    values = run.settings.values()
+    return _largest(run, (pulled - tail) / (values["young"] * values["section"]), at)
