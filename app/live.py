@@ -118,6 +118,9 @@ class Live:
         self._above.visible = is_presented or not state.is_asked
         for part in (self._status, self._figures, self.transport.scrub):
             part.visible = not state.is_asked
+        # A text beside the run says what is seen, and a projector has little room.
+        is_told = state.lesson or state.case
+        self._sentence.visible = not (is_presented and is_told)
         self.transport.present(is_presented)
         self._fit()
         size = TEXT

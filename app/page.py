@@ -25,6 +25,7 @@ from app.state import TABS, PageState
 from app.status import spoken_status
 from app.supervisor import Supervisor
 from app.transport import TOUCHED
+from app.views.view import TEXT
 from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
 
 COMPACT = {
@@ -226,14 +227,18 @@ class Page:
     def _read(self) -> None:
         """Have the text beside the plots as large as they are."""
         styles = {}
+        size = TEXT
         if self.state.view == "present":
-            zoom = f"{LARGE * self.state.height / READ:.2f}"
+            large = LARGE * self.state.height
+            size = f"{large:.0f}px"
+            zoom = f"{large / READ:.2f}"
             styles = {
                 "zoom": zoom,
                 "--zoom": zoom,
                 "--above": "4px",
             }
         self._guide.view.styles = styles
+        self._guide.magnify(size)
 
     def _put(self, event: Any) -> None:
         """Put a dialog on the page when it is first opened."""

@@ -74,12 +74,20 @@ def _known_beside_found(case: Case, state: PageState) -> str:
     if math.isfinite(found):
         run = _written(found, quantity)
         if is_known:
-            off = f" ({100.0 * abs(found / case.known - 1.0):.1f} % off)"
+            off = f" ({_off(found / case.known)} off)"
     known = "known before the change"
     if is_known:
         known = "known"
     words = f"{known} **{_written(case.known, quantity)}**, this run **{run}**{off}"
     return f"{quantity.title}: {words}"
+
+
+def _off(ratio: float) -> str:
+    """Distance of a found value from the known one, by their ratio."""
+    distance = abs(ratio - 1.0)
+    if distance > 1.0:
+        return "more than 100 %"
+    return f"{100.0 * distance:.1f} %"
 
 
 def _written(value: float, quantity: Quantity) -> str:

@@ -39,13 +39,15 @@ KINDS = {kind.name: kind for kind in chain.from_iterable(CARDS)}
 def settings_of(lesson: Lesson | Case) -> Settings:
     """Settings with which a page begins a lesson or a case.
 
-    The search is watched in place of an answer at once. Other ways to finish stay:
-    lessons with the paper's method show every iterate as it is.
+    In lessons on the method the search is watched in place of an answer at once; what
+    is said in cases and in lessons on mechanics is said of the solution. Other ways to
+    finish stay: with the paper's method every iterate is shown as it is.
     """
     settings = lesson.settings
-    if settings.finish == "at-once":
-        return settings.replace(**SEARCH)
-    return settings
+    is_on_method = isinstance(lesson, Lesson) and lesson.subject == "method"
+    if not is_on_method or settings.finish != "at-once":
+        return settings
+    return settings.replace(**SEARCH)
 
 
 def plots_of(case: str) -> list[str]:

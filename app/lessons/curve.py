@@ -8,10 +8,12 @@ from bokeh.models import ColumnDataSource, FreehandDrawTool
 from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
-from app.views.view import FONT, legend
+from app.views.view import FONT, TEXT, legend, magnify
 from solver.settings.definitions import title_of
 from solver.study.lessons import Lesson
 
+LINES = 17.0
+"""Height of the figure over its type size."""
 HIGHEST = 0.6
 """Height of a value that is never reached, over the top of the axis."""
 
@@ -35,7 +37,6 @@ class DrawnCurve:
             y_axis_label=lesson.checkpoints[0].quantity.title.split(" to ")[0],
             x_range=(positions[0] / 2.0, positions[-1] * 2.0),
             y_range=(1.0, self._top),
-            height=200,
             sizing_mode="stretch_width",
             toolbar_location=None,
             tools="",
@@ -63,6 +64,12 @@ class DrawnCurve:
         plot.add_tools(tool)
         plot.toolbar.active_drag = tool
         self.figure = plot
+        self.magnify(TEXT)
+
+    def magnify(self, size: str) -> None:
+        """Set the type size of the figure, as CSS has it, and its height by it."""
+        magnify(self.figure, size, size)
+        self.figure.height = int(LINES * float(size.removesuffix("px")))
 
     def reveal(self) -> None:
         """Show the measured curve, and end the drawing."""

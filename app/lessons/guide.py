@@ -31,7 +31,7 @@ from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
 from app.state import PageState
 from app.transport import Transport
-from app.views.view import View
+from app.views.view import TEXT, View
 from app.widgets import dialog, download, looks
 from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
@@ -62,6 +62,7 @@ class Guide:
         self._curve: DrawnCurve | None = None
         self._choices: Choices | None = None
         self._shown: tuple[str, str, bool] | None = None
+        self._type = TEXT
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
         self.dialogs = {
             "lesson": dialog("Lessons", width_option="md"),
@@ -72,6 +73,12 @@ class Guide:
         )
         state.param.watch(lambda event: self._follow_settings(), "settings")
         state.param.watch(lambda event: self.update(), "frame")
+
+    def magnify(self, size: str) -> None:
+        """Set the type size of the figure to draw on, as CSS has it."""
+        self._type = size
+        if self._curve is not None:
+            self._curve.magnify(size)
 
     def open(self, kind: str, name: str) -> None:
         """Begin a lesson or a case with its settings, in place of another."""
@@ -105,10 +112,11 @@ class Guide:
 
     def predict(self, choice: int) -> None:
         """Take a prediction; outside a class, or from its leader, show the answer."""
-        self._state.prediction = choice
-        if not self._follows:
+        state = self._state
+        state.prediction = choice
+        if not self._follows and state.settings.finish != "at-once":
             # The search was out of sight: it is watched from its start.
-            self._state.run()
+            state.run()
 
     def show(self) -> None:
         """Show the lesson or case that is open, and the predictions of a class."""
@@ -156,6 +164,7 @@ class Guide:
             self._curve = None
             if lesson.draw:
                 self._curve = DrawnCurve(lesson)
+                self._curve.magnify(self._type)
         if self._curve is not None and not is_asked:
             # A figure's own models change under the document's lock, which a click does
             # not have.

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.units import Unit, settled, unit_for
 from app.views.colors import DISPLACEMENT, FORCE
-from app.views.layout import BAND, COLUMN, WALL, Layout, beside, is_aside
+from app.views.layout import BAND, WALL, Layout, beside, is_aside
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, Footing, on_side
@@ -198,11 +198,10 @@ def anchor_of(arrows: Arrows, layout: Layout) -> tuple[Array, str]:
         length, height = layout.size * layout.scale
         room = layout.origin[0] - 0.5 * length - 14.0
         if not layout.key_rows:
-            room -= COLUMN
+            room -= layout.column
         has_room = room > layout.letter * (len(act.symbol) + WORD)
-        is_small = length < 0.5 * layout.width
         # Beside a body that tilts they would meet its corners.
-        if (has_room or is_small) and layout.description.tilt is None:
+        if has_room and layout.description.tilt is None:
             return np.array([-0.5 * length - 14.0, 0.5 * height]), "right"
         above = height + layout.arrow + 6.0 + layout.letter
         return np.array([0.0, above]), "center"

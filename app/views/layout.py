@@ -20,9 +20,8 @@ SHARE = 0.15
 """Largest thickness of a rod: px in a low figure, share of the height in a high one."""
 BAND = 7.0
 """Thickness of the band of an interface, px."""
-FOOT = 18.0
-COLUMN = 150.0
-"""Height of the line of keys below the bodies, or width of their column, px."""
+COLUMN = 20.0
+"""Width of the column of keys, letters."""
 LETTER = 0.56
 """Width of a letter over its type size, about."""
 LONG = 5.0
@@ -47,6 +46,9 @@ EACH = " each"
 """Words behind the value of several equal loads."""
 NARROW = 560.0
 """Width below which keys take two lines, px."""
+LARGER = 1.5
+"""Scale of bodies over that with words at their sides, from which on words stand in
+rows above."""
 
 
 class Layout:
@@ -59,7 +61,9 @@ class Layout:
     line of them `row` px high; a body is about `body_height` m high;
     the largest displacement takes `motion` px at most. Of each load `equals` are
     equal, itself included; 0 where an earlier one has their words. Keys stand below
-    the bodies in `key_rows`, or at their left if there are none.
+    the bodies in `key_rows`, or at their left in a column of the width `column`, px, if
+    there are none. Words of loads on the left and right side stand beside these, or
+    `in_rows` above all else.
 
     Bodies that stand upright, by the `surroundings` of a case, are laid out in a figure
     that is turned by a quarter to the right: their left end is on top. `angle` is that
@@ -75,13 +79,17 @@ class Layout:
         height: float,
         key_rows: int,
         surroundings: Surroundings | None = None,
+        *,
+        in_rows: bool = False,
     ) -> None:
         self.is_bare = is_bare
+        self.in_rows = in_rows
         self.width = width
         self.height = height
         self.key_rows = key_rows
         self.surroundings = surroundings
         self.letter = LETTER * type_size
+        self.column = COLUMN * self.letter
         self.row = ROW * type_size
         self.description = geometry.description
         if is_bare:
@@ -147,17 +155,18 @@ class Layout:
             self.letter,
             self.deepest,
             self.surroundings,
+            in_rows=self.in_rows,
         )
         figure = np.array([self.width, self.height])
         if not self.key_rows:
-            left += COLUMN
+            left += self.column
         # Upright bodies have words in rows above them, and keys below them.
         if self.angle:
             figure = figure[::-1]
             left += self.row * len(self.description.acts)
-            right += FOOT * self.key_rows
+            right += self.row * self.key_rows
         else:
-            below += FOOT * self.key_rows
+            below += self.row * self.key_rows
         room = np.maximum(figure - [left + right, below + above], 24.0)
         return np.array([left, below]), room, figure
 
@@ -246,18 +255,31 @@ def layout_of(
     height: float,
     surroundings: Surroundings | None = None,
 ) -> Layout:
-    """The layout with larger bodies in a figure in px: keys below, or at the left."""
+    """The layout with larger bodies in a figure in px.
+
+    Keys stand below or at the left, words beside the bodies or, if these become much
+    larger, in rows above.
+    """
     rows = 1
     if width < NARROW:
         rows = 2
     size = type_size, width, height
     if surroundings is not None and surroundings.is_upright:
         return Layout(geometry, is_bare, *size, 4, surroundings)
-    below = Layout(geometry, is_bare, *size, rows, surroundings)
-    beside = Layout(geometry, is_bare, *size, 0, surroundings)
-    if beside.scale[0] > below.scale[0]:
-        return beside
-    return below
+    layouts = [
+        Layout(geometry, is_bare, *size, key_rows, surroundings, in_rows=in_rows)
+        for in_rows in (False, True)
+        for key_rows in (rows, 0)
+    ]
+    return max(layouts, key=_worth)
+
+
+def _worth(layout: Layout) -> float:
+    """Scale of bodies, by which layouts are chosen."""
+    scale = float(layout.scale[0])
+    if layout.in_rows:
+        return scale / LARGER
+    return scale
 
 
 def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array]:
@@ -281,6 +303,8 @@ def _margins(
     letter: float,
     deepest: float,
     surroundings: Surroundings | None,
+    *,
+    in_rows: bool,
 ) -> tuple[float, float, float, float]:
     """Margins for supports and loads on the left, on the right, below and above, px."""
     room = {
@@ -306,6 +330,7 @@ def _margins(
         room["bottom"] = max(room["bottom"], GROUND + 16.0)
         if surroundings.place == "around":
             room["top"] = max(room["top"], GROUND + 16.0)
+    rows = 0
     for act, count in zip(description.acts, counts, strict=True):
         side = act.side
         if is_upright:
@@ -316,6 +341,8 @@ def _margins(
                 # The words of equal loads stand below all bodies.
                 row = ROW * letter / LETTER
                 room["bottom"] = max(room["bottom"], FOOTING + 1.2 * row)
+            elif in_rows:
+                rows += 1
             else:
                 size += letter * (len(act.symbol) + len(act.unit) + 9)
             if act.outward is not None:
@@ -334,7 +361,8 @@ def _margins(
     if any(act.where.startswith("body") for act in description.acts):
         # Their words stand above the arrows on top.
         room["top"] = max(room["top"], arrow + 10.0) + 2.2 * letter
-    return room["left"], room["right"], room["bottom"], room["top"]
+    above = room["top"] + rows * ROW * letter / LETTER
+    return room["left"], room["right"], room["bottom"], above
 
 
 def beside(description: Description, side: str) -> float:

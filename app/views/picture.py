@@ -33,7 +33,7 @@ from app.views.layout import (
     is_opposite,
     turned,
 )
-from app.views.words import Word, in_rows, inside, lies_on, meets
+from app.views.words import Word, around, in_rows, inside, lies_on, meets
 from solver.arrays import Array
 from solver.discrete.structure import Act
 
@@ -45,6 +45,8 @@ NAME = 14.0
 ASKEW = 0.3
 """Distance of the name of a joint from its end, px, and slope of a joint from which on
 its name stands beside it and not above or below."""
+ALONG = 9
+"""Number of places along an arrow which words make way for."""
 HANDLE = 5.5
 """Half of the size of the handle of an arrow, px."""
 MOST_ROWS = 3
@@ -371,6 +373,7 @@ class Picture:
         """Symbols and values of the loads."""
         layout = self.layout
         words = []
+        rows = 0
         for arrows, count in zip(self.arrows, layout.equals, strict=True):
             act = arrows.act
             # Pressures from both sides have one text, and so have equal loads.
@@ -384,11 +387,12 @@ class Picture:
                 anchor = np.array([0.0, -FOOTING - 0.6 * layout.row])
                 align = "center"
             word = Word(text, self.page(anchor), align, color_of(act))
-            if layout.angle:
-                # In rows above what stands upright.
-                above = layout.height - (len(words) + 0.5) * layout.row
+            is_beside = count == 1 and act.side in ("left", "right")
+            if layout.angle or (layout.in_rows and is_beside):
+                above = layout.height - (rows + 0.5) * layout.row
                 anchor = np.array([layout.origin[0], above])
                 word = word._replace(anchor=anchor, align="center")
+                rows += 1
             elif act.side == "body" and len(arrows.lines):
                 # Below an arch, say, there is room at the arrow itself.
                 near = arrows.lines[0].mean(axis=0)
@@ -400,12 +404,28 @@ class Picture:
         return words
 
     def _covers(self, word: Word) -> bool:
-        """Check whether a word lies on bodies or on the handle of an arrow."""
+        """Check whether a word lies on bodies, or on an arrow or its handle."""
         corners = self.page(self.nodes[self._geometry.cells])
         is_on_bodies = lies_on(
             self.layout, word, corners.min(axis=1), corners.max(axis=1)
         )
-        return is_on_bodies or self._hides_handle(word)
+        return is_on_bodies or self._meets_arrow(word)
+
+    def _meets_arrow(self, word: Word) -> bool:
+        """Check whether a word lies on an arrow or its handle."""
+        places = self._shafts
+        is_on_arrows = lies_on(self.layout, word, places, places)
+        return is_on_arrows or self._hides_handle(word)
+
+    @cached_property
+    def _shafts(self) -> Array:
+        """Places along the shafts of all arrows, (n, 2), px."""
+        shares = np.linspace(0.0, 1.0, ALONG)[:, None]
+        places = [np.zeros((0, 2))]
+        for arrows in self.arrows:
+            for line in arrows.lines:
+                places.append(line[0] + shares * (line[-1] - line[0]))
+        return self.page(np.concatenate(places))
 
     def _hides_handle(self, word: Word) -> bool:
         """Check whether a word lies on the handle of an arrow."""
@@ -414,15 +434,15 @@ class Picture:
         return lies_on(self.layout, word, marks - HANDLE, marks + HANDLE)
 
     def _apart(self, words: Sequence[Word]) -> list[Word]:
-        """Words, moved up or down by rows off earlier ones and off handles.
+        """Words, moved up, down or aside, off earlier ones and off arrows.
 
         They go to the next place that bodies leave free, too, if there is one.
         """
         placed: list[Word] = []
         for word in words:
             moved = word
-            if meets(self.layout, word, placed) or self._hides_handle(word):
-                places = in_rows(self.layout, word, MOST_ROWS)
+            if meets(self.layout, word, placed) or self._meets_arrow(word):
+                places = around(self.layout, word, MOST_ROWS)
                 free = [one for one in places if not meets(self.layout, one, placed)]
                 moved = min(free, key=self._covers, default=word)
             placed.append(moved)

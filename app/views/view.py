@@ -144,24 +144,7 @@ class View:
 
     def _magnify(self, plot: figure) -> None:
         """Set the type size of a figure."""
-        size = self._type
-        keep = CustomJS(code=KEEP)
-        # Each by itself: an em is 13 pixels to axes, whatever the style.
-        for model in (plot, *plot.legend):
-            model.styles = {**model.styles, "font-size": size}
-        for words in plot.select(models.Text):
-            words.text_font_size = self.words
-        for model in (*plot.axis, *plot.select(Title), *plot.select(ColorBar)):
-            names = [
-                name for name in model.properties() if name.endswith("text_font_size")
-            ]
-            sizes = dict.fromkeys(names, size)
-            tags = []
-            if size != TEXT:
-                tags = [sizes]
-            model.update(tags=tags, **sizes)
-            if not model.js_property_callbacks:
-                model.js_on_change(names[0], keep)
+        magnify(plot, self._type, self.words)
 
     @property
     def type_size(self) -> float:
@@ -450,6 +433,25 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
     if not pieces:
         return gap[:, :0]
     return np.concatenate(pieces, axis=1)
+
+
+def magnify(plot: figure, size: str, words: str) -> None:
+    """Set the type size of a figure, and that of words in it, as CSS has them."""
+    keep = CustomJS(code=KEEP)
+    # Each by itself: an em is 13 pixels to axes, whatever the style.
+    for model in (plot, *plot.legend):
+        model.styles = {**model.styles, "font-size": size}
+    for glyph in plot.select(models.Text):
+        glyph.text_font_size = words
+    for model in (*plot.axis, *plot.select(Title), *plot.select(ColorBar)):
+        names = [name for name in model.properties() if name.endswith("text_font_size")]
+        sizes = dict.fromkeys(names, size)
+        tags = []
+        if size != TEXT:
+            tags = [sizes]
+        model.update(tags=tags, **sizes)
+        if not model.js_property_callbacks:
+            model.js_on_change(names[0], keep)
 
 
 def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:

@@ -29,13 +29,19 @@ class Word(NamedTuple):
 def inside(layout: Layout, words: Sequence[Word]) -> list[Word]:
     """Words, moved so that no text is cut."""
     inside = []
+    edge = half_of_line(layout)
     for word in words:
         width = width_of(layout, word)
         left = width * LEFT_OF[word.align]
         right = max(layout.width - width + left, left)
-        limits = [left, 8.0], [right, layout.height - 8.0]
+        limits = [left, edge], [right, layout.height - edge]
         inside.append(word._replace(anchor=np.clip(word.anchor, *limits)))
     return inside
+
+
+def half_of_line(layout: Layout) -> float:
+    """Half of the height of letters, px."""
+    return 0.5 * LINE * layout.row
 
 
 def width_of(layout: Layout, word: Word) -> float:
@@ -46,7 +52,7 @@ def width_of(layout: Layout, word: Word) -> float:
 def box_of(layout: Layout, word: Word) -> tuple[Array, Array]:
     """Lower left and upper right corner of a word, (2,) each, px."""
     width = width_of(layout, word)
-    size = np.array([width, LINE * layout.row])
+    size = np.array([width, 2.0 * half_of_line(layout)])
     low = word.anchor - size * [LEFT_OF[word.align], 0.5]
     return low, low + size
 
@@ -71,9 +77,28 @@ def in_rows(layout: Layout, word: Word, most: int) -> list[Word]:
     """
     outward = math.copysign(layout.row, word.anchor[1] - 0.5 * layout.height)
     places = []
+    edge = half_of_line(layout)
     for rows in range(1, most + 1):
         for shift in (rows * outward, -rows * outward):
             anchor = np.add(word.anchor, [0.0, shift])
-            if 8.0 <= anchor[1] <= layout.height - 8.0:
+            if edge <= anchor[1] <= layout.height - edge:
                 places.append(word._replace(anchor=anchor))
     return places
+
+
+def around(layout: Layout, word: Word, most: int) -> list[Word]:
+    """A word moved by up to a number of rows, and then also aside by its own width."""
+    level = in_rows(layout, word, most)
+    width = width_of(layout, word)
+    aside = []
+    for one in (word, *level):
+        for shift in (-width, width):
+            aside.append(one._replace(anchor=np.add(one.anchor, [shift, 0.0])))
+    return [*level, *[one for one in aside if is_inside(layout, one)]]
+
+
+def is_inside(layout: Layout, word: Word) -> bool:
+    """Check whether a word lies inside the figure."""
+    low, high = box_of(layout, word)
+    size = [layout.width, layout.height]
+    return bool(np.all(low >= 0.0) and np.all(high <= size))
