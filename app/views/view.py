@@ -44,6 +44,9 @@ SHORT = 200
 TEXT = "12px"
 WORDS = "14px"
 """Type sizes of plots, and of words at arrows, as CSS has them."""
+TICKS = 6
+FEW_TICKS = 3
+"""Number of ticks up an axis that have room, and those in large type."""
 FONT = value("Roboto, sans-serif")
 """The page's font, for texts that are drawn in plots."""
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
@@ -443,6 +446,9 @@ def magnify(plot: figure, size: str, words: str) -> None:
         model.styles = {**model.styles, "font-size": size}
     for glyph in plot.select(models.Text):
         glyph.text_font_size = words
+    for axis in plot.yaxis:
+        if isinstance(axis.ticker, models.ContinuousTicker):
+            axis.ticker.desired_num_ticks = TICKS if size == TEXT else FEW_TICKS
     for model in (*plot.axis, *plot.select(Title), *plot.select(ColorBar)):
         names = [name for name in model.properties() if name.endswith("text_font_size")]
         sizes = dict.fromkeys(names, size)
