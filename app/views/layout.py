@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 
@@ -268,8 +269,7 @@ def layout_of(
         return Layout(geometry, is_bare, *size, 4, surroundings)
     layouts = [
         Layout(geometry, is_bare, *size, key_rows, surroundings, in_rows=in_rows)
-        for in_rows in (False, True)
-        for key_rows in (rows, 0)
+        for in_rows, key_rows in product((False, True), (rows, 0))
     ]
     return max(layouts, key=_worth)
 

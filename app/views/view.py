@@ -446,9 +446,12 @@ def magnify(plot: figure, size: str, words: str) -> None:
         model.styles = {**model.styles, "font-size": size}
     for glyph in plot.select(models.Text):
         glyph.text_font_size = words
+    ticks = FEW_TICKS
+    if size == TEXT:
+        ticks = TICKS
     for axis in plot.yaxis:
         if isinstance(axis.ticker, models.ContinuousTicker):
-            axis.ticker.desired_num_ticks = TICKS if size == TEXT else FEW_TICKS
+            axis.ticker.desired_num_ticks = ticks
     for model in (*plot.axis, *plot.select(Title), *plot.select(ColorBar)):
         names = [name for name in model.properties() if name.endswith("text_font_size")]
         sizes = dict.fromkeys(names, size)
