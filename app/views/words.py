@@ -94,7 +94,8 @@ def around(layout: Layout, word: Word, most: int) -> list[Word]:
     for one in (word, *level):
         for shift in (-width, width):
             aside.append(one._replace(anchor=np.add(one.anchor, [shift, 0.0])))
-    return [*level, *[one for one in aside if is_inside(layout, one)]]
+    within = [one for one in aside if is_inside(layout, one)]
+    return [*level, *within]
 
 
 def is_inside(layout: Layout, word: Word) -> bool:

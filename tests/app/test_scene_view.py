@@ -108,6 +108,42 @@ def test_words_beside_a_body_have_room_on_a_projector() -> None:
     assert x > end
 
 
+def test_words_of_large_type_lie_on_no_arrow(frame: Frame) -> None:
+    view = shown(frame)
+    view.magnify("28px")
+    view.lay_out(560.0, 400.0)
+    shares = np.linspace(0.0, 1.0, 9)[:, None]
+    for phase in PHASES:
+        view.update(frame, Selection(phase), None)
+        picture = view.picture
+        assert picture is not None
+        places = [np.zeros((0, 2))]
+        for arrows in picture.arrows:
+            for first, *_, last in arrows.lines:
+                places.append(picture.page(first + shares * (last - first)))
+        x, y = np.concatenate(places).T
+        words = view.sources["words"].data
+        for left, middle, text, align in zip(
+            words["x"], words["y"], words["text"], words["text_align"], strict=True
+        ):
+            length = 14.0 * len(text)
+            start = left - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
+            is_across = (x > start) & (x < start + length)
+            assert not np.any(is_across & (np.abs(y - middle) < 10.0)), (phase, text)
+
+
+def test_words_stand_above_bodies_that_they_would_leave_no_room_beside() -> None:
+    """Three turns on a bollard, both ends named, in the picture of a small projector."""
+    lesson = LESSONS["turns-on-a-bollard"]
+    view = shown(frame_of(lesson.settings), 1.0)
+    view.magnify("19px")
+    view.lay_out(370.0, 230.0)
+    view.update(*view._shown)  # type: ignore[misc]
+    picture = view.picture
+    assert picture is not None
+    assert np.ptp(picture.page(picture.nodes)[:, 0]) > 70.0
+
+
 def test_bodies_in_the_plane_have_equal_axes(frame: Frame) -> None:
     layout = shown(frame).picture.layout  # type: ignore[union-attr]
     if frame.run.geometry.description.height is not None:
