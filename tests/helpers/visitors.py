@@ -64,8 +64,8 @@ class Visitor:
         self._socket: WebSocketClientConnection = await websocket_connect(request)
         # What is to be said to a page that was closed meanwhile is not.
         with contextlib.suppress(WebSocketClosedError):
-            while (header := await self._socket.read_message()) is not None:
-                await self._take(json.loads(header))
+            while True:
+                await self._take(json.loads(await self._read()))
 
     def close(self) -> None:
         """Close it."""
@@ -84,10 +84,10 @@ class Visitor:
 
     async def _take(self, header: dict[str, Any]) -> None:
         """Read a message whose header has come, and answer it."""
-        await self._socket.read_message()
-        content = str(await self._socket.read_message())
+        await self._read()
+        content = str(await self._read())
         for _ in range(2 * header.get("num_buffers", 0)):
-            await self._socket.read_message()
+            await self._read()
         self._look_for_button(content)
         if header["msgtype"] == "ACK":
             await self._send("PULL-DOC-REQ", {})
@@ -101,6 +101,17 @@ class Visitor:
             await self._paint(content, r'"sent":(\d+)')
         elif self._pulse is not None:
             await self._paint(content, rf'"{self._pulse}"}},"attr":"sent","new":(\d+)')
+
+    async def _read(self) -> str | bytes:
+        """Read a part of a message.
+
+        A socket says once that it is closed, be it amidst a message, and whoever reads
+        on would wait for ever.
+        """
+        part = await self._socket.read_message()
+        if part is None:
+            raise WebSocketClosedError
+        return part
 
     def _look_for_button(self, content: str) -> None:
         before, found, _ = content.rpartition(self._label)
