@@ -133,7 +133,7 @@ def test_words_of_large_type_lie_on_no_arrow(frame: Frame) -> None:
 
 
 def test_words_stand_above_bodies_that_they_would_leave_no_room_beside() -> None:
-    """Three turns on a bollard, both ends named, in the picture of a small projector."""
+    """Three turns on a bollard, both ends named, in a picture on a small projector."""
     lesson = LESSONS["turns-on-a-bollard"]
     view = shown(frame_of(lesson.settings), 1.0)
     view.magnify("19px")
