@@ -128,7 +128,7 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
     monkeypatch.setattr(from_status, "SLIDING", 1e-9)
     chosen = updating(**{**FAST, "acceleration": acceleration})
     constant = iterates(chosen.replace(k_update="none"), CALM + 20)
-    found = iterates(chosen, 600)
+    found = iterates(chosen, 400)
     states = [iterate.k_update.state for iterate in found]
     assert [state for state, _ in groupby(states)] == ["first", "updated", "returned"]
     # An iterate says what follows: the next is the first with the new k.
