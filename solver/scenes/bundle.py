@@ -54,7 +54,7 @@ class BundleSettings(PlaneSettings):
     ALSO_CHIEF = ("friction", "multiscale", "k_scale")
     GROWS = ("rings",)
     PARTS: ClassVar = {}
-    SMALL: ClassVar = {"rings": 1, "elements": 4, "instants": 13}
+    SMALL: ClassVar = {"rings": 1, "elements": 2, "instants": 13}
     has_joints = True
 
     arrangement = BODY.choice(

@@ -53,8 +53,11 @@ SILENT = 1e-6
 """Smallest noise, as a share of the measured range: runs have errors as large."""
 LOWER = 0.1
 """Share of F s^2 by which the misfit of another place has to be lower to count."""
-GROWTH = (0.5, 2.0)
-"""Smallest and largest step along a profile, over the distance so far."""
+GROWTH = (0.5, 9.0)
+"""Smallest and largest step along a profile, over the distance so far.
+
+Only where the noise is far below what the mesh hides, as in a loop that was computed,
+is a place ten times as far as the one before."""
 MARGIN = 1.1
 """Factor on the distance to a level by which a step aims beyond it."""
 SMALL = 1e-3

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import openpyxl
 import pytest
+from small_scenes import SMALL
 
 from solver import discrete
 from solver.commands.cli import main
@@ -334,7 +335,7 @@ def test_a_table_is_a_loop_or_results_or_a_path_by_its_head(
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_the_axes_of_a_loop_are_those_of_its_structure(scene: str) -> None:
-    structure = CATALOGUE[scene].checked({}).structure()
+    structure = CATALOGUE[scene].checked(SMALL[scene]).structure()
     assert structure.axes == structure.loop(discrete.discretise(structure)).axes
 
 

@@ -195,7 +195,7 @@ def read(
 
 
 @given(files())
-@settings(max_examples=300)
+@settings(max_examples=120)
 def test_points_are_those_that_were_given(file: Written) -> None:
     read_points, message = read(file.data)
     points = np.array(read_points)

@@ -26,10 +26,11 @@ def distance_of(problem: Problem) -> Distance:
     return distance_to(reference_of(problem), problem)
 
 
-def solved(settings: Settings, **rest: Any) -> Solution:
-    """Solution with its errors."""
+def solved(settings: Settings, *, watch: bool = False, **rest: Any) -> Solution:
+    """Solution with its errors; with `watch` with all indicators, too."""
     problem = discretise(settings)
-    return solve(problem, method_of(settings), distance=distance_of(problem), **rest)
+    distance = distance_of(problem)
+    return solve(problem, method_of(settings), distance=distance, watch=watch, **rest)
 
 
 def iterates(settings: Settings, number: int) -> list[Iterate]:

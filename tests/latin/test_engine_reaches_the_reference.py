@@ -25,7 +25,8 @@ PATHS = ["ramp", "triangle", "cycle", "sine", "decaying", "random"]
 def balanced(substructures, **values):
     """Options with a friction k of 100 ES/L^2 per length, however the bar is cut."""
     factor = 100.0 / substructures**2
-    return options(substructures=substructures, k_scale=factor, **values)
+    cut = SMALL | {"substructures": substructures, "k_scale": factor}
+    return options(**cut, **values)
 
 
 def driven(chosen):
@@ -91,7 +92,7 @@ def test_every_kind_of_bar_reaches_the_reference(change):
     assert_reached(options(**(SMALL | change)))
 
 
-@pytest.mark.parametrize("substructures", [1, 7, 50])
+@pytest.mark.parametrize("substructures", [1, 7, 30])
 def test_the_decomposition_changes_the_path_and_not_the_limit(substructures):
     chosen = balanced(substructures)
     other = balanced(5)
@@ -101,7 +102,7 @@ def test_the_decomposition_changes_the_path_and_not_the_limit(substructures):
     )
 
 
-@pytest.mark.parametrize("k_scale", [0.3, 3.0])
+@pytest.mark.parametrize("k_scale", [0.5, 3.0])
 def test_k_changes_the_path_and_not_the_limit(k_scale):
     chosen = options(**SMALL, k_scale=k_scale)
     assert_reached(chosen)
@@ -111,7 +112,7 @@ def test_k_changes_the_path_and_not_the_limit(k_scale):
     )
 
 
-@pytest.mark.parametrize("substructures", [3, 6])
+@pytest.mark.parametrize("substructures", [6, 10])
 def test_monoscale_and_multiscale_differ_on_the_way_and_agree_in_the_limit(
     substructures,
 ):

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from itertools import groupby
+from itertools import groupby, islice
 
 import numpy as np
 import pytest
 from runs import assert_goes_on, distance_of, errors, iterates, solved
 
-from solver.latin import Ending
+from solver.latin import Ending, iterations
 from solver.latin.direction import from_status
 from solver.latin.direction.directions import sliding_share
 from solver.latin.direction.from_status import CALM, TRIAL
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 from solver.settings.load_paths import PRESETS
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
@@ -96,7 +97,11 @@ def updating(**changes: object) -> BarSettings:
 
 @pytest.mark.parametrize("load", PRESETS)
 def test_a_millionth_of_friction_force_takes_at_most_150_iterations(load):
-    assert errors(updating(**FAST, load=load, relaxation=1.0), 150).min() <= 1e-6
+    settings = updating(**FAST, load=load, relaxation=1.0)
+    problem = discretise(settings)
+    distance = distance_of(problem)
+    found = islice(iterations(problem, method_of(settings)), 150)
+    assert any(distance.of_friction_force(iterate) <= 1e-6 for iterate in found)
 
 
 @pytest.mark.parametrize("substructures", [1, 10])
@@ -123,7 +128,7 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
     monkeypatch.setattr(from_status, "SLIDING", 1e-9)
     chosen = updating(**{**FAST, "acceleration": acceleration})
     constant = iterates(chosen.replace(k_update="none"), CALM + 20)
-    found = iterates(chosen, 600)
+    found = iterates(chosen, 400)
     states = [iterate.k_update.state for iterate in found]
     assert [state for state, _ in groupby(states)] == ["first", "updated", "returned"]
     # An iterate says what follows: the next is the first with the new k.

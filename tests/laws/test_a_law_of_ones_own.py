@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from contact_problems import friction_of, on_a_support, problem, stiffness, substructure
+from small_scenes import SMALL
 
 from solver import End, Latin, Problem, Rods, discrete, solve
 from solver.arrays import Array, Indices
@@ -451,7 +452,7 @@ def test_slabs_of_time_refuse_a_law_that_does_not_say_what_it_is_in_them() -> No
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_of_every_scene_incremental_solvers_read_all(scene: str) -> None:
-    assert discretise(CATALOGUE[scene].checked({})).no_reference == ""
+    assert discretise(CATALOGUE[scene].checked(SMALL[scene])).no_reference == ""
 
 
 def test_friction_beside_a_full_matrix_is_no_rod() -> None:

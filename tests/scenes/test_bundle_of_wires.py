@@ -139,7 +139,7 @@ def test_a_strip_of_a_log_on_the_ground_is_seven_tenths_of_a_millimetre_wide():
 @pytest.mark.parametrize("rings", [1, 2])
 def test_the_search_takes_no_more_than_forty_iterations_whatever_the_wires(rings):
     """Without the coarse problem it is as wrong after as many."""
-    problem = discretise(settings_of(rings=rings, elements=6, instants=13))
+    problem = discretise(settings_of(rings=rings, elements=4, instants=7))
     distance = distance_to(reference_of(problem), problem)
     errors = []
     for method in (Latin(finish=None), Latin(finish=None, multiscale=False)):

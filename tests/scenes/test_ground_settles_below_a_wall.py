@@ -111,9 +111,10 @@ def test_ground_that_settles_beside_the_wall_changes_nothing():
 
 
 def test_bricks_may_have_more_elements_up_than_the_wall_has_along():
-    _, problem, answer = made(**SETTLES | {"elements": 2, "elements_up": 40})
-    weight = SMALL["bricks"] * SMALL["courses"] * BRICK
-    pressed = SMALL["pressure"] * 0.25 * SMALL["bricks"]
+    sizes = {"bricks": 3, "courses": 2, "elements": 2, "elements_up": 12}
+    _, problem, answer = made(**SETTLES | sizes)
+    weight = 3 * 2 * BRICK
+    pressed = SMALL["pressure"] * 0.25 * 3
     assert carried(problem, answer)[-1] == pytest.approx(weight + pressed, rel=1e-9)
 
 

@@ -63,7 +63,7 @@ def test_centres_are_as_far_apart_as_is_said(voussoirs, centres, span):
         assert ends[1] == pytest.approx(left)
 
 
-@pytest.mark.parametrize("voussoirs", [2, 3, 30, 31])
+@pytest.mark.parametrize("voussoirs", [2, 3, 10, 11])
 @pytest.mark.parametrize("centres", [0.3, 2.0, 10.0])
 @pytest.mark.parametrize("span", [60.0, 180.0])
 @pytest.mark.parametrize("thickness", [0.05, 0.4, 1.0])

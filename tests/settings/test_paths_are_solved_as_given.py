@@ -83,12 +83,12 @@ def of_preset(scene: str, name: str, preset: str, **changes: Any) -> Any:
 def test_a_preset_is_seen_with_its_extremes_whatever_the_number_of_instants(
     scene, name
 ):
-    for preset in CATALOGUE[scene].definitions()[name].presets:
+    fine = np.linspace(0.0, 1.0, 96_001)
+    for preset, path in CATALOGUE[scene].definitions()[name].presets.items():
+        whole = path.value(fine, 3)
         for number in (1, 2, 7, 38, 41):
             settings = of_preset(scene, name, preset, instants=number)
-            fine = np.linspace(0.0, settings.duration, 96_001)
-            path = settings.definitions()[name].presets[preset]
-            given = path.value(fine / settings.duration, 3) * settings.size_of(name)
+            given = whole * settings.size_of(name)
             seen = settings.path(name)
             if (
                 number == 1

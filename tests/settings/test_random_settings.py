@@ -23,7 +23,7 @@ RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "8"))
 SMALLEST = 1e-12
 """Of a number whose range begins at zero, or below."""
 MOST = {
-    "elements": 12,
+    "elements": 8,
     "elements_up": 3,
     "instants": 10,
     "cycles": 2,
@@ -33,8 +33,9 @@ MOST = {
     "bricks": 3,
     "courses": 3,
     "voussoirs": 6,
+    "rings": 1,
 }
-"""Bounds that keep a run short."""
+"""Bounds that keep a run short: seven wires touch in all ways in which more do."""
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}
 
 
@@ -92,10 +93,20 @@ def test_all_laws_of_friction_and_kinds_of_ends_and_sides_are_drawn(scene: str) 
 
 
 def test_walls_are_also_pulled_and_have_openings_and_laws_of_their_own() -> None:
-    walls = [draw("wall", 2, row) for row in range(10)]
-    assert {wall.top for wall in walls} == {"moved", "pulled"}
-    assert {wall.opening > 0 for wall in walls} == {False, True}
-    assert len({wall.friction_law for wall in walls}) > 1
+    tops = set()
+    have_openings = set()
+    laws = set()
+    for row in range(10):
+        wall = draw("wall", 2, row)
+        tops.add(wall.top)
+        have_openings.add(wall.opening > 0)
+        laws.add(wall.friction_law)
+        # Each wall takes a hundred draws.
+        if min(len(tops), len(have_openings), len(laws)) > 1:
+            break
+    assert tops == {"moved", "pulled"}
+    assert have_openings == {False, True}
+    assert len(laws) > 1
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)

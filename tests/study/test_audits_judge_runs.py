@@ -171,9 +171,10 @@ def test_scenes_and_random_runs_can_be_asked(tmp_path, capsys):
 
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_a_row_is_drawn_alike_whatever_was_drawn_before(scene):
-    assert draw(scene, 3, 7).values() == draw(scene, 3, 7).values()
-    assert draw(scene, 3, 7).values() != draw(scene, 3, 8).values()
-    assert draw(scene, 3, 7).values() != draw(scene, 4, 7).values()
+    values = draw(scene, 3, 7).values()
+    assert draw(scene, 3, 8).values() != values
+    assert draw(scene, 4, 7).values() != values
+    assert draw(scene, 3, 7).values() == values
 
 
 @pytest.mark.parametrize("factor", [0.999, -1.0])

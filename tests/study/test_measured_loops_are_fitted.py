@@ -265,7 +265,7 @@ def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
 def test_a_sum_that_is_known_alone_is_not_taken_for_its_parts() -> None:
     law = {"friction_law": "general", "tangential_stiffness": 1e8, "cohesion": 600.0}
     settings = scene_settings("bar").checked(
-        BAR | law | {"elements": 6, "instants": 13, "substructures": 2}
+        BAR | law | {"elements": 4, "instants": 9, "substructures": 1}
     )
     found = fit(settings, made({"friction": 0.37}, settings), ["friction", "cohesion"])
     assert np.isinf(found.errors).all()

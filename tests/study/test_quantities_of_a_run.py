@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_scenes import SMALL as SMALL_SCENES
 
 from solver.latin import Solution, iterations
 from solver.latin.end.status import CANCELLED
@@ -250,7 +251,7 @@ def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(
     scene: str,
 ) -> None:
     """Also at iterates on the way, such as one at which nothing touches yet."""
-    settings = CATALOGUE[scene].checked({"method": "paper"})
+    settings = CATALOGUE[scene].checked(SMALL_SCENES[scene] | {"method": "paper"})
     for iterate in islice(iterations(discretise(settings), method_of(settings)), 2):
         run = FinishedRun(settings, Solution(iterate, [], CANCELLED))
         for values in (run.displacement, run.force):

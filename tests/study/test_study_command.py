@@ -50,6 +50,14 @@ def rows(file):
         return list(csv.DictReader(text))
 
 
+@pytest.fixture(scope="module", autouse=True)
+def one_repeat():
+    """Each size is measured once: how often changes no row."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(measuring, "REPEATS", 1)
+        yield
+
+
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
     """Folder that the command fills, and the curves behind it."""

@@ -15,7 +15,6 @@ from threading import Thread
 
 import numpy as np
 import pytest
-from distributed import Client
 from processes import PATIENCE, wait_for
 from sweeps import rows_in_table, rows_of, sweep_of_bars, tiny
 
@@ -56,6 +55,9 @@ class Cluster:
         self._start("worker", self.address, "--nthreads", "1", "--no-nanny")
 
     def wait_for_workers(self, number: int) -> None:
+        # It takes a second, in each process that collects this test.
+        from distributed import Client
+
         with Client(self.address, set_as_default=False) as client:
             client.wait_for_workers(number, timeout=PATIENCE)
 
@@ -157,7 +159,7 @@ def test_a_scheduler_that_is_gone_is_told(
     """The last of all, which ends the cluster."""
     monkeypatch.setattr("solver.study.sweep.executors.PATIENCE", 1.0)
     table = tmp_path / "sweep.csv"
-    asked = sweep_of_bars(2000)
+    asked = sweep_of_bars(400)
 
     def end() -> None:
         with suppress(AssertionError):
@@ -171,4 +173,4 @@ def test_a_scheduler_that_is_gone_is_told(
     said = capfd.readouterr()
     assert "does not answer any more; the same command goes on from here" in said.err
     assert "Traceback" not in said.err
-    assert "of 2000 runs" in said.out
+    assert "of 400 runs" in said.out
