@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import product
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
@@ -123,6 +124,8 @@ class Rectangle:
     width: float
     height: float
     elastic: Array
+
+    n_axes: ClassVar[int] = 2
 
     @property
     def n_nodes(self) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
-from solver.discrete.inside import Inside, substructure_of
+from solver.discrete.inside import Inside
 from solver.discrete.loose import loose_bodies
 from solver.discrete.plane.band import Band
 from solver.discrete.plane.bodies import Bodies
@@ -40,10 +40,7 @@ def problem_of(structure: Bodies) -> Problem:
     n_pairs = sum(len(piece.places) for piece in cut.pieces)
     n_steps = sum(len(joint.nodes) for joint in structure.joints)
     problem = Problem(
-        substructures=tuple(
-            substructure_of(part, dofs)
-            for part, dofs in zip(cut.parts, inside.dofs, strict=True)
-        ),
+        substructures=inside.substructures(),
         interfaces=dict(_interfaces(cut)),
         positions=inside.positions * scales.displacement,
         instants=structure.instants,
@@ -114,7 +111,7 @@ def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
     if rows.shape[1] == 2:
         reach = np.abs(seam.positions).max()
         length = seam.weights.sum()
-        slenderness = (length / first.of_shape.size) ** 2
+        slenderness = (length / cut.shape_part(body, seam.parts[0]).size) ** 2
         along = legendre_basis(
             seam.positions / reach, slenderness, cut.structure.macro_degree
         )
@@ -138,5 +135,7 @@ def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
         own = cut.parts[cut.owner(held.body, part)]
         if ("held", number) in own.rows:
             rows.append(own.rows["held", number].ravel())
-            values.append(scaled[np.isin(held.nodes, own.of_shape.nodes)])
+            values.append(
+                scaled[np.isin(held.nodes, cut.shape_part(held.body, part).nodes)]
+            )
     return Dirichlet(np.concatenate(rows), np.concatenate(values))

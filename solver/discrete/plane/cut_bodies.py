@@ -4,42 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.elements import SchurComplement
-from solver.discrete.inside import N_AXES
+from solver.discrete.condensed_part import (
+    N_AXES,
+    CondensedPart,
+    Operator,
+    Trace,
+    numbered,
+)
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
-from solver.discrete.plane.body_parts import BodyPart, ShapePart
+from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.substructure import Elasticity
 from solver.refusal import RefusedError, Words
 
 DIGITS = 9
 """Decimal digits to which parts agree that share an operator."""
-
-
-class NodalTrace(NamedTuple):
-    """Boundary rows at some nodes of a part.
-
-    Attributes
-    ----------
-    dofs
-        Degrees of freedom of the part at the rows, shape (n_nodes, n_components).
-    direction
-        Search direction k of each row, of the same shape, scaled.
-    has_macro
-        Whether macro forces balance there.
-    """
-
-    dofs: Indices
-    direction: Array
-    has_macro: bool
 
 
 class CutBodies:
@@ -84,11 +69,11 @@ class CutBodies:
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
         self._shape_parts = self._of_shapes()
-        self._traces: list[dict[Hashable, NodalTrace]] = [{} for _ in self._shape_parts]
+        self._traces: list[dict[Hashable, Trace]] = [{} for _ in self._shape_parts]
         self._trace_pieces()
         self._trace_seams()
         self._trace_held()
-        self._operators = dict[Hashable, tuple[SchurComplement, Elasticity]]()
+        self._operators = dict[Hashable, Operator]()
         self.parts = list(self._parts())
 
     def is_mesh(self, number: int) -> bool:
@@ -117,12 +102,16 @@ class CutBodies:
         diagonals = dict[int, Array]()
         found = []
         for part in self.parts:
-            operator = part.elasticity
+            operator = part.operator.elasticity
             if id(operator) not in diagonals:
                 diagonal = operator.stiffness.diagonal()
                 diagonals[id(operator)] = diagonal[operator.trace]
             found.append(diagonals[id(operator)])
         return np.concatenate(found)
+
+    def shape_part(self, number: int, part: int) -> ShapePart:
+        """A part of a body, in the axes of its shape."""
+        return self._shape_parts[self.owner(number, part)]
 
     def owner(self, number: int, part: int) -> int:
         """Number of a part of a body among all."""
@@ -154,7 +143,13 @@ class CutBodies:
             key = id(body.shape), body.substructures, body.young, body.poisson
             if key not in found:
                 found[key] = [
-                    ShapePart(body, elements, nodes, self.young, self.structure.state)
+                    ShapePart(
+                        body,
+                        elements,
+                        nodes,
+                        (self.length, self.young),
+                        self.structure.state,
+                    )
                     for elements, nodes in zip(cut.elements, cut.nodes, strict=True)
                 ]
             parts += found[key]
@@ -171,7 +166,7 @@ class CutBodies:
 
     def _trace_pieces(self) -> None:
         """Add the rows of the joints."""
-        known = dict[Hashable, NodalTrace]()
+        known = dict[Hashable, Trace]()
         for number, piece in enumerate(self.pieces):
             joint = self.structure.joints[piece.joint]
             has_macro = joint.below is not None
@@ -185,7 +180,7 @@ class CutBodies:
                     dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
                     k = own.density * piece.weights
                     direction = np.repeat(k[:, None], 2, axis=1)
-                    known[key] = NodalTrace(dofs, direction, has_macro)
+                    known[key] = Trace(dofs, direction, has_macro)
                 self._traces[owner][name, number] = known[key]
 
     def _trace_seams(self) -> None:
@@ -200,7 +195,7 @@ class CutBodies:
                         k = np.repeat(own.density * seam.weights[:, None], 2, axis=1)
                     else:
                         k = np.array([[own.at_a_point, own.at_a_point, own.of_turn]])
-                    self._traces[owner][name, body, number] = NodalTrace(dofs, k, True)
+                    self._traces[owner][name, body, number] = Trace(dofs, k, True)
 
     def _trace_held(self) -> None:
         """Add the rows of prescribed displacements, in every part that has the node."""
@@ -218,7 +213,7 @@ class CutBodies:
                 k = own.density * weights[is_own, None]
                 if held.axis == 2:
                     k = np.full_like(k, own.of_turn)
-                self._traces[owner]["held", number] = NodalTrace(dofs, k, False)
+                self._traces[owner]["held", number] = Trace(dofs, k, False)
 
     def axes_held(self, held: Held, nodes: Indices) -> tuple[Indices, Array]:
         """Degree of freedom of each node that is held, and its sign, (n,) both."""
@@ -233,7 +228,7 @@ class CutBodies:
             return np.full(len(held.nodes), shape.size / len(held.nodes))
         return shape.shares(held.nodes)
 
-    def _parts(self) -> Iterator[BodyPart]:
+    def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
         loads = self._loads()
@@ -254,24 +249,16 @@ class CutBodies:
                 if force is not None:
                     turned = frames[:, :, :2] @ force / (self.young * self.length)
                     force = turned.reshape(-1, force.shape[-1])
-                condensed, operator = self._operator(body, owner, force is not None)
-                rows = dict[Hashable, Indices]()
-                for name, trace in self._traces[owner].items():
-                    count = trace.dofs.size
-                    numbers = n_rows + np.arange(count)
-                    rows[name] = numbers.reshape(trace.dofs.shape)
-                    n_rows += count
-                yield BodyPart(
-                    of_shape=own,
-                    condensed=condensed,
-                    elasticity=operator,
+                rows, n_rows = numbered(self._traces[owner], n_rows)
+                yield CondensedPart(
+                    mesh=own,
+                    operator=self._operator(body, owner, force is not None),
                     nodes=first_node + own.nodes,
                     body=body,
                     rows=rows,
                     force=force,
                     frames=frames,
                     rotation=of_body.rotation,
-                    length=self.length,
                 )
 
     def _global_frames(self, body: int, part: ShapePart) -> Array:
@@ -281,10 +268,8 @@ class CutBodies:
         frames[:, 2:, 2] = 1.0
         return frames
 
-    def _operator(
-        self, body: int, owner: int, has_force: bool
-    ) -> tuple[SchurComplement, Elasticity]:
-        """Condensed stiffness and operator of a part, the same for parts alike.
+    def _operator(self, body: int, owner: int, has_force: bool) -> Operator:
+        """Operator of a part, the same for parts alike.
 
         Members of a group of parts have forces inside all or none of them.
         """
@@ -309,10 +294,7 @@ class CutBodies:
         )
         if alike not in self._operators:
             frames = self.local_frames(body, part.nodes)
-            condensed = part.condensed(frames, np.unique(dofs))
-            trace_of_rows = np.searchsorted(condensed.kept, dofs)
-            operator = Elasticity(condensed.stiffness, trace_of_rows, direction)
-            self._operators[alike] = condensed, operator
+            self._operators[alike] = Operator(part.stiffness_in(frames), traces)
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
 

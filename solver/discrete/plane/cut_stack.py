@@ -6,26 +6,20 @@ substructures themselves, and need no interface.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices, read_only
-from solver.discrete.elements import (
-    EDGE_MASS,
-    Rectangle,
-    SchurComplement,
-    elastic_matrix,
-    side_basis,
-)
+from solver.arrays import Array, Flags, Indices
+from solver.discrete.condensed_part import CondensedPart, Operator, Trace, numbered
+from solver.discrete.elements import EDGE_MASS, Rectangle, elastic_matrix, side_basis
 from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
-from solver.discrete.plane.rectangular_parts import RectangularSubstructure
 from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import SETTLED, Stack
-from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
+from solver.discrete.substructure import substructure_sizes, tributary
 from solver.kept import KEPT
 
 SIDES = "left", "right", "bottom", "top"
@@ -88,7 +82,7 @@ class Span(NamedTuple):
     last: int
 
 
-class _Trace(NamedTuple):
+class _SideTrace(NamedTuple):
     """Boundary rows along a part of a side of a substructure.
 
     Nodes `first` to `last` of the side (without the last) have rows of the components:
@@ -102,28 +96,15 @@ class _Trace(NamedTuple):
     last: int | None = None
     has_macro: bool = False
 
-    def dofs(self, rectangle: Rectangle) -> Indices:
-        """Degrees of freedom of a rectangle at the rows, (n_nodes, n_components)."""
-        nodes = rectangle.edge(self.side)[self.first : self.last]
-        return np.add.outer(2 * nodes, self.components)
-
-    def weights(self, rectangle: Rectangle) -> Array:
-        """Length that belongs to each row, (n_nodes * n_components,), scaled."""
-        lengths = rectangle.edge_weights(self.side)[self.first : self.last]
-        return lengths.repeat(len(self.components))
-
-
-def _numbered(
-    traces: Mapping[Hashable, _Trace], mesh: Rectangle, first: int
-) -> dict[Hashable, Indices]:
-    """Row numbers of each trace, (n_nodes, n_components), counted from `first`."""
-    numbers = dict[Hashable, Indices]()
-    for name, trace in traces.items():
-        shape = trace.dofs(mesh).shape
-        count = shape[0] * shape[1]
-        numbers[name] = first + np.arange(count).reshape(shape)
-        first += count
-    return numbers
+    def of(self, mesh: Rectangle, modulus: float) -> Trace:
+        """Rows of a rectangle of a scaled Young's modulus."""
+        own = slice(self.first, self.last)
+        nodes = mesh.edge(self.side)[own]
+        dofs = np.add.outer(2 * nodes, self.components)
+        size = np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
+        k = modulus / size * mesh.edge_weights(self.side)[own]
+        direction = np.repeat(k[:, None], len(self.components), axis=1)
+        return Trace(dofs, direction, self.has_macro)
 
 
 def _node_numbers(grids: Sequence[Array]) -> list[Indices]:
@@ -136,45 +117,6 @@ def _node_numbers(grids: Sequence[Array]) -> list[Indices]:
         numbers.append(np.arange(first, first + count).reshape(rows, columns))
         first += count
     return numbers
-
-
-class Operator:
-    """Stiffness of a rectangular part, condensed onto its boundary rows.
-
-    No load and no friction changes it: it is kept between runs (`solver.kept`).
-
-    Parameters
-    ----------
-    mesh
-        Mesh of the part.
-    modulus
-        Its E, scaled.
-    traces
-        Its boundary rows.
-
-    Attributes
-    ----------
-    condensed, elasticity
-        As of `RectangularSubstructure`.
-    """
-
-    def __init__(
-        self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace]
-    ) -> None:
-        dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
-        density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
-        weights = np.concatenate([trace.weights(mesh) for trace in traces])
-        self.condensed = SchurComplement(mesh.outline, np.unique(dofs))
-        self.elasticity = Elasticity(
-            stiffness=read_only(self.condensed.stiffness),
-            trace=np.searchsorted(self.condensed.kept, dofs),
-            direction=density * weights,
-        )
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the operator takes, B."""
-        return self.condensed.nbytes
 
 
 class CutStack:
@@ -208,6 +150,7 @@ class CutStack:
         self.pairs = self._paired(joints)
         # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)
+        self._trace = cache(_SideTrace.of)
         self._operator = cache(self._operator_of)
         self._basis = cache(self._basis_of)
         self._entries = cache(self._entries_of)
@@ -259,25 +202,26 @@ class CutStack:
         pairs = {joint: self._pairs_of(joint) for joint in joints}
         return {joint: found for joint, found in pairs.items() if len(found[0])}
 
-    def _parts(self, nodes: Sequence[Indices]) -> Iterator[RectangularSubstructure]:
+    def _parts(self, nodes: Sequence[Indices]) -> Iterator[CondensedPart]:
         """Substructures, by the numbers of each body's nodes, (n_rows, n_columns)."""
         n_rows = 0
         for number, traces in enumerate(self._traces()):
-            rectangle, body, _ = self._pieces[number]
+            body = self.body_of(number)
             modulus = self.stack.modulus(body)
-            mesh = self._mesh(rectangle.columns, rectangle.rows, modulus)
+            mesh = self.mesh(number)
             force = self._force(number, mesh)
             # Members of a group have body forces on all or on none, and see the same
             # macro forces.
             kinds = tuple(traces.values())
             has_force = force is not None
-            operator = self._operator(mesh, modulus, kinds, has_force)
-            rows = _numbered(traces, mesh, n_rows)
-            n_rows += sum(each.size for each in rows.values())
-            yield RectangularSubstructure(
-                rectangle=mesh,
-                condensed=operator.condensed,
-                elasticity=operator.elasticity,
+            of_mesh = {
+                name: self._trace(trace, mesh, modulus)
+                for name, trace in traces.items()
+            }
+            rows, n_rows = numbered(of_mesh, n_rows)
+            yield CondensedPart(
+                mesh=mesh,
+                operator=self._operator(mesh, modulus, kinds, has_force),
                 nodes=self._own_nodes(number, nodes[body]),
                 body=body,
                 rows=rows,
@@ -292,6 +236,12 @@ class CutStack:
         along, up = inside.nodes()
         return nodes[up, along]
 
+    def mesh(self, number: int) -> Rectangle:
+        """Mesh of a substructure, which equal ones share."""
+        rectangle, body, _ = self._pieces[number]
+        modulus = self.stack.modulus(body)
+        return self._mesh(rectangle.columns, rectangle.rows, modulus)
+
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
         elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
         return Rectangle(columns, rows, *self._element, elastic)
@@ -300,7 +250,7 @@ class CutStack:
         self,
         mesh: Rectangle,
         modulus: float,
-        traces: tuple[_Trace, ...],
+        traces: tuple[_SideTrace, ...],
         has_force: bool,
     ) -> Operator:
         """Operator of a part, from an earlier structure if it has the same.
@@ -310,7 +260,9 @@ class CutStack:
         shape = mesh.columns, mesh.rows, *self._element
         material = modulus, self.stack.poisson, self.stack.state
         key = "operator", shape, material, traces, has_force
-        return KEPT.of(key, lambda: Operator(mesh, modulus, traces))
+        of_mesh = [self._trace(trace, mesh, modulus) for trace in traces]
+        # No load and no friction changes it.
+        return KEPT.of(key, lambda: Operator(mesh.outline, of_mesh))
 
     def _outer(self, number: int) -> Iterator[Span]:
         """Outer sides of a substructure: free, loaded or prescribed.
@@ -392,8 +344,7 @@ class CutStack:
         one above.
         """
         number, side = joint.sides[which]
-        part = self.parts[number]
-        return self._basis(part.rectangle, side, len(part.rows[joint]))
+        return self._basis(self.mesh(number), side, len(self.pairs[joint][0]))
 
     def entries(self, joint: BrickJoint) -> tuple[Indices, Indices, Array]:
         """Macro basis of one component on a joint from above: rows, columns, values.
@@ -401,8 +352,7 @@ class CutStack:
         Columns ascend; entries that are zero are left out.
         """
         number, side = joint.sides[0]
-        part = self.parts[number]
-        return self._entries(part.rectangle, side, len(part.rows[joint]))
+        return self._entries(self.mesh(number), side, len(self.pairs[joint][0]))
 
     def _basis_of(self, mesh: Rectangle, side: str, count: int) -> Array:
         return side_basis(mesh, side, count, self.stack.macro_degree)
@@ -459,7 +409,7 @@ class CutStack:
             at_right and sides["right"].y.prescribed,
         )
 
-    def _traces(self) -> Iterator[dict[Hashable, _Trace]]:
+    def _traces(self) -> Iterator[dict[Hashable, _SideTrace]]:
         """Traces of every substructure, by joint or by the span of an outer side.
 
         A joint has both components, or with a support of known strength the one along
@@ -474,9 +424,9 @@ class CutStack:
             )
             yield dict(in_order)
 
-    def _traces_of_joints(self) -> list[dict[Hashable, _Trace]]:
+    def _traces_of_joints(self) -> list[dict[Hashable, _SideTrace]]:
         """Traces of every substructure on its joints."""
-        traces: list[dict[Hashable, _Trace]] = [{} for _ in self._pieces]
+        traces: list[dict[Hashable, _SideTrace]] = [{} for _ in self._pieces]
         for joint, (nodes, _) in self.pairs.items():
             components: tuple[int, ...] = (0, 1)
             if self._is_known(joint):
@@ -487,16 +437,16 @@ class CutStack:
                 corner = rectangle.y if joint.is_upright else rectangle.x
                 first = int(nodes[0]) - corner
                 last = first + len(nodes)
-                trace = _Trace(side, components, first, last, has_macro)
+                trace = _SideTrace(side, components, first, last, has_macro)
                 traces[number][joint] = trace
         return traces
 
-    def _traces_of_sides(self, number: int) -> dict[Hashable, _Trace]:
+    def _traces_of_sides(self, number: int) -> dict[Hashable, _SideTrace]:
         """Traces of a substructure on prescribed outer sides, and at a spring."""
         stack = self.stack
         rectangle, body, _ = self._pieces[number]
         is_foot = (rectangle.y, body) == (0, 0)
-        traces = dict[Hashable, _Trace]()
+        traces = dict[Hashable, _SideTrace]()
         for span in self._outer(number):
             components = tuple(
                 component
@@ -504,9 +454,11 @@ class CutStack:
                 if given.prescribed
             )
             if components and self._is_outermost(number, span):
-                traces[span] = _Trace(span.side, components, span.first, span.last + 1)
+                traces[span] = _SideTrace(
+                    span.side, components, span.first, span.last + 1
+                )
             elif span.side == "right" and stack.spring is not None and is_foot:
-                traces["spring"] = _Trace(span.side, (0, 1), 0, 1)
+                traces["spring"] = _SideTrace(span.side, (0, 1), 0, 1)
         return traces
 
     def _is_outermost(self, number: int, span: Span) -> bool:

@@ -231,7 +231,7 @@ def _macro_basis(
     blocks = []
     for piece in pieces:
         joint = joints[piece.joint]
-        part = cut.parts[cut.owner(joint.above, piece.parts[0])].of_shape
+        part = cut.shape_part(joint.above, piece.parts[0])
         # Pieces of joints that are alike share their arrays.
         key = id(part), joint.nodes.tobytes(), id(piece.weights)
         if key not in known:

@@ -15,11 +15,10 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.inside import Inside, substructure_of
+from solver.discrete.inside import Inside
 from solver.discrete.loose import is_loose
 from solver.discrete.plane.bricks import BrickJoint
 from solver.discrete.plane.cut_stack import CutStack, Span
-from solver.discrete.plane.rectangular_parts import RectangularSubstructure
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
 from solver.discrete.plane.stack import Stack
@@ -62,10 +61,7 @@ def problem_of(stack: Stack) -> Problem:
         joint.is_upright and not cut.is_within_body(joint) for joint in cut.pairs
     )
     problem = Problem(
-        substructures=tuple(
-            substructure_of(part, dofs)
-            for part, dofs in zip(cut.parts, inside.dofs, strict=True)
-        ),
+        substructures=inside.substructures(),
         interfaces=dict(_interfaces(cut, contacts)),
         positions=inside.positions * scales.displacement,
         instants=stack.instants,
@@ -385,9 +381,11 @@ def _rows_of(cut: CutStack, joints: Sequence[BrickJoint]) -> list[Indices]:
 def _spring(cut: CutStack, spring: Spring) -> Contact:
     """Contact of a spring, which pushes the foot to the right as if from the left."""
     stack = cut.stack
-    (part,) = [part for part in cut.parts if "spring" in part.rows]
-    rows = part.rows["spring"]
-    areas = part.rectangle.edge_weights("right")
+    (number,) = [
+        number for number, part in enumerate(cut.parts) if "spring" in part.rows
+    ]
+    rows = cut.parts[number].rows["spring"]
+    areas = cut.mesh(number).edge_weights("right")
     return Contact(
         normal=Unilateral(
             component=Component(rows[:, 0]),
@@ -417,7 +415,7 @@ def _prescribed(
             for column, component in enumerate(components):
                 moved = cut.values(number, span, given[component])
                 if side in ("left", "right"):
-                    _move_corners(cut, part, side, component, moved)
+                    _move_corners(cut, number, side, component, moved)
                 rows.append(of_span[:, column])
                 values.append(moved / cut.stack.length)
     if rows:
@@ -426,23 +424,24 @@ def _prescribed(
 
 def _move_corners(
     cut: CutStack,
-    part: RectangularSubstructure,
+    number: int,
     side: str,
     component: int,
     moved: Array,
 ) -> None:
     """Write the displacement of top and bottom into the corners of an upright side.
 
-    Only where top or bottom prescribe the component; `moved` is the displacement of the
-    side's nodes, (n_nodes, n_instants), m.
+    Only where top or bottom prescribe the component; `number` is that of the
+    substructure, `moved` the displacement of the side's nodes, (n_nodes, n_instants),
+    m.
     """
     sign = 1.0 if side == "right" else -1.0
-    spans = [name for name in part.rows if isinstance(name, Span)]
+    spans = [name for name in cut.parts[number].rows if isinstance(name, Span)]
     for level, corner in (("bottom", 0), ("top", -1)):
         given = cut.stack.sides[level][component]
         on_level = [span for span in spans if span.side == level]
         if side == "right":
-            columns = part.rectangle.columns
+            columns = cut.mesh(number).columns
             is_prescribed = any(span.last == columns for span in on_level)
         else:
             is_prescribed = any(span.first == 0 for span in on_level)
