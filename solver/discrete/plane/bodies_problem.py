@@ -18,9 +18,9 @@ from solver.discrete.plane.band import Band
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
-from solver.discrete.plane.joint_laws import law_of_joints
+from solver.discrete.plane.joint_laws import glued
+from solver.discrete.plane.joints_of_bodies import law_of_joints
 from solver.discrete.problem import Problem
-from solver.discrete.scales import Scales
 from solver.laws import Dirichlet, Interface, Perfect
 from solver.refusal import RefusedError, Words
 
@@ -34,7 +34,7 @@ def problem_of(structure: Bodies) -> Problem:
         If bodies can move though all contacts are closed and stick.
     """
     cut = CutBodies(structure)
-    scales = Scales(cut.length, cut.young * cut.length, structure.duration)
+    scales = cut.scales
     nodes = np.concatenate([body.nodes for body in structure.bodies]) / cut.length
     inside = Inside(cut.parts, nodes, scales, len(structure.instants))
     n_pairs = sum(len(piece.places) for piece in cut.pieces)
@@ -108,18 +108,15 @@ def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
     first, second = [cut.parts[cut.owner(body, part)] for part in seam.parts]
     rows = first.rows["first", body, number]
     opposite = second.rows["second", body, number]
-    if rows.shape[1] == 2:
-        reach = np.abs(seam.positions).max()
-        length = seam.weights.sum()
-        slenderness = (length / cut.shape_part(body, seam.parts[0]).size) ** 2
-        along = legendre_basis(
-            seam.positions / reach, slenderness, cut.structure.macro_degree
-        )
-        frames = cut.local_frames(body, seam.nodes)
-        macro = (frames[:, :, None, :] * along[:, None, :, None]).reshape(rows.size, -1)
-    else:
-        macro = np.eye(rows.size)
-    return Perfect(rows.ravel(), opposite.ravel(), macro)
+    if rows.shape[1] > 2:
+        # Beams are cut at a node, whose three components all balance.
+        return glued(rows, opposite, np.ones((1, 1)))
+    reach = np.abs(seam.positions).max()
+    size = cut.shape_part(body, seam.parts[0]).size
+    slenderness = (seam.weights.sum() / size) ** 2
+    degree = cut.structure.macro_degree
+    basis = legendre_basis(seam.positions / reach, slenderness, degree)
+    return glued(rows, opposite, basis, cut.local_frames(body, seam.nodes))
 
 
 def _prescribed(cut: CutBodies, number: int) -> Dirichlet:

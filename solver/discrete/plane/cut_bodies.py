@@ -21,6 +21,7 @@ from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
+from solver.discrete.scales import Scales
 from solver.refusal import RefusedError, Words
 
 DIGITS = 9
@@ -36,8 +37,8 @@ class CutBodies:
 
     Attributes
     ----------
-    length, young
-        Units of length, m, and of stress, Pa.
+    length, young, scales
+        Units of length, m, of stress, Pa, and of fields.
     cuts
         How each body is cut.
     frames
@@ -55,6 +56,7 @@ class CutBodies:
         self.structure = structure
         self.length = float(structure.box[1].max())
         self.young = max(_modulus(body) for body in structure.bodies)
+        self.scales = Scales(self.length, self.young * self.length, structure.duration)
         bodies = structure.bodies
         shapes = dict[tuple[int, int], CutShape]()
         for body in bodies:

@@ -19,6 +19,7 @@ from solver.discrete.elements import EDGE_MASS, Rectangle, elastic_matrix, side_
 from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
 from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import SETTLED, Stack
+from solver.discrete.scales import Scales
 from solver.discrete.substructure import substructure_sizes, tributary
 from solver.kept import KEPT
 
@@ -128,6 +129,8 @@ class CutStack:
 
     Attributes
     ----------
+    scales
+        Units of fields.
     positions
         Coordinates of all nodes, body by body, shape (n_nodes, 2), scaled.
     parts
@@ -141,6 +144,7 @@ class CutStack:
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
         height = stack.height / stack.length
+        self.scales = Scales(stack.length, stack.young * stack.length, stack.duration)
         self._element = (1.0 / stack.elements[0], height / stack.elements[1])
         grids = self._grids()
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
@@ -153,7 +157,6 @@ class CutStack:
         self._trace = cache(_SideTrace.of)
         self._operator = cache(self._operator_of)
         self._basis = cache(self._basis_of)
-        self._entries = cache(self._entries_of)
         self.parts = list(self._parts(_node_numbers(grids)))
 
     def _grids(self) -> list[Array]:
@@ -337,6 +340,15 @@ class CutStack:
             return f"{SETTLED} and {brick}"
         return f"support and {brick}"
 
+    def macro_basis(self, joint: BrickJoint) -> Array:
+        """Macro basis of one component on a joint of bodies, (n_pairs, n_macro).
+
+        Without columns where no macro forces balance.
+        """
+        if not self.has_macro(joint):
+            return np.zeros((len(self.pairs[joint][0]), 0))
+        return self.basis(joint, 0)
+
     def basis(self, joint: BrickJoint, which: int) -> Array:
         """Macro basis of one component on a joint, (n_points, n_macro).
 
@@ -346,23 +358,8 @@ class CutStack:
         number, side = joint.sides[which]
         return self._basis(self.mesh(number), side, len(self.pairs[joint][0]))
 
-    def entries(self, joint: BrickJoint) -> tuple[Indices, Indices, Array]:
-        """Macro basis of one component on a joint from above: rows, columns, values.
-
-        Columns ascend; entries that are zero are left out.
-        """
-        number, side = joint.sides[0]
-        return self._entries(self.mesh(number), side, len(self.pairs[joint][0]))
-
     def _basis_of(self, mesh: Rectangle, side: str, count: int) -> Array:
         return side_basis(mesh, side, count, self.stack.macro_degree)
-
-    def _entries_of(
-        self, mesh: Rectangle, side: str, count: int
-    ) -> tuple[Indices, Indices, Array]:
-        basis = self._basis(mesh, side, count)
-        columns, rows = np.nonzero(basis.T)
-        return rows, columns, basis[rows, columns]
 
     def _is_known(self, joint: BrickJoint) -> bool:
         """Check whether a joint is with a support of known strength."""

@@ -12,30 +12,32 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
-from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.inside import Inside
-from solver.discrete.loose import is_loose
+from solver.discrete.loose import loose_bodies
 from solver.discrete.plane.bricks import BrickJoint
 from solver.discrete.plane.cut_stack import CutStack, Span
+from solver.discrete.plane.joint_laws import (
+    JointPairs,
+    Surface,
+    contact_of,
+    glued,
+)
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
-from solver.discrete.scales import Scales
 from solver.laws import (
     BodyStiffness,
     Component,
     Contact,
     Dirichlet,
-    Friction,
     FrictionLaw,
     Interface,
     Perfect,
     Unilateral,
 )
-from solver.laws.friction import compliance_of
 from solver.refusal import RefusedError, Words
 
 NO_BODY = -1
@@ -55,7 +57,7 @@ def problem_of(stack: Stack) -> Problem:
     order = [*contacts]
     if stack.spring is not None:
         order.append("spring")
-    scales = Scales(stack.length, stack.young * stack.length, stack.duration)
+    scales = cut.scales
     inside = Inside(cut.parts, cut.positions, scales, len(stack.instants))
     has_short_joints = any(
         joint.is_upright and not cut.is_within_body(joint) for joint in cut.pairs
@@ -71,7 +73,7 @@ def problem_of(stack: Stack) -> Problem:
         has_short_joints=has_short_joints,
         order=tuple(order),
     )
-    if is_loose(problem):
+    if len(loose_bodies(problem)):
         held = [name for name, side in stack.sides.items() if _is_moved(side)]
         raise RefusedError(
             "Stack.sides",
@@ -154,21 +156,14 @@ def _laws_of_contact(
 def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
     """Perfect interface of two substructures of one body."""
     rows_above, rows_below = _rows_of(cut, [joint])
-    macro = np.asarray(np.kron(cut.basis(joint, 1), np.eye(2)))
-    return Perfect(rows_below.ravel(), rows_above.ravel(), macro)
+    return glued(rows_below, rows_above, cut.basis(joint, 1))
 
 
-class _Pairs(NamedTuple):
-    """Pairs of nodes of contacts, contact by contact and joint by joint.
+class _Places(NamedTuple):
+    """Where pairs of nodes of contacts are, joint by joint.
 
     Attributes
     ----------
-    joints
-        Joints of all contacts.
-    counts
-        Number of pairs of each joint, (n_joints,).
-    contacts
-        Number of the contact of each pair, ascending, (n_pairs,).
     bodies, others
         Body above, or to the right, of each pair, and the other one, (n_pairs,);
         `NO_BODY` is the support.
@@ -176,133 +171,113 @@ class _Pairs(NamedTuple):
         Node of each pair on the grid of all elements, along the contact, (n_pairs,).
     is_upright
         Whether the joint of each pair is upright, (n_pairs,).
-    areas
-        Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
     """
 
-    joints: Sequence[BrickJoint]
-    counts: Indices
-    contacts: Indices
     bodies: Indices
     others: Indices
     nodes: Indices
     is_upright: Flags
-    areas: Array
 
 
-def _pairs_of(cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]) -> _Pairs:
-    """Pairs of nodes of contacts."""
-    joints = list(chain.from_iterable(contacts.values()))
-    n_joints = [len(of_contact) for of_contact in contacts.values()]
-    numbers = np.repeat(np.arange(len(contacts)), n_joints)
-    nodes = [cut.pairs[joint][0] for joint in joints]
-    lengths = [cut.pairs[joint][1] for joint in joints]
-    counts = np.array([len(of_joint) for of_joint in nodes])
+def _places_of(cut: CutStack, joints: Sequence[BrickJoint]) -> _Places:
+    """Places of the pairs of joints."""
+    counts = [len(cut.pairs[joint][0]) for joint in joints]
     bodies = [cut.body_of(joint.above) for joint in joints]
     others = [
         NO_BODY if joint.below is None else cut.body_of(joint.below) for joint in joints
     ]
-    return _Pairs(
-        joints=joints,
-        counts=counts,
-        contacts=np.repeat(numbers, counts),
+    return _Places(
         bodies=np.repeat(bodies, counts),
         others=np.repeat(others, counts),
-        nodes=np.concatenate(nodes),
+        nodes=np.concatenate([cut.pairs[joint][0] for joint in joints]),
         is_upright=np.repeat([joint.is_upright for joint in joints], counts),
-        areas=cut.stack.length * np.concatenate(lengths),
     )
 
 
 def _contact(cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]) -> Contact:
     """Law of contacts by name: of bodies with the support, or with each other."""
+    joints = list(chain.from_iterable(contacts.values()))
+    places = _places_of(cut, joints)
+    pairs = _pairs_of(cut, contacts, places)
+    bases = [cut.macro_basis(joint) for joint in joints]
+    law = contact_of(
+        pairs,
+        _surface(cut, places, pairs.weights),
+        cut.scales,
+        _stiffness_beside(cut.stack, places),
+        bases,
+    )
+    support = cut.stack.support
+    if support is not None and support.is_image and places.others[0] == NO_BODY:
+        return replace(law, slip_ratio=2.0)
+    return law
+
+
+def _pairs_of(
+    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]], places: _Places
+) -> JointPairs:
+    """Pairs of nodes of contacts."""
+    joints = list(chain.from_iterable(contacts.values()))
+    lengths = [cut.pairs[joint][1] for joint in joints]
+    n_joints = [len(of_contact) for of_contact in contacts.values()]
+    of_joints = np.repeat(np.arange(len(contacts)), n_joints)
+    numbers = np.repeat(of_joints, [len(of_joint) for of_joint in lengths])
     stack = cut.stack
-    pairs = _pairs_of(cut, contacts)
-    gap = np.zeros(len(pairs.nodes))
-    slip_ratio = 1.0
-    support = stack.support
-    if support is not None and pairs.others[0] == NO_BODY:
-        gap = support.gap[pairs.nodes] / stack.length
-        if support.is_image:
-            slip_ratio = 2.0
-    n_nodes = max(stack.grid) + 1
-    keys = pairs.contacts * n_nodes + pairs.nodes
-    _, first, points = np.unique(keys, return_index=True, return_inverse=True)
-    tangent, normal = _components(cut, pairs)
-    names: tuple[str, ...] = ()
-    interfaces = None
-    if len(contacts) > 1:
-        names = tuple(contacts)
-        interfaces = pairs.contacts[first]
-    return Contact(
-        normal=_normal_law(stack, normal, pairs, gap),
-        tangential=_friction(stack, tangent, pairs, gap),
-        points=points,
-        positions=_positions(stack, pairs)[first],
-        weights=pairs.areas,
-        stiffness_beside=_stiffness_beside(stack, pairs),
-        macro=_macro_basis(cut, pairs),
-        slip_ratio=slip_ratio,
-        names=names,
-        interfaces=interfaces,
+    steps: Array = np.where(
+        places.is_upright,
+        stack.height / stack.elements[1],
+        stack.length / stack.elements[0],
+    )
+    tangent, normal = _components(cut, joints, places.is_upright)
+    return JointPairs(
+        names=list(contacts),
+        joints=numbers,
+        keys=numbers * (max(stack.grid) + 1) + places.nodes,
+        positions=steps * places.nodes,
+        weights=stack.length * np.concatenate(lengths),
+        tangent=tangent,
+        normal=normal,
     )
 
 
-def _positions(stack: Stack, pairs: _Pairs) -> Array:
-    """Position of each pair along its contact, (n_pairs,), m."""
-    length = stack.length / stack.elements[0]
-    height = stack.height / stack.elements[1]
-    return np.asarray(pairs.nodes * np.where(pairs.is_upright, height, length), float)
+def _components(
+    cut: CutStack, joints: Sequence[BrickJoint], is_upright: Flags
+) -> tuple[Component, Component | None]:
+    """Tangential and normal component of joints; no normal one at known strength.
 
-
-def _components(cut: CutStack, pairs: _Pairs) -> tuple[Component, Component | None]:
-    """Tangential and normal component of contacts; no normal one at known strength."""
-    rows = _rows_of(cut, pairs.joints)
+    `is_upright` is of every pair, (n_pairs,).
+    """
+    rows = _rows_of(cut, joints)
     has_normal = rows[0].shape[1] > 1
     if not has_normal:
         sides = [rows_of_side[:, 0] for rows_of_side in rows]
         return Component(*sides), None
-    along = pairs.is_upright.astype(np.intp)
+    along = is_upright.astype(np.intp)
     every = np.arange(len(along))
     tangential = [rows_of_side[every, along] for rows_of_side in rows]
     across = [rows_of_side[every, 1 - along] for rows_of_side in rows]
     return Component(*tangential), Component(*across)
 
 
-def _normal_law(
-    stack: Stack, component: Component | None, pairs: _Pairs, gap: Array
-) -> Unilateral | None:
-    """Unilateral law across contacts, with their opening, (n_pairs,), scaled."""
-    if component is None:
-        return None
-    scales = (stack.length, stack.young * stack.length)
-    compliance = compliance_of(stack.friction_law.normal_stiffness, pairs.areas, scales)
-    return Unilateral(component=component, gap=gap, compliance=compliance)
-
-
-def _friction(
-    stack: Stack, component: Component, pairs: _Pairs, gap: Array
-) -> Friction:
-    """Friction law along contacts, whose opening is `gap`, (n_pairs,), scaled."""
-    scales = (stack.length, stack.young * stack.length)
-    law = stack.friction_law
+def _surface(cut: CutStack, places: _Places, areas: Array) -> Surface:
+    """Friction and opening of contacts, whose pairs have the areas, (n_pairs,), m^2."""
+    stack = cut.stack
     support = None
-    if pairs.others[0] == NO_BODY:
+    if places.others[0] == NO_BODY:
         support = stack.support
-    if support is not None and support.is_image:
+    mu = _coefficients(stack, support, places)
+    if support is None:
+        return Surface(stack.friction_law, np.zeros(len(areas)), mu)
+    law = stack.friction_law
+    if support.is_image:
         law = law.of_one_side()
-    if support is not None and support.strength is not None:
-        scaled = support.strength[pairs.nodes] / (stack.young * stack.length)
-        known = scaled * pairs.areas[:, None]
-        return law.at(component, pairs.areas, scales, known=known)
-    mu = _coefficients(stack, support, pairs)
-    friction = law.at(component, pairs.areas, scales, friction=mu)
-    # Nothing is bonded across a gap.
-    is_closed = (gap <= 0.0)[:, None]
-    return replace(friction, bound=friction.bound * is_closed)
+    known = None
+    if support.strength is not None:
+        known = support.strength[places.nodes] / cut.scales.force * areas[:, None]
+    return Surface(law, support.gap[places.nodes], mu, known)
 
 
-def _coefficients(stack: Stack, support: Support | None, pairs: _Pairs) -> Array:
+def _coefficients(stack: Stack, support: Support | None, places: _Places) -> Array:
     """Coefficient of friction of each pair, (n_pairs,)."""
     if support is not None:
         mu = np.asarray(support.friction)
@@ -310,56 +285,31 @@ def _coefficients(stack: Stack, support: Support | None, pairs: _Pairs) -> Array
         mu = np.asarray(stack.friction)
     if mu.ndim < 2:
         mu = np.atleast_2d(mu)
-        rows = np.zeros_like(pairs.nodes)
+        rows = np.zeros_like(places.nodes)
     else:
-        rows = pairs.bodies - 1
-    columns = pairs.nodes if mu.shape[1] > 1 else 0
+        rows = places.bodies - 1
+    columns = places.nodes if mu.shape[1] > 1 else 0
     of_pairs = np.asarray(mu[rows, columns])
     if stack.head_friction is not None:
-        of_pairs = np.where(pairs.is_upright, stack.head_friction, of_pairs)
+        of_pairs = np.where(places.is_upright, stack.head_friction, of_pairs)
     if stack.strips and stack.support is not None:
-        on_ground = (pairs.others >= 0) & (pairs.others < stack.strips)
+        on_ground = (places.others >= 0) & (places.others < stack.strips)
         of_ground = np.broadcast_to(stack.support.friction, stack.grid[0] + 1)
         of_pairs = of_pairs.copy()
-        of_pairs[on_ground] = of_ground[pairs.nodes[on_ground]]
+        of_pairs[on_ground] = of_ground[places.nodes[on_ground]]
     return of_pairs
 
 
-def _stiffness_beside(stack: Stack, pairs: _Pairs) -> BodyStiffness:
+def _stiffness_beside(stack: Stack, places: _Places) -> BodyStiffness:
     """Moduli and depth of the bodies at contacts, for their search direction."""
     moduli = np.array([stack.modulus(body) for body in range(len(stack.rectangles))])
     rows = np.array([rectangle.rows for rectangle in stack.rectangles])
     depths = stack.height * (rows / stack.elements[1])
     return BodyStiffness(
-        above=moduli[pairs.bodies],
-        below=np.where(pairs.others == NO_BODY, np.inf, moduli[pairs.others]),
-        depth=depths[pairs.bodies],
+        above=moduli[places.bodies],
+        below=np.where(places.others == NO_BODY, np.inf, moduli[places.others]),
+        depth=depths[places.bodies],
     )
-
-
-def _macro_basis(cut: CutStack, pairs: _Pairs) -> sparse.csr_array | None:
-    """Macro basis of one component, (n_pairs, n_macro), or None.
-
-    Each joint on which macro forces balance has columns of its own.
-    """
-    firsts = np.cumsum(pairs.counts) - pairs.counts
-    rows = list[Indices]()
-    columns = list[Indices]()
-    values = list[Array]()
-    n_macro = 0
-    for first, joint in zip(firsts.tolist(), pairs.joints, strict=True):
-        if not cut.has_macro(joint):
-            continue
-        row, column, value = cut.entries(joint)
-        rows.append(first + row)
-        columns.append(n_macro + column)
-        values.append(value)
-        n_macro += int(column[-1]) + 1
-    if not values:
-        return None
-    entries = np.concatenate(rows), np.concatenate(columns)
-    shape = len(pairs.nodes), n_macro
-    return sparse.csr_array((np.concatenate(values), entries), shape=shape)
 
 
 def _rows_of(cut: CutStack, joints: Sequence[BrickJoint]) -> list[Indices]:
