@@ -231,7 +231,7 @@ def test_substructures_end_at_cuts_and_where_bodies_end() -> None:
 
 def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
     cut = CutStack(pressed((3, 2), bodies=2))
-    areas = [part.rectangle.columns * part.rectangle.rows for part in cut.parts]
+    areas = [len(part.mesh.elements) for part in cut.parts]
     assert sum(areas) == 2 * 6 * 4
     sides = chain.from_iterable(part.rows.values() for part in cut.parts)
     rows = np.concatenate([rows.ravel() for rows in sides])

@@ -5,6 +5,7 @@ Forces are scaled by E L and displacements by L, so that a stiffness is scaled b
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -21,6 +22,7 @@ from solver.discrete.plane.mesh_elasticity import (
     mesh_volumes,
 )
 from solver.discrete.plane.meshes import Mesh
+from solver.kept import content_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,13 @@ class ShapePart:
     def young(self) -> float:
         """Unit of stress, Pa."""
         return self.units[1]
+
+    @cached_property
+    def content(self) -> Hashable:
+        """Key that is equal for the same part of the same shape and material."""
+        body = self.body
+        material = body.young, body.poisson, self.state
+        return body.shape.content, content_of(self.chosen), material, self.units
 
     @property
     def n_axes(self) -> int:

@@ -22,6 +22,7 @@ from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.scales import Scales
+from solver.kept import KEPT, content_of
 from solver.refusal import RefusedError, Words
 
 DIGITS = 9
@@ -296,7 +297,11 @@ class CutBodies:
         )
         if alike not in self._operators:
             frames = self.local_frames(body, part.nodes)
-            self._operators[alike] = Operator(part.stiffness_in(frames), traces)
+            # No load and no friction changes the operator of the first of them.
+            key = "part", part.content, content_of(frames, dofs, direction), alike[-2:]
+            self._operators[alike] = KEPT.of(
+                key, lambda: Operator(part.stiffness_in(frames), traces)
+            )
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
 
