@@ -237,9 +237,9 @@ def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
     rows = np.concatenate([rows.ravel() for rows in sides])
     assert np.array_equal(np.sort(rows), np.arange(len(rows)))
     lengths: dict[str, float] = {}
-    for joint, (_, length) in cut.pairs.items():
-        name = cut.name(joint)
-        lengths[name] = lengths.get(name, 0.0) + float(length.sum())
+    for piece in cut.pieces:
+        name = cut.joint_names[piece.joint]
+        lengths[name] = lengths.get(name, 0.0) + float(piece.weights.sum())
     assert lengths["support"] == pytest.approx(1.0)
     assert lengths["contact 1-2"] == pytest.approx(1.0)
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from solver.discrete.plane.band import Band
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
-from solver.discrete.plane.joint_laws import glued
+from solver.discrete.plane.joint_laws import glued, laws_of
 from solver.discrete.plane.joints_of_bodies import law_of_joints
 from solver.discrete.problem import Problem
 from solver.laws import Dirichlet, Interface, Perfect
@@ -47,7 +48,7 @@ def problem_of(structure: Bodies) -> Problem:
         scales=scales,
         inside=inside,
         has_short_joints=n_pairs < n_steps,
-        order=tuple(joint.name for joint in structure.joints),
+        order=tuple(cut.joint_names),
     )
     loose = loose_bodies(problem)
     if len(loose):
@@ -82,15 +83,7 @@ def problem_of_band(band: Band) -> Problem:
 
 def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed displacements."""
-    kinds = dict[str, list[int]]()
-    for number, joint in enumerate(cut.structure.joints):
-        kind = "supports" if joint.below is None else "contacts"
-        kinds.setdefault(kind, []).append(number)
-    for kind, numbers in kinds.items():
-        name = kind
-        if len(numbers) == 1:
-            name = cut.structure.joints[numbers[0]].name
-        yield name, law_of_joints(cut, numbers)
+    yield from laws_of(cut, partial(law_of_joints, cut))
     for body, of_body in enumerate(cut.structure.bodies):
         for number, seam in enumerate(cut.cuts[body].seams):
             first, second = seam.parts
@@ -112,7 +105,7 @@ def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
         # Beams are cut at a node, whose three components all balance.
         return glued(rows, opposite, np.ones((1, 1)))
     reach = np.abs(seam.positions).max()
-    size = cut.shape_part(body, seam.parts[0]).size
+    size = cut.shape_parts[cut.owner(body, seam.parts[0])].size
     slenderness = (seam.weights.sum() / size) ** 2
     degree = cut.structure.macro_degree
     basis = legendre_basis(seam.positions / reach, slenderness, degree)
@@ -133,6 +126,10 @@ def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
         if ("held", number) in own.rows:
             rows.append(own.rows["held", number].ravel())
             values.append(
-                scaled[np.isin(held.nodes, cut.shape_part(held.body, part).nodes)]
+                scaled[
+                    np.isin(
+                        held.nodes, cut.shape_parts[cut.owner(held.body, part)].nodes
+                    )
+                ]
             )
     return Dirichlet(np.concatenate(rows), np.concatenate(values))

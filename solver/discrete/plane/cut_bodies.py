@@ -48,6 +48,8 @@ class CutBodies:
         Pieces of the joints.
     first_parts
         Numbers of the first part of each body, and of the parts.
+    shape_parts
+        All parts in the axes of their shapes.
     parts
         Parts, body by body. Their rows are by ("above", piece), ("below", piece),
         ("first", body, seam), ("second", body, seam) and ("held", number).
@@ -71,8 +73,8 @@ class CutBodies:
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
-        self._shape_parts = self._of_shapes()
-        self._traces: list[dict[Hashable, Trace]] = [{} for _ in self._shape_parts]
+        self.shape_parts = self._of_shapes()
+        self._traces: list[dict[Hashable, Trace]] = [{} for _ in self.shape_parts]
         self._trace_pieces()
         self._trace_seams()
         self._trace_held()
@@ -112,9 +114,10 @@ class CutBodies:
             found.append(diagonals[id(operator)])
         return np.concatenate(found)
 
-    def shape_part(self, number: int, part: int) -> ShapePart:
-        """A part of a body, in the axes of its shape."""
-        return self._shape_parts[self.owner(number, part)]
+    @property
+    def joint_names(self) -> list[str]:
+        """Names of all joints."""
+        return [joint.name for joint in self.structure.joints]
 
     def owner(self, number: int, part: int) -> int:
         """Number of a part of a body among all."""
@@ -163,7 +166,7 @@ class CutBodies:
 
         `axes` are the numbers of those of each node, which broadcast with (n, 1).
         """
-        part = self._shape_parts[owner]
+        part = self.shape_parts[owner]
         local = np.searchsorted(part.nodes, nodes)
         return part.n_axes * local[:, None] + axes
 
@@ -174,9 +177,9 @@ class CutBodies:
             joint = self.structure.joints[piece.joint]
             has_macro = joint.below is not None
             sides = zip(("above", "below"), joint.sides, piece.parts, strict=False)
-            for name, (body, nodes), part in sides:
-                owner = self.owner(body, part)
-                own = self._shape_parts[owner]
+            for name, (_, nodes), owner in sides:
+                assert owner is not None
+                own = self.shape_parts[owner]
                 # Pieces of joints that are alike share their arrays.
                 key = id(own), nodes.tobytes(), id(piece.weights), has_macro
                 if key not in known:
@@ -192,7 +195,7 @@ class CutBodies:
             for number, seam in enumerate(cut.seams):
                 for name, part in zip(("first", "second"), seam.parts, strict=True):
                     owner = self.owner(body, part)
-                    own = self._shape_parts[owner]
+                    own = self.shape_parts[owner]
                     dofs = self._dofs(owner, seam.nodes, np.arange(own.n_axes))
                     if own.n_axes == 2:
                         k = np.repeat(own.density * seam.weights[:, None], 2, axis=1)
@@ -206,7 +209,7 @@ class CutBodies:
             weights = self._weights_held(held)
             for part in range(self.structure.bodies[held.body].substructures):
                 owner = self.owner(held.body, part)
-                own = self._shape_parts[owner]
+                own = self.shape_parts[owner]
                 is_own = np.isin(held.nodes, own.nodes)
                 if not is_own.any():
                     continue
@@ -246,7 +249,7 @@ class CutBodies:
                         "bodies that something holds",
                         "join it to another body, or hold some of its nodes",
                     )
-                own = self._shape_parts[owner]
+                own = self.shape_parts[owner]
                 frames = self._global_frames(body, own)
                 force = own.force(of_body.weight, loads.get(owner))
                 if force is not None:
@@ -276,7 +279,7 @@ class CutBodies:
 
         Members of a group of parts have forces inside all or none of them.
         """
-        part = self._shape_parts[owner]
+        part = self.shape_parts[owner]
         traces = list(self._traces[owner].values())
         nodes = self.structure.first_nodes[body] + part.nodes
         turned = self._rounded_frames[nodes].tobytes()
@@ -316,7 +319,7 @@ class CutBodies:
             taken = np.zeros(len(load.nodes), dtype=bool)
             for part in range(self.structure.bodies[load.body].substructures):
                 owner = self.owner(load.body, part)
-                nodes = self._shape_parts[owner].nodes
+                nodes = self.shape_parts[owner].nodes
                 is_own = np.isin(load.nodes, nodes) & ~taken
                 taken |= is_own
                 if is_own.any():

@@ -6,17 +6,23 @@ substructures themselves, and need no interface.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.condensed_part import CondensedPart, Operator, Trace, numbered
-from solver.discrete.elements import EDGE_MASS, Rectangle, elastic_matrix, side_basis
+from solver.discrete.elements import (
+    EDGE_MASS,
+    Rectangle,
+    elastic_matrix,
+    legendre_basis,
+)
 from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
+from solver.discrete.plane.joint_laws import JointPiece
 from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import SETTLED, Stack
 from solver.discrete.scales import Scales
@@ -35,7 +41,7 @@ def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
     return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
 
 
-class _RectangularPiece(NamedTuple):
+class _Part(NamedTuple):
     """A substructure: its rectangle, the number of its body, and its name in cuts."""
 
     rectangle: Brick
@@ -43,7 +49,7 @@ class _RectangularPiece(NamedTuple):
     name: str
 
 
-def _pieces(stack: Stack) -> Iterator[_RectangularPiece]:
+def _parts_of(stack: Stack) -> Iterator[_Part]:
     """All substructures, body by body and row by row."""
     for body, brick in enumerate(stack.rectangles):
         ends_across = _ends_across(stack, brick)
@@ -60,7 +66,7 @@ def _pieces(stack: Stack) -> Iterator[_RectangularPiece]:
                     columns=right - left,
                     rows=high - low,
                 )
-                yield _RectangularPiece(rectangle, body, f"{column}.{row}{of_body}")
+                yield _Part(rectangle, body, f"{column}.{row}{of_body}")
 
 
 def _ends_across(stack: Stack, brick: Brick) -> list[int]:
@@ -136,9 +142,14 @@ class CutStack:
     parts
         Substructures, body by body and row by row; boundary rows are numbered part by
         part and side by side.
-    pairs
-        Of each joint the numbers of its nodes along the grid of all elements, and the
-        length that belongs to each, scaled; shape (n_pairs,) both.
+    joint_names
+        Names of the contacts of bodies, with each other and with the support.
+    joints, pieces
+        Pieces of these contacts: where substructures touch, and their pairs. Places of
+        nodes are those along the grid of all elements.
+    cuts
+        Joints of substructures of one body, by the substructure below, upright ones
+        before lying ones.
     """
 
     def __init__(self, stack: Stack) -> None:
@@ -148,10 +159,20 @@ class CutStack:
         self._element = (1.0 / stack.elements[0], height / stack.elements[1])
         grids = self._grids()
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
-        self._pieces = list(_pieces(stack))
+        self._rectangles = list(_parts_of(stack))
         joints = self._joints()
-        self._covered = self._covered_by(joints)
-        self.pairs = self._paired(joints)
+        covered = self._covered_by(joints)
+        self._outer = [
+            list(self._outer_of(number, covered))
+            for number in range(len(self._rectangles))
+        ]
+        self.cuts = [joint for joint in joints if self.is_within_body(joint)]
+        self.cuts.sort(key=lambda joint: (joint.sides[1][0], not joint.is_upright))
+        self._pairs = cache(self._pairs_of)
+        contacts = self._contacts_of(joints)
+        self.joint_names = list(contacts)
+        self.joints = list(chain.from_iterable(contacts.values()))
+        self.pieces = list(self._pieces_of(contacts))
         # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)
         self._trace = cache(_SideTrace.of)
@@ -175,7 +196,7 @@ class CutStack:
 
     def _joints(self) -> list[BrickJoint]:
         """Joints of substructures; those with a support only where there is one."""
-        joints = joints_of([piece.rectangle for piece in self._pieces])
+        joints = joints_of([piece.rectangle for piece in self._rectangles])
         if self.stack.support is not None and not self.stack.strips:
             return joints
         return [joint for joint in joints if joint.below is not None]
@@ -193,17 +214,28 @@ class CutStack:
 
     def _extent(self, number: int, side: str) -> tuple[int, int]:
         """Elements along a side of a substructure, and where it begins on the grid."""
-        rectangle = self._pieces[number].rectangle
+        rectangle = self._rectangles[number].rectangle
         if side in ("left", "right"):
             return rectangle.rows, rectangle.y
         return rectangle.columns, rectangle.x
 
-    def _paired(
-        self, joints: Sequence[BrickJoint]
-    ) -> dict[BrickJoint, tuple[Indices, Array]]:
-        """Pairs of nodes of those joints that have any, (n_pairs,) each, as `pairs`."""
-        pairs = {joint: self._pairs_of(joint) for joint in joints}
-        return {joint: found for joint, found in pairs.items() if len(found[0])}
+    def _pieces_of(
+        self, contacts: Mapping[str, Sequence[BrickJoint]]
+    ) -> Iterator[JointPiece]:
+        """Pieces of contacts by name, contact by contact."""
+        for number, joints in enumerate(contacts.values()):
+            for joint in joints:
+                nodes, weights = self._pairs(joint)
+                parts = joint.above, joint.below
+                yield JointPiece(number, parts, nodes, weights, int(joint.is_upright))
+
+    def _contacts_of(self, joints: Sequence[BrickJoint]) -> dict[str, list[BrickJoint]]:
+        """Joints of each contact by its name; those without pairs are left out."""
+        contacts = dict[str, list[BrickJoint]]()
+        for joint in joints:
+            if not self.is_within_body(joint) and len(self._pairs(joint)[0]):
+                contacts.setdefault(self._name(joint), []).append(joint)
+        return contacts
 
     def _parts(self, nodes: Sequence[Indices]) -> Iterator[CondensedPart]:
         """Substructures, by the numbers of each body's nodes, (n_rows, n_columns)."""
@@ -233,7 +265,7 @@ class CutStack:
 
     def _own_nodes(self, number: int, nodes: Indices) -> Indices:
         """Nodes of a substructure, (n_rows, n_columns), out of those of its body."""
-        rectangle, body, _ = self._pieces[number]
+        rectangle, body, _ = self._rectangles[number]
         brick = self.stack.rectangles[body]
         inside = rectangle._replace(x=rectangle.x - brick.x, y=rectangle.y - brick.y)
         along, up = inside.nodes()
@@ -241,7 +273,7 @@ class CutStack:
 
     def mesh(self, number: int) -> Rectangle:
         """Mesh of a substructure, which equal ones share."""
-        rectangle, body, _ = self._pieces[number]
+        rectangle, body, _ = self._rectangles[number]
         modulus = self.stack.modulus(body)
         return self._mesh(rectangle.columns, rectangle.rows, modulus)
 
@@ -267,15 +299,17 @@ class CutStack:
         # No load and no friction changes it.
         return KEPT.of(key, lambda: Operator(mesh.outline, of_mesh))
 
-    def _outer(self, number: int) -> Iterator[Span]:
+    def _outer_of(
+        self, number: int, covered: Mapping[tuple[int, str], Flags]
+    ) -> Iterator[Span]:
         """Outer sides of a substructure: free, loaded or prescribed.
 
-        Of the top and the bottom those parts that no body covers. On the left and right
-        only those of bodies that reach farthest. A traction acts on all of them, as a
-        fluid would; a displacement is that of what lies farthest out, as a press or the
-        ground would touch.
+        Of the top and the bottom those parts that no body covers, of sides by their
+        `covered` elements. On the left and right only those of bodies that reach
+        farthest. A traction acts on all of them, as a fluid would; a displacement is
+        that of what lies farthest out, as a press or the ground would touch.
         """
-        rectangle = self._pieces[number].rectangle
+        rectangle = self._rectangles[number].rectangle
         columns, _ = self.stack.grid
         is_end = {
             "left": rectangle.x == 0,
@@ -284,24 +318,26 @@ class CutStack:
         for side in SIDES:
             if not is_end.get(side, True):
                 continue
-            count, _ = self._extent(number, side)
-            covered = self._covered.get((number, side), np.zeros(count, dtype=bool))
-            # Where it begins and ends to be covered; outside it counts as covered.
-            changes = np.diff(covered, prepend=True, append=True)
-            ends = np.flatnonzero(changes).reshape(-1, 2)
-            for first, last in ends.tolist():
-                yield Span(side, first, last)
+            elements = covered.get((number, side))
+            if elements is None:
+                yield Span(side, 0, self._extent(number, side)[0])
+            elif not elements.all():
+                # Where it begins and ends to be covered; outside it counts as covered.
+                changes = np.diff(elements, prepend=True, append=True)
+                ends = np.flatnonzero(changes).reshape(-1, 2)
+                for first, last in ends.tolist():
+                    yield Span(side, first, last)
 
     def body_of(self, number: int) -> int:
         """Number of the body of a substructure."""
-        return self._pieces[number].body
+        return self._rectangles[number].body
 
     def bodies(self, joint: BrickJoint) -> tuple[int, int | None]:
         """Body above or to the right of a joint, and the other one (None: support)."""
-        above = self._pieces[joint.above].body
+        above = self._rectangles[joint.above].body
         if joint.below is None:
             return above, None
-        return above, self._pieces[joint.below].body
+        return above, self._rectangles[joint.below].body
 
     def is_within_body(self, joint: BrickJoint) -> bool:
         """Check whether both sides of a joint are of one body, which is glued there."""
@@ -319,13 +355,16 @@ class CutStack:
             return below is not None
         return bool(groups[above] != groups[below])
 
-    def name(self, joint: BrickJoint) -> str:
-        """Name of the interface to which a joint belongs."""
+    def cut_name(self, joint: BrickJoint) -> str:
+        """Name of a cut between substructures of one body."""
+        assert joint.below is not None
+        first = self._rectangles[joint.below].name
+        second = self._rectangles[joint.above].name
+        return f"cut {first} to {second}"
+
+    def _name(self, joint: BrickJoint) -> str:
+        """Name of the contact to which a joint of bodies belongs."""
         above, below = self.bodies(joint)
-        if joint.below is not None and above == below:
-            first = self._pieces[joint.below].name
-            second = self._pieces[joint.above].name
-            return f"cut {first} to {second}"
         if self.stack.is_pile:
             if below is None:
                 return "support"
@@ -340,26 +379,31 @@ class CutStack:
             return f"{SETTLED} and {brick}"
         return f"support and {brick}"
 
-    def macro_basis(self, joint: BrickJoint) -> Array:
-        """Macro basis of one component on a joint of bodies, (n_pairs, n_macro).
+    def macro_basis(self, number: int) -> Array:
+        """Macro basis of one component on a piece by number, (n_pairs, n_macro).
 
-        Without columns where no macro forces balance.
+        Without columns where no macro forces balance. The substructure above gives the
+        degree.
         """
+        joint = self.joints[number]
+        count = len(self.pieces[number].places)
         if not self.has_macro(joint):
-            return np.zeros((len(self.pairs[joint][0]), 0))
-        return self.basis(joint, 0)
+            return np.zeros((count, 0))
+        part, side = joint.sides[0]
+        return self._basis(self.mesh(part), side, count)
 
-    def basis(self, joint: BrickJoint, which: int) -> Array:
-        """Macro basis of one component on a joint, (n_points, n_macro).
+    def macro_basis_of_cut(self, joint: BrickJoint) -> Array:
+        """Macro basis of one component on a cut, (n_pairs, n_macro).
 
-        `which` is the side of the joint whose substructure gives the degree: 0 is the
-        one above.
+        The substructure below gives the degree.
         """
-        number, side = joint.sides[which]
-        return self._basis(self.mesh(number), side, len(self.pairs[joint][0]))
+        part, side = joint.sides[1]
+        return self._basis(self.mesh(part), side, joint.last - joint.first + 1)
 
     def _basis_of(self, mesh: Rectangle, side: str, count: int) -> Array:
-        return side_basis(mesh, side, count, self.stack.macro_degree)
+        positions = np.linspace(-1.0, 1.0, count)
+        degree = self.stack.macro_degree
+        return legendre_basis(positions, mesh.slenderness(side), degree)
 
     def _is_known(self, joint: BrickJoint) -> bool:
         """Check whether a joint is with a support of known strength."""
@@ -369,7 +413,7 @@ class CutStack:
         )
 
     def _pairs_of(self, joint: BrickJoint) -> tuple[Indices, Array]:
-        """Nodes of a joint on the grid, and their scaled lengths, (n_pairs,) both."""
+        """Nodes of a contact on the grid, and their lengths, m, (n_pairs,) both."""
         before, after = self._left_out(joint)
         count = joint.last - joint.first
         lengths = self._element[joint.is_upright] * tributary(count)
@@ -379,7 +423,7 @@ class CutStack:
             lengths[-2] += after * lengths[-1]
         paired = slice(int(before), count + 1 - after)
         nodes = np.arange(joint.first, joint.last + 1)
-        return nodes[paired], lengths[paired]
+        return nodes[paired], self.stack.length * lengths[paired]
 
     def _left_out(self, joint: BrickJoint) -> tuple[bool, bool]:
         """Check whether the first, and the last, node of a joint has no pair.
@@ -390,10 +434,10 @@ class CutStack:
         three contacts would meet in a corner, of whose forces only sums are determined,
         and which of them slips would depend on how they share.
         """
-        if self.is_within_body(joint) or self._is_known(joint):
+        if self._is_known(joint):
             return False, False
         if joint.is_upright:
-            numbers = [self._pieces[piece].body for piece, _ in joint.sides]
+            numbers = [self._rectangles[piece].body for piece, _ in joint.sides]
             bodies = [self.stack.rectangles[number] for number in numbers]
             lowest = max(brick.y for brick in bodies)
             highest = min(brick.y + brick.rows for brick in bodies)
@@ -407,44 +451,51 @@ class CutStack:
         )
 
     def _traces(self) -> Iterator[dict[Hashable, _SideTrace]]:
-        """Traces of every substructure, by joint or by the span of an outer side.
+        """Traces of every substructure, side by side.
 
-        A joint has both components, or with a support of known strength the one along
-        it; an outer side those that are prescribed; the foot under a spring ("spring")
-        both.
+        By the side and number of a piece, by the cut, by the span of an outer side, or
+        by "spring". Contacts have both components, or with a support of known strength
+        the one along it; cuts both; an outer side those that are prescribed; the foot
+        under a spring both.
         """
-        of_joints = self._traces_of_joints()
-        for number, at_joints in enumerate(of_joints):
-            traces = at_joints | self._traces_of_sides(number)
+        for number, of_joints in enumerate(self._traces_of_joints()):
+            traces = of_joints | self._traces_of_sides(number)
             in_order = sorted(
                 traces.items(), key=lambda named: SIDES.index(named[1].side)
             )
             yield dict(in_order)
 
     def _traces_of_joints(self) -> list[dict[Hashable, _SideTrace]]:
-        """Traces of every substructure on its joints."""
-        traces: list[dict[Hashable, _SideTrace]] = [{} for _ in self._pieces]
-        for joint, (nodes, _) in self.pairs.items():
+        """Traces of every substructure on its contacts and cuts."""
+        traces: list[dict[Hashable, _SideTrace]] = [{} for _ in self._rectangles]
+        for n, (joint, piece) in enumerate(zip(self.joints, self.pieces, strict=True)):
             components: tuple[int, ...] = (0, 1)
             if self._is_known(joint):
                 components = (0,)
             has_macro = self.has_macro(joint)
+            first = int(piece.places[0])
+            last = int(piece.places[-1])
+            for name, (number, side) in zip(
+                ("above", "below"), joint.sides, strict=False
+            ):
+                _, corner = self._extent(number, side)
+                traces[number][name, n] = _SideTrace(
+                    side, components, first - corner, last - corner + 1, has_macro
+                )
+        for joint in self.cuts:
             for number, side in joint.sides:
-                rectangle = self._pieces[number].rectangle
-                corner = rectangle.y if joint.is_upright else rectangle.x
-                first = int(nodes[0]) - corner
-                last = first + len(nodes)
-                trace = _SideTrace(side, components, first, last, has_macro)
-                traces[number][joint] = trace
+                # A cut is a whole side.
+                count, _ = self._extent(number, side)
+                traces[number][joint] = _SideTrace(side, last=count + 1, has_macro=True)
         return traces
 
     def _traces_of_sides(self, number: int) -> dict[Hashable, _SideTrace]:
         """Traces of a substructure on prescribed outer sides, and at a spring."""
         stack = self.stack
-        rectangle, body, _ = self._pieces[number]
+        rectangle, body, _ = self._rectangles[number]
         is_foot = (rectangle.y, body) == (0, 0)
         traces = dict[Hashable, _SideTrace]()
-        for span in self._outer(number):
+        for span in self._outer[number]:
             components = tuple(
                 component
                 for component, given in enumerate(stack.sides[span.side])
@@ -460,7 +511,7 @@ class CutStack:
 
     def _is_outermost(self, number: int, span: Span) -> bool:
         """Check whether a span of an outer side lies as far out as any of that side."""
-        rectangle = self._pieces[number].rectangle
+        rectangle = self._rectangles[number].rectangle
         if span.side == "bottom":
             return rectangle.y == 0
         if span.side == "top":
@@ -474,7 +525,7 @@ class CutStack:
         """
         stack = self.stack
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
-        for span in self._outer(number):
+        for span in self._outer[number]:
             for component, given in enumerate(stack.sides[span.side]):
                 if given.prescribed or given.is_zero:
                     continue
@@ -493,7 +544,7 @@ class CutStack:
 
         Shape (n_nodes, n_instants), m or Pa.
         """
-        rectangle, body, _ = self._pieces[number]
+        rectangle, body, _ = self._rectangles[number]
         if span.side in ("left", "right"):
             brick = self.stack.rectangles[body]
             corner = rectangle.y - brick.y

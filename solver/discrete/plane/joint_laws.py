@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
+from solver.discrete.condensed_part import CondensedPart
 from solver.discrete.scales import Scales
 from solver.laws import (
     BodyStiffness,
@@ -24,6 +25,47 @@ from solver.laws import (
 from solver.laws.friction import compliance_of
 
 
+class JointPiece(NamedTuple):
+    """Part of a joint between a part of the body above and a part of what is below.
+
+    Attributes
+    ----------
+    joint
+        Number of the joint.
+    parts
+        Number of the part above, and of that below, among all parts; None is a rigid
+        support.
+    places
+        Numbers of the nodes of its pairs along the joint, ascending, (n,).
+    weights
+        Length that belongs to each pair, (n,), m.
+    along
+        Component along the joint among those of a node: 0 the first, 1 the second.
+    """
+
+    joint: int
+    parts: tuple[int, int | None]
+    places: Indices
+    weights: Array
+    along: int = 0
+
+
+class Cut(Protocol):
+    """Bodies that are cut into parts, and their joints into pieces."""
+
+    @property
+    def parts(self) -> Sequence[CondensedPart]:
+        """Parts of all bodies; rows of pieces have ("above", n) and ("below", n)."""
+
+    @property
+    def pieces(self) -> Sequence[JointPiece]:
+        """Pieces of all joints, joint by joint."""
+
+    @property
+    def joint_names(self) -> Sequence[str]:
+        """Names of all joints."""
+
+
 class JointPairs(NamedTuple):
     """Pairs of nodes of joints that have one law, joint by joint and piece by piece.
 
@@ -31,13 +73,14 @@ class JointPairs(NamedTuple):
     ----------
     names
         Names of the joints.
+    pieces
+        Numbers of the pieces of these joints.
+    counts
+        Number of pairs of each piece, (n_pieces,).
     joints
         Place of the joint of each pair in `names`, ascending, (n_pairs,).
-    keys
-        Number of the node of each pair among those of all these joints, (n_pairs,);
-        nodes of a joint follow those of the joint before.
-    positions
-        Distance of each pair along its joint, (n_pairs,), m.
+    places
+        Number of the node of each pair along its joint, (n_pairs,).
     weights
         Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
     tangent, normal
@@ -46,19 +89,69 @@ class JointPairs(NamedTuple):
     """
 
     names: Sequence[str]
+    pieces: Sequence[int]
+    counts: Indices
     joints: Indices
-    keys: Indices
-    positions: Array
+    places: Indices
     weights: Array
     tangent: Component
     normal: Component | None
 
+    @classmethod
+    def of(cls, cut: Cut, numbers: Sequence[int]) -> JointPairs:
+        """Pairs of joints by number, ascending."""
+        owners = np.array([piece.joint for piece in cut.pieces])
+        chosen = np.flatnonzero(np.isin(owners, numbers)).tolist()
+        pieces = [cut.pieces[number] for number in chosen]
+        counts = np.array([len(piece.places) for piece in pieces])
+        tangent, normal = _components(cut, chosen, counts)
+        return cls(
+            names=[cut.joint_names[number] for number in numbers],
+            pieces=chosen,
+            counts=counts,
+            joints=np.repeat(np.searchsorted(numbers, owners[chosen]), counts),
+            places=np.concatenate([piece.places for piece in pieces]),
+            weights=np.concatenate([piece.weights for piece in pieces]),
+            tangent=tangent,
+            normal=normal,
+        )
+
+
+def _components(
+    cut: Cut, numbers: Sequence[int], counts: Indices
+) -> tuple[Component, Component | None]:
+    """Rows along and across pieces, by their numbers and counts of pairs, (n,).
+
+    There are none across where parts have rows of one component.
+    """
+    pieces = [cut.pieces[number] for number in numbers]
+    along = np.repeat([piece.along for piece in pieces], counts)
+    every = np.arange(len(along))
+    tangential = list[Indices]()
+    across = list[Indices]()
+    for side, name in enumerate(("above", "below")):
+        of_pieces = list[Indices]()
+        for number, piece in zip(numbers, pieces, strict=True):
+            part = piece.parts[side]
+            if part is not None:
+                of_pieces.append(cut.parts[part].rows[name, number])
+        if of_pieces:
+            rows = np.concatenate(of_pieces)
+            tangential.append(rows[every, along])
+            if rows.shape[1] > 1:
+                across.append(rows[every, 1 - along])
+    if not across:
+        return Component(*tangential), None
+    return Component(*tangential), Component(*across)
+
 
 class Surface(NamedTuple):
-    """Friction and opening of the pairs of joints.
+    """Friction and opening of the pairs of joints, along these.
 
     Attributes
     ----------
+    positions
+        Distance of each pair along its joint, (n_pairs,), m.
     law
         Friction law beside the coefficients.
     gap
@@ -70,10 +163,31 @@ class Surface(NamedTuple):
         None.
     """
 
+    positions: Array
     law: FrictionLaw
     gap: Array
     friction: Array
     known: Array | None = None
+
+
+def laws_of(
+    cut: Cut, law_of: Callable[[Sequence[int]], Contact]
+) -> Iterator[tuple[str, Contact]]:
+    """Yield a law for all joints on supports, and one for all between bodies.
+
+    `law_of` makes a law by the numbers of its joints. That of a single joint has its
+    name.
+    """
+    kinds = dict[str, list[int]]()
+    on_support = {piece.joint: piece.parts[1] is None for piece in cut.pieces}
+    for number, is_on_support in on_support.items():
+        kind = "supports" if is_on_support else "contacts"
+        kinds.setdefault(kind, []).append(number)
+    for kind, numbers in kinds.items():
+        name = kind
+        if len(numbers) == 1:
+            name = cut.joint_names[numbers[0]]
+        yield name, law_of(numbers)
 
 
 def contact_of(
@@ -85,10 +199,12 @@ def contact_of(
 ) -> Contact:
     """Law of joints: all on a support, or all between bodies.
 
-    `bases` are the macro bases of their pieces in one component, (n_pairs_of_piece,
-    n_macro) each; without columns where no macro forces balance.
+    Pairs at one node of a joint are one point. `bases` are the macro bases of their
+    pieces in one component, (n_pairs_of_piece, n_macro) each; without columns where no
+    macro forces balance.
     """
-    _, first, points = np.unique(pairs.keys, return_index=True, return_inverse=True)
+    keys = pairs.joints * (pairs.places.max() + 1) + pairs.places
+    _, first, points = np.unique(keys, return_index=True, return_inverse=True)
     names: tuple[str, ...] = ()
     interfaces = None
     if len(pairs.names) > 1:
@@ -98,7 +214,7 @@ def contact_of(
         normal=_normal_law(pairs, surface, scales),
         tangential=_friction(pairs, surface, scales),
         points=points.ravel(),
-        positions=pairs.positions[first],
+        positions=surface.positions[first],
         weights=pairs.weights,
         stiffness_beside=stiffness_beside,
         macro=_beside_each_other(bases),

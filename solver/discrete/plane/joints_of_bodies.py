@@ -6,54 +6,30 @@ from collections.abc import Hashable, Sequence
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Flags
 from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
-from solver.discrete.plane.joint_pieces import JointPiece
-from solver.laws import Component, Contact, NodalStiffness
+from solver.laws import Contact, NodalStiffness
 from solver.laws.stiffness import of_whole_mesh
 
 
 def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
     """Law of joints by number: all on a support, or all between bodies."""
     joints = [cut.structure.joints[number] for number in numbers]
-    of_joints = np.isin([piece.joint for piece in cut.pieces], numbers)
-    pieces = np.flatnonzero(of_joints).tolist()
-    pairs = _pairs_of(cut, numbers, pieces)
+    pairs = JointPairs.of(cut, numbers)
+    firsts = np.cumsum([0, *[len(joint.nodes) for joint in joints]])
+    nodes = firsts[pairs.joints] + pairs.places
     gap = _along_joints([(joint.gap, len(joint.nodes)) for joint in joints])
     mu = _along_joints([(joint.friction, len(joint.nodes)) for joint in joints])
-    law = cut.structure.friction_law
-    return contact_of(
-        pairs,
-        Surface(law, gap[pairs.keys], mu[pairs.keys]),
-        cut.scales,
-        _stiffness_beside(cut, numbers, pairs),
-        _macro_bases(cut, [cut.pieces[number] for number in pieces]),
+    surface = Surface(
+        positions=_positions(cut, numbers)[nodes],
+        law=cut.structure.friction_law,
+        gap=gap[nodes],
+        friction=mu[nodes],
     )
-
-
-def _pairs_of(
-    cut: CutBodies, numbers: Sequence[int], pieces: Sequence[int]
-) -> JointPairs:
-    """Pairs of nodes of joints, by the numbers of these and of their pieces."""
-    joints = [cut.structure.joints[number] for number in numbers]
-    places = [cut.pieces[number].places for number in pieces]
-    owners = [cut.pieces[number].joint for number in pieces]
-    counts = [len(of_piece) for of_piece in places]
-    joint_of_pairs = np.repeat(np.searchsorted(numbers, owners), counts)
-    firsts = np.cumsum([0, *[len(joint.nodes) for joint in joints]])
-    keys = firsts[joint_of_pairs] + np.concatenate(places)
-    tangent, normal = _components(cut, pieces)
-    return JointPairs(
-        names=[joint.name for joint in joints],
-        joints=joint_of_pairs,
-        keys=keys,
-        positions=_positions(cut, numbers)[keys],
-        weights=np.concatenate([cut.pieces[number].weights for number in pieces]),
-        tangent=tangent,
-        normal=normal,
-    )
+    beside = _stiffness_beside(cut, numbers, pairs)
+    return contact_of(pairs, surface, cut.scales, beside, _macro_bases(cut, pairs))
 
 
 def _along_joints(values: Sequence[tuple[Array | float, int]]) -> Array:
@@ -83,25 +59,6 @@ def _distances(nodes: Array) -> Array:
     """Distance of nodes, (n, 2), from the first along the line of them, (n,)."""
     steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
     return np.cumsum(np.append(0.0, steps))
-
-
-def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Component]:
-    """Tangential and normal component of pieces of joints."""
-    joints = cut.structure.joints
-    sides = list[Indices]()
-    for side, name in enumerate(("above", "below")):
-        rows = list[Indices]()
-        for number in pieces:
-            piece = cut.pieces[number]
-            bodies = joints[piece.joint].sides
-            if side < len(bodies):
-                owner = cut.owner(bodies[side][0], piece.parts[side])
-                rows.append(cut.parts[owner].rows[name, number])
-        if rows:
-            sides.append(np.concatenate(rows))
-    along = [rows[:, 0] for rows in sides]
-    across = [rows[:, 1] for rows in sides]
-    return Component(*along), Component(*across)
 
 
 def _stiffness_beside(
@@ -156,19 +113,20 @@ def _whole_joints(
     return modulus * np.where(is_mesh, of_mesh, 1.0), modulus * lengths / depth
 
 
-def _macro_bases(cut: CutBodies, pieces: Sequence[JointPiece]) -> list[Array]:
+def _macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
     """Macro bases of pieces in one component, (n_pairs, n_macro) each.
 
     Without columns on a support.
     """
     joints = cut.structure.joints
-    if joints[pieces[0].joint].below is None:
+    pieces = [cut.pieces[number] for number in pairs.pieces]
+    if pairs.tangent.below is None:
         return [np.zeros((len(piece.places), 0)) for piece in pieces]
     known = dict[Hashable, Array]()
     bases = []
     for piece in pieces:
         joint = joints[piece.joint]
-        part = cut.shape_part(joint.above, piece.parts[0])
+        part = cut.shape_parts[piece.parts[0]]
         # Pieces of joints that are alike share their arrays.
         key = id(part), joint.nodes.tobytes(), id(piece.weights)
         if key not in known:

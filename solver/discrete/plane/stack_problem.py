@@ -6,9 +6,9 @@ the support, are in contact. Contact forces are lumped at the nodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import chain
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +23,7 @@ from solver.discrete.plane.joint_laws import (
     Surface,
     contact_of,
     glued,
+    laws_of,
 )
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
@@ -53,24 +54,20 @@ def problem_of(stack: Stack) -> Problem:
         If bodies can move though all contacts are closed and stick.
     """
     cut = CutStack(stack)
-    contacts = _contacts_of(cut)
-    order = [*contacts]
+    order = [*cut.joint_names]
     if stack.spring is not None:
         order.append("spring")
     scales = cut.scales
     inside = Inside(cut.parts, cut.positions, scales, len(stack.instants))
-    has_short_joints = any(
-        joint.is_upright and not cut.is_within_body(joint) for joint in cut.pairs
-    )
     problem = Problem(
         substructures=inside.substructures(),
-        interfaces=dict(_interfaces(cut, contacts)),
+        interfaces=dict(_interfaces(cut)),
         positions=inside.positions * scales.displacement,
         instants=stack.instants,
         scales=scales,
         inside=inside,
         rest=_rest(stack, inside),
-        has_short_joints=has_short_joints,
+        has_short_joints=any(joint.is_upright for joint in cut.joints),
         order=tuple(order),
     )
     if len(loose_bodies(problem)):
@@ -109,28 +106,14 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     return rest
 
 
-def _contacts_of(cut: CutStack) -> dict[str, list[BrickJoint]]:
-    """Joints of each contact by its name, in the order of the joints."""
-    contacts = dict[str, list[BrickJoint]]()
-    for joint in cut.pairs:
-        if not cut.is_within_body(joint):
-            contacts.setdefault(cut.name(joint), []).append(joint)
-    return contacts
-
-
-def _interfaces(
-    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]
-) -> Iterator[tuple[str, Interface]]:
+def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed sides."""
     stack = cut.stack
-    yield from _laws_of_contact(cut, contacts)
+    yield from laws_of(cut, partial(_contact, cut))
     if stack.spring is not None:
         yield "spring", _spring(cut, stack.spring)
-    # By the substructure below; upright cuts before lying ones.
-    cuts = [joint for joint in cut.pairs if cut.is_within_body(joint)]
-    cuts.sort(key=lambda joint: (joint.sides[1][0], not joint.is_upright))
-    for joint in cuts:
-        yield cut.name(joint), _glued(cut, joint)
+    for joint in cut.cuts:
+        yield cut.cut_name(joint), _glued(cut, joint)
     # A corner that two sides prescribe is held by the first: as `_prescribed` moves it.
     for side in ("top", "bottom", "left", "right"):
         given = stack.sides[side]
@@ -138,194 +121,124 @@ def _interfaces(
             yield from _prescribed(cut, side, given)
 
 
-def _laws_of_contact(
-    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]
-) -> Iterator[tuple[str, Contact]]:
-    """Yield a law for all contacts with the support, and one for those of bodies."""
-    alike = dict[str, list[str]]()
-    for name, joints in contacts.items():
-        kind = "supports" if joints[0].below is None else "contacts"
-        alike.setdefault(kind, []).append(name)
-    for kind, names in alike.items():
-        key = kind
-        if len(names) == 1:
-            key = names[0]
-        yield key, _contact(cut, {name: contacts[name] for name in names})
-
-
 def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
     """Perfect interface of two substructures of one body."""
-    rows_above, rows_below = _rows_of(cut, [joint])
-    return glued(rows_below, rows_above, cut.basis(joint, 1))
+    above, below = [cut.parts[number].rows[joint] for number, _ in joint.sides]
+    return glued(below, above, cut.macro_basis_of_cut(joint))
 
 
-class _Places(NamedTuple):
-    """Where pairs of nodes of contacts are, joint by joint.
+class _Beside(NamedTuple):
+    """Bodies beside pairs of nodes.
 
     Attributes
     ----------
     bodies, others
         Body above, or to the right, of each pair, and the other one, (n_pairs,);
         `NO_BODY` is the support.
-    nodes
-        Node of each pair on the grid of all elements, along the contact, (n_pairs,).
     is_upright
         Whether the joint of each pair is upright, (n_pairs,).
     """
 
     bodies: Indices
     others: Indices
-    nodes: Indices
     is_upright: Flags
 
-
-def _places_of(cut: CutStack, joints: Sequence[BrickJoint]) -> _Places:
-    """Places of the pairs of joints."""
-    counts = [len(cut.pairs[joint][0]) for joint in joints]
-    bodies = [cut.body_of(joint.above) for joint in joints]
-    others = [
-        NO_BODY if joint.below is None else cut.body_of(joint.below) for joint in joints
-    ]
-    return _Places(
-        bodies=np.repeat(bodies, counts),
-        others=np.repeat(others, counts),
-        nodes=np.concatenate([cut.pairs[joint][0] for joint in joints]),
-        is_upright=np.repeat([joint.is_upright for joint in joints], counts),
-    )
+    @classmethod
+    def of(cls, cut: CutStack, pairs: JointPairs) -> _Beside:
+        """Bodies beside the pairs of joints."""
+        joints = [cut.joints[number] for number in pairs.pieces]
+        both = [cut.bodies(joint) for joint in joints]
+        others = [NO_BODY if below is None else below for _, below in both]
+        return cls(
+            bodies=np.repeat([above for above, _ in both], pairs.counts),
+            others=np.repeat(others, pairs.counts),
+            is_upright=np.repeat([joint.is_upright for joint in joints], pairs.counts),
+        )
 
 
-def _contact(cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]) -> Contact:
-    """Law of contacts by name: of bodies with the support, or with each other."""
-    joints = list(chain.from_iterable(contacts.values()))
-    places = _places_of(cut, joints)
-    pairs = _pairs_of(cut, contacts, places)
-    bases = [cut.macro_basis(joint) for joint in joints]
+def _contact(cut: CutStack, numbers: Sequence[int]) -> Contact:
+    """Law of contacts by number: of bodies with the support, or with each other."""
+    pairs = JointPairs.of(cut, numbers)
+    beside = _Beside.of(cut, pairs)
     law = contact_of(
         pairs,
-        _surface(cut, places, pairs.weights),
+        _surface(cut, pairs, beside),
         cut.scales,
-        _stiffness_beside(cut.stack, places),
-        bases,
+        _stiffness_beside(cut.stack, beside),
+        [cut.macro_basis(number) for number in pairs.pieces],
     )
     support = cut.stack.support
-    if support is not None and support.is_image and places.others[0] == NO_BODY:
+    if support is not None and support.is_image and beside.others[0] == NO_BODY:
         return replace(law, slip_ratio=2.0)
     return law
 
 
-def _pairs_of(
-    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]], places: _Places
-) -> JointPairs:
-    """Pairs of nodes of contacts."""
-    joints = list(chain.from_iterable(contacts.values()))
-    lengths = [cut.pairs[joint][1] for joint in joints]
-    n_joints = [len(of_contact) for of_contact in contacts.values()]
-    of_joints = np.repeat(np.arange(len(contacts)), n_joints)
-    numbers = np.repeat(of_joints, [len(of_joint) for of_joint in lengths])
+def _surface(cut: CutStack, pairs: JointPairs, beside: _Beside) -> Surface:
+    """Friction and opening of contacts."""
     stack = cut.stack
+    support = None
+    if beside.others[0] == NO_BODY:
+        support = stack.support
     steps: Array = np.where(
-        places.is_upright,
+        beside.is_upright,
         stack.height / stack.elements[1],
         stack.length / stack.elements[0],
     )
-    tangent, normal = _components(cut, joints, places.is_upright)
-    return JointPairs(
-        names=list(contacts),
-        joints=numbers,
-        keys=numbers * (max(stack.grid) + 1) + places.nodes,
-        positions=steps * places.nodes,
-        weights=stack.length * np.concatenate(lengths),
-        tangent=tangent,
-        normal=normal,
+    surface = Surface(
+        positions=steps * pairs.places,
+        law=stack.friction_law,
+        gap=np.zeros(len(steps)),
+        friction=_coefficients(stack, support, pairs.places, beside),
     )
-
-
-def _components(
-    cut: CutStack, joints: Sequence[BrickJoint], is_upright: Flags
-) -> tuple[Component, Component | None]:
-    """Tangential and normal component of joints; no normal one at known strength.
-
-    `is_upright` is of every pair, (n_pairs,).
-    """
-    rows = _rows_of(cut, joints)
-    has_normal = rows[0].shape[1] > 1
-    if not has_normal:
-        sides = [rows_of_side[:, 0] for rows_of_side in rows]
-        return Component(*sides), None
-    along = is_upright.astype(np.intp)
-    every = np.arange(len(along))
-    tangential = [rows_of_side[every, along] for rows_of_side in rows]
-    across = [rows_of_side[every, 1 - along] for rows_of_side in rows]
-    return Component(*tangential), Component(*across)
-
-
-def _surface(cut: CutStack, places: _Places, areas: Array) -> Surface:
-    """Friction and opening of contacts, whose pairs have the areas, (n_pairs,), m^2."""
-    stack = cut.stack
-    support = None
-    if places.others[0] == NO_BODY:
-        support = stack.support
-    mu = _coefficients(stack, support, places)
     if support is None:
-        return Surface(stack.friction_law, np.zeros(len(areas)), mu)
-    law = stack.friction_law
+        return surface
+    surface = surface._replace(gap=support.gap[pairs.places])
     if support.is_image:
-        law = law.of_one_side()
-    known = None
+        surface = surface._replace(law=stack.friction_law.of_one_side())
     if support.strength is not None:
-        known = support.strength[places.nodes] / cut.scales.force * areas[:, None]
-    return Surface(law, support.gap[places.nodes], mu, known)
+        scaled = support.strength[pairs.places] / cut.scales.force
+        surface = surface._replace(known=scaled * pairs.weights[:, None])
+    return surface
 
 
-def _coefficients(stack: Stack, support: Support | None, places: _Places) -> Array:
-    """Coefficient of friction of each pair, (n_pairs,)."""
+def _coefficients(
+    stack: Stack, support: Support | None, nodes: Indices, beside: _Beside
+) -> Array:
+    """Coefficient of friction of each pair, (n_pairs,).
+
+    `nodes` are those of the pairs along the grid of all elements, (n_pairs,).
+    """
     if support is not None:
         mu = np.asarray(support.friction)
     else:
         mu = np.asarray(stack.friction)
     if mu.ndim < 2:
         mu = np.atleast_2d(mu)
-        rows = np.zeros_like(places.nodes)
+        rows = np.zeros_like(nodes)
     else:
-        rows = places.bodies - 1
-    columns = places.nodes if mu.shape[1] > 1 else 0
+        rows = beside.bodies - 1
+    columns = nodes if mu.shape[1] > 1 else 0
     of_pairs = np.asarray(mu[rows, columns])
     if stack.head_friction is not None:
-        of_pairs = np.where(places.is_upright, stack.head_friction, of_pairs)
+        of_pairs = np.where(beside.is_upright, stack.head_friction, of_pairs)
     if stack.strips and stack.support is not None:
-        on_ground = (places.others >= 0) & (places.others < stack.strips)
+        on_ground = (beside.others >= 0) & (beside.others < stack.strips)
         of_ground = np.broadcast_to(stack.support.friction, stack.grid[0] + 1)
         of_pairs = of_pairs.copy()
-        of_pairs[on_ground] = of_ground[places.nodes[on_ground]]
+        of_pairs[on_ground] = of_ground[nodes[on_ground]]
     return of_pairs
 
 
-def _stiffness_beside(stack: Stack, places: _Places) -> BodyStiffness:
+def _stiffness_beside(stack: Stack, beside: _Beside) -> BodyStiffness:
     """Moduli and depth of the bodies at contacts, for their search direction."""
     moduli = np.array([stack.modulus(body) for body in range(len(stack.rectangles))])
     rows = np.array([rectangle.rows for rectangle in stack.rectangles])
     depths = stack.height * (rows / stack.elements[1])
     return BodyStiffness(
-        above=moduli[places.bodies],
-        below=np.where(places.others == NO_BODY, np.inf, moduli[places.others]),
-        depth=depths[places.bodies],
+        above=moduli[beside.bodies],
+        below=np.where(beside.others == NO_BODY, np.inf, moduli[beside.others]),
+        depth=depths[beside.bodies],
     )
-
-
-def _rows_of(cut: CutStack, joints: Sequence[BrickJoint]) -> list[Indices]:
-    """Boundary rows of each side of joints, the one above first.
-
-    Each has shape (n_points, n_components); a support has no rows.
-    """
-    rows = [np.concatenate([cut.parts[joint.above].rows[joint] for joint in joints])]
-    below = [
-        cut.parts[joint.below].rows[joint]
-        for joint in joints
-        if joint.below is not None
-    ]
-    if below:
-        rows.append(np.concatenate(below))
-    return rows
 
 
 def _spring(cut: CutStack, spring: Spring) -> Contact:
