@@ -19,6 +19,7 @@ from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
 from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_shapes import CutShape
+from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.scales import Scales
@@ -176,9 +177,8 @@ class CutBodies:
         for number, piece in enumerate(self.pieces):
             joint = self.structure.joints[piece.joint]
             has_macro = joint.below is not None
-            sides = zip(("above", "below"), joint.sides, piece.parts, strict=False)
+            sides = zip(JOINT_SIDES, joint.sides, piece.parts, strict=False)
             for name, (_, nodes), owner in sides:
-                assert owner is not None
                 own = self.shape_parts[owner]
                 # Pieces of joints that are alike share their arrays.
                 key = id(own), nodes.tobytes(), id(piece.weights), has_macro

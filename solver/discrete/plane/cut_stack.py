@@ -22,7 +22,7 @@ from solver.discrete.elements import (
     legendre_basis,
 )
 from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
-from solver.discrete.plane.joint_laws import JointPiece
+from solver.discrete.plane.joint_laws import JOINT_SIDES, JointPiece
 from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import SETTLED, Stack
 from solver.discrete.scales import Scales
@@ -226,7 +226,7 @@ class CutStack:
         for number, joints in enumerate(contacts.values()):
             for joint in joints:
                 nodes, weights = self._pairs(joint)
-                parts = joint.above, joint.below
+                parts = tuple(part for part, _ in joint.sides)
                 yield JointPiece(number, parts, nodes, weights, int(joint.is_upright))
 
     def _contacts_of(self, joints: Sequence[BrickJoint]) -> dict[str, list[BrickJoint]]:
@@ -475,9 +475,8 @@ class CutStack:
             has_macro = self.has_macro(joint)
             first = int(piece.places[0])
             last = int(piece.places[-1])
-            for name, (number, side) in zip(
-                ("above", "below"), joint.sides, strict=False
-            ):
+            sides = zip(JOINT_SIDES, joint.sides, strict=False)
+            for name, (number, side) in sides:
                 _, corner = self._extent(number, side)
                 traces[number][name, n] = _SideTrace(
                     side, components, first - corner, last - corner + 1, has_macro

@@ -24,6 +24,9 @@ from solver.laws import (
 )
 from solver.laws.friction import compliance_of
 
+JOINT_SIDES = "above", "below"
+"""Sides of joints; the rows of a part at a piece are by these and its number."""
+
 
 class JointPiece(NamedTuple):
     """Part of a joint between a part of the body above and a part of what is below.
@@ -33,8 +36,8 @@ class JointPiece(NamedTuple):
     joint
         Number of the joint.
     parts
-        Number of the part above, and of that below, among all parts; None is a rigid
-        support.
+        Number of the part above, and of that below, among all parts; on a rigid support
+        of the part above alone.
     places
         Numbers of the nodes of its pairs along the joint, ascending, (n,).
     weights
@@ -44,7 +47,7 @@ class JointPiece(NamedTuple):
     """
 
     joint: int
-    parts: tuple[int, int | None]
+    parts: tuple[int, ...]
     places: Indices
     weights: Array
     along: int = 0
@@ -55,7 +58,7 @@ class Cut(Protocol):
 
     @property
     def parts(self) -> Sequence[CondensedPart]:
-        """Parts of all bodies; rows of pieces have ("above", n) and ("below", n)."""
+        """Parts of all bodies."""
 
     @property
     def pieces(self) -> Sequence[JointPiece]:
@@ -129,17 +132,15 @@ def _components(
     every = np.arange(len(along))
     tangential = list[Indices]()
     across = list[Indices]()
-    for side, name in enumerate(("above", "below")):
-        of_pieces = list[Indices]()
-        for number, piece in zip(numbers, pieces, strict=True):
-            part = piece.parts[side]
-            if part is not None:
-                of_pieces.append(cut.parts[part].rows[name, number])
-        if of_pieces:
-            rows = np.concatenate(of_pieces)
-            tangential.append(rows[every, along])
-            if rows.shape[1] > 1:
-                across.append(rows[every, 1 - along])
+    for side, name in enumerate(JOINT_SIDES[: len(pieces[0].parts)]):
+        of_pieces = [
+            cut.parts[piece.parts[side]].rows[name, number]
+            for number, piece in zip(numbers, pieces, strict=True)
+        ]
+        rows = np.concatenate(of_pieces)
+        tangential.append(rows[every, along])
+        if rows.shape[1] > 1:
+            across.append(rows[every, 1 - along])
     if not across:
         return Component(*tangential), None
     return Component(*tangential), Component(*across)
@@ -161,6 +162,8 @@ class Surface(NamedTuple):
     known
         Friction force that known pressure makes, scaled, (n_pairs, n_instants), or
         None.
+    slip_ratio
+        Slip over the tangential displacement of the rows.
     """
 
     positions: Array
@@ -168,6 +171,7 @@ class Surface(NamedTuple):
     gap: Array
     friction: Array
     known: Array | None = None
+    slip_ratio: float = 1.0
 
 
 def laws_of(
@@ -179,7 +183,7 @@ def laws_of(
     name.
     """
     kinds = dict[str, list[int]]()
-    on_support = {piece.joint: piece.parts[1] is None for piece in cut.pieces}
+    on_support = {piece.joint: len(piece.parts) == 1 for piece in cut.pieces}
     for number, is_on_support in on_support.items():
         kind = "supports" if is_on_support else "contacts"
         kinds.setdefault(kind, []).append(number)
@@ -218,6 +222,7 @@ def contact_of(
         weights=pairs.weights,
         stiffness_beside=stiffness_beside,
         macro=_beside_each_other(bases),
+        slip_ratio=surface.slip_ratio,
         names=names,
         interfaces=interfaces,
     )

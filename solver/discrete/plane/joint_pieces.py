@@ -150,7 +150,8 @@ def pieces_of(
     pieces = list[JointPiece]()
     # Joints along the same nodes of the same shapes have the same pieces.
     known = dict[Hashable, list[JointPiece]]()
-    first_parts = np.cumsum([0, *[len(cut.elements) for cut in cuts]]).tolist()
+    counts = [len(cut.elements) for cut in cuts]
+    first_parts = np.cumsum([0, *counts]).tolist()
     for number, (joint, has_pair) in enumerate(
         zip(joints, frames.has_pair, strict=True)
     ):
@@ -178,11 +179,11 @@ def _of_joint(
     piece: JointPiece, number: int, joint: Joint, first_parts: Sequence[int]
 ) -> JointPiece:
     """The piece of a joint, by its number, that is like one with parts of bodies."""
-    above, below = piece.parts
-    if joint.below is not None and below is not None:
-        below += first_parts[joint.below]
-    parts = first_parts[joint.above] + above, below
-    return piece._replace(joint=number, parts=parts)
+    numbers = [
+        first_parts[body] + part
+        for (body, _), part in zip(joint.sides, piece.parts, strict=False)
+    ]
+    return piece._replace(joint=number, parts=tuple(numbers))
 
 
 def _pieces_of_joint(
@@ -202,9 +203,8 @@ def _pieces_of_joint(
         weights = np.zeros(last - first + 1)
         weights[:-1] += shares[first:last, 0]
         weights[1:] += shares[first:last, 1]
-        part_below = None if joint.below is None else int(below[first])
+        parts = int(above[first]), int(below[first])
         places = np.arange(first, last + 1)
-        parts = int(above[first]), part_below
         pieces.append(JointPiece(number, parts, places, weights))
     return pieces
 

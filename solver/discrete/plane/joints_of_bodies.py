@@ -18,10 +18,11 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
     """Law of joints by number: all on a support, or all between bodies."""
     joints = [cut.structure.joints[number] for number in numbers]
     pairs = JointPairs.of(cut, numbers)
-    firsts = np.cumsum([0, *[len(joint.nodes) for joint in joints]])
-    nodes = firsts[pairs.joints] + pairs.places
-    gap = _along_joints([(joint.gap, len(joint.nodes)) for joint in joints])
-    mu = _along_joints([(joint.friction, len(joint.nodes)) for joint in joints])
+    sizes = [len(joint.nodes) for joint in joints]
+    # Numbers among the nodes of all these joints.
+    nodes = (np.cumsum(sizes) - sizes)[pairs.joints] + pairs.places
+    gap = _along_joints([joint.gap for joint in joints], sizes)
+    mu = _along_joints([joint.friction for joint in joints], sizes)
     surface = Surface(
         positions=_positions(cut, numbers)[nodes],
         law=cut.structure.friction_law,
@@ -32,13 +33,13 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
     return contact_of(pairs, surface, cut.scales, beside, _macro_bases(cut, pairs))
 
 
-def _along_joints(values: Sequence[tuple[Array | float, int]]) -> Array:
-    """Values of joints, each with its number of nodes, node by node: (n_nodes,)."""
-    sizes = [size for _, size in values]
-    constants = [value for value, _ in values if isinstance(value, float)]
+def _along_joints(values: Sequence[Array | float], sizes: Sequence[int]) -> Array:
+    """Values of joints of these sizes, node by node: (n_nodes,)."""
+    constants = [value for value in values if isinstance(value, float)]
     if len(constants) == len(values):
         return np.repeat(constants, sizes)
-    return np.concatenate([np.broadcast_to(value, size) for value, size in values])
+    along = zip(values, sizes, strict=True)
+    return np.concatenate([np.broadcast_to(value, size) for value, size in along])
 
 
 def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:

@@ -7,7 +7,6 @@ the support, are in contact. Contact forces are lumped at the nodes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -160,17 +159,13 @@ def _contact(cut: CutStack, numbers: Sequence[int]) -> Contact:
     """Law of contacts by number: of bodies with the support, or with each other."""
     pairs = JointPairs.of(cut, numbers)
     beside = _Beside.of(cut, pairs)
-    law = contact_of(
+    return contact_of(
         pairs,
         _surface(cut, pairs, beside),
         cut.scales,
         _stiffness_beside(cut.stack, beside),
         [cut.macro_basis(number) for number in pairs.pieces],
     )
-    support = cut.stack.support
-    if support is not None and support.is_image and beside.others[0] == NO_BODY:
-        return replace(law, slip_ratio=2.0)
-    return law
 
 
 def _surface(cut: CutStack, pairs: JointPairs, beside: _Beside) -> Surface:
@@ -194,7 +189,8 @@ def _surface(cut: CutStack, pairs: JointPairs, beside: _Beside) -> Surface:
         return surface
     surface = surface._replace(gap=support.gap[pairs.places])
     if support.is_image:
-        surface = surface._replace(law=stack.friction_law.of_one_side())
+        law = stack.friction_law.of_one_side()
+        surface = surface._replace(law=law, slip_ratio=2.0)
     if support.strength is not None:
         scaled = support.strength[pairs.places] / cut.scales.force
         surface = surface._replace(known=scaled * pairs.weights[:, None])
