@@ -14,7 +14,8 @@ from solver.arrays import Array
 from solver.discrete import discretise
 from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.cut_stack import CutStack, ends_along
+from solver.discrete.plane.cut_rectangles import ends_along
+from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.sides import Given, Side
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem

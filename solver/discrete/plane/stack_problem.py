@@ -16,7 +16,8 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.inside import Inside
 from solver.discrete.loose import loose_bodies
 from solver.discrete.plane.bricks import BrickJoint
-from solver.discrete.plane.cut_stack import CutStack, Span
+from solver.discrete.plane.cut_rectangles import Span
+from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.joint_laws import (
     JointPairs,
     Surface,
@@ -66,7 +67,7 @@ def problem_of(stack: Stack) -> Problem:
         scales=scales,
         inside=inside,
         rest=_rest(stack, inside),
-        has_short_joints=any(joint.is_upright for joint in cut.joints),
+        has_short_joints=any(joint.is_upright for joint in cut.rectangles.joints),
         order=tuple(order),
     )
     if len(loose_bodies(problem)):
@@ -111,8 +112,8 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
     yield from laws_of(cut, partial(_contact, cut))
     if stack.spring is not None:
         yield "spring", _spring(cut, stack.spring)
-    for joint in cut.cuts:
-        yield cut.cut_name(joint), _glued(cut, joint)
+    for joint in cut.rectangles.cuts:
+        yield cut.rectangles.cut_name(joint), _glued(cut, joint)
     # A corner that two sides prescribe is held by the first: as `_prescribed` moves it.
     for side in ("top", "bottom", "left", "right"):
         given = stack.sides[side]
@@ -145,8 +146,8 @@ class _Beside(NamedTuple):
     @classmethod
     def of(cls, cut: CutStack, pairs: JointPairs) -> _Beside:
         """Bodies beside the pairs of joints."""
-        joints = [cut.joints[number] for number in pairs.pieces]
-        both = [cut.bodies(joint) for joint in joints]
+        joints = [cut.rectangles.joints[number] for number in pairs.pieces]
+        both = [cut.rectangles.bodies(joint) for joint in joints]
         others = [NO_BODY if below is None else below for _, below in both]
         return cls(
             bodies=np.repeat([above for above, _ in both], pairs.counts),
