@@ -62,20 +62,15 @@ def as_meshes(bodies: int, fine: int) -> Problem:
     chains = sides(mesh, 2 * fine, fine)
     foot = chains["bottom"]
     top = chains["top"]
-    normals = np.tile([0.0, 1.0], (len(foot), 1))
     blocks = []
-    joints = []
     for number in range(bodies):
         origin = np.array([0.0, number * HEIGHT])
         blocks.append(Body(f"block {number}", mesh, 2e10, 0.3, origin=origin))
-        below = None
-        nodes_below = None
-        if number:
-            below = number - 1
-            nodes_below = top
+    up = np.tile([0.0, 1.0], (len(foot), 1))
+    joints = [Joint("ground", 0, foot, None, None, up, friction=MU)]
+    for number in range(1, bodies):
         name = f"joint {number}"
-        joint = Joint(name, number, foot, below, nodes_below, normals, friction=MU)
-        joints.append(joint)
+        joints.append(Joint(name, number, foot, number - 1, top, up, friction=MU))
     pressed = np.stack([ZERO, -PRESSURE])
     load = Load.of_traction("pressure", bodies - 1, blocks[-1], top, pressed)
     held = Held("top", bodies - 1, top, 0, MOVED)
