@@ -103,3 +103,38 @@ def test_every_contact_carries_the_pressure(bodies: int) -> None:
         for name in problem.rubbing:
             pressing = np.asarray(solution.contact(name).normal_force).sum(axis=0)
             assert pressing == pytest.approx(PRESSURE * LENGTH, rel=1e-9, abs=1e-6)
+
+
+def two_beside_each_other(cuts: int) -> Bodies:
+    """Two blocks beside each other on a third one, which is as long as both."""
+    small = grid(np.linspace(0.0, LENGTH, 5), np.linspace(0.0, HEIGHT, 3))
+    large = grid(np.linspace(0.0, 2.0 * LENGTH, 9), np.linspace(0.0, HEIGHT, 3))
+    chains = sides(small, 4, 2)
+    feet = sides(large, 8, 2)
+    foot = chains["bottom"]
+    bodies = [
+        Body("below", large, 2e10, 0.3, substructures=cuts),
+        Body("left", small, 2e10, origin=np.array([0.0, HEIGHT]), substructures=cuts),
+        Body("right", small, 2e10, origin=np.array([LENGTH, HEIGHT])),
+    ]
+    up = np.tile([0.0, 1.0], (len(foot), 1))
+    aside = np.tile([1.0, 0.0], (len(chains["left"]), 1))
+    half = len(foot)
+    bed = feet["top"]
+    joints = [
+        Joint("left bed", 1, foot, 0, bed[:half], up),
+        Joint("right bed", 2, foot, 0, bed[half - 1 :], up),
+        Joint("head", 2, chains["left"], 1, chains["right"], aside),
+    ]
+    ground = feet["bottom"]
+    held = [Held(f"ground {axis}", 0, ground, axis, ZERO) for axis in (0, 1)]
+    held += [Held(f"top {body}", body, chains["top"], 0, ZERO) for body in (1, 2)]
+    return Bodies(bodies, joints, held, [], TIMES, 1.0)
+
+
+@pytest.mark.parametrize("cuts", [1, 8])
+def test_joints_that_meet_in_a_corner_are_short_however_bodies_are_cut(
+    cuts: int,
+) -> None:
+    assert discretise(two_beside_each_other(cuts)).has_short_joints
+    assert not as_meshes(2, 1).has_short_joints

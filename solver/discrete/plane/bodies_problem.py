@@ -38,8 +38,6 @@ def problem_of(structure: Bodies) -> Problem:
     scales = cut.scales
     nodes = np.concatenate([body.nodes for body in structure.bodies]) / cut.length
     inside = Inside(cut.parts, nodes, scales, len(structure.instants))
-    n_pairs = sum(len(piece.places) for piece in cut.pieces)
-    n_steps = sum(len(joint.nodes) for joint in structure.joints)
     problem = Problem(
         substructures=inside.substructures(),
         interfaces=dict(_interfaces(cut)),
@@ -47,7 +45,7 @@ def problem_of(structure: Bodies) -> Problem:
         instants=structure.instants,
         scales=scales,
         inside=inside,
-        has_short_joints=n_pairs < n_steps,
+        has_short_joints=not all(pairs.all() for pairs in cut.frames.has_pair),
         order=tuple(cut.joint_names),
     )
     loose = loose_bodies(problem)
