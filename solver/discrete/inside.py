@@ -67,10 +67,24 @@ class Inside:
 
     def substructures(self) -> tuple[Substructure, ...]:
         """Substructures of the problem, part by part."""
-        return tuple(
-            _substructure_of(part, dofs)
-            for part, dofs in zip(self._parts, self.dofs, strict=True)
-        )
+        substructures = list[Substructure]()
+        # Equal parts with the very same forces share what is condensed of these.
+        known = dict[tuple[int, int], Array]()
+        for part, dofs in zip(self._parts, self.dofs, strict=True):
+            body_force = None
+            if part.force is not None:
+                key = id(part.condensed), id(part.force)
+                if key not in known:
+                    known[key] = part.condensed.condense(part.force)
+                body_force = known[key]
+            substructure = Substructure(
+                elasticity=part.operator.elasticity,
+                dofs=dofs,
+                rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
+                body_force=body_force,
+            )
+            substructures.append(substructure)
+        return tuple(substructures)
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Displacement of all nodes at n instants, (n_nodes, 2, n), m.
@@ -217,16 +231,3 @@ class Inside:
         # A turn is an angle, not over the unit of length as displacements are.
         rotation = x * along_y - y * along_x + turn / self._length
         return np.stack([along_x, along_y, rotation], axis=1)
-
-
-def _substructure_of(part: CondensedPart, dofs: Indices) -> Substructure:
-    """Substructure of a condensed part, with its degrees of freedom, (n_kept,)."""
-    body_force = None
-    if part.force is not None:
-        body_force = part.condensed.condense(part.force)
-    return Substructure(
-        elasticity=part.operator.elasticity,
-        dofs=dofs,
-        rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
-        body_force=body_force,
-    )

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, read_only
 from solver.discrete.condensed_part import CondensedPart, Operator, Trace, numbered
 from solver.discrete.elements import (
     EDGE_MASS,
@@ -96,11 +96,12 @@ class CutStack:
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
         self.joint_names = self.rectangles.joint_names
         self.pieces = self.rectangles.pieces
-        # Equal substructures share a mesh and an operator.
+        # Equal substructures share a mesh, an operator, and the forces of the weight.
         self._mesh = cache(self._mesh_of)
         self._trace = cache(_SideTrace.of)
         self._operator = cache(self._operator_of)
         self._basis = cache(self._basis_of)
+        self._weight = cache(self._weight_of)
         self.parts = list(self._parts(_node_numbers(grids)))
 
     def _grids(self) -> list[Array]:
@@ -271,23 +272,42 @@ class CutStack:
         Shape (2 n_nodes, n_instants).
         """
         stack = self.stack
+        weight = None
+        if self.rectangles.body_of(number) >= stack.strips:
+            weight = self._weight(mesh)
+        tractions = list(self._tractions(number))
+        if not tractions:
+            return weight
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
-        for span in self.rectangles.outer[number]:
-            for component, given in enumerate(stack.sides[span.side]):
-                if given.prescribed or given.is_zero:
-                    continue
-                traction = self.values(number, span, given) / stack.young
-                _add_traction(total[:, component], mesh, span, traction)
-        if (
-            stack.body_force is not None
-            and self.rectangles.body_of(number) >= stack.strips
-        ):
-            areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
-            density = stack.body_force * stack.length / stack.young
-            total += areas.reshape(-1, 1, 1) * density
-        if total.any():
-            return total.reshape(-1, len(stack.instants))
+        for span, component, given in tractions:
+            traction = self.values(number, span, given) / stack.young
+            _add_traction(total[:, component], mesh, span, traction)
+        force = total.reshape(-1, len(stack.instants))
+        if weight is not None:
+            force += weight
+        if force.any():
+            return force
         return None
+
+    def _tractions(self, number: int) -> Iterator[tuple[Span, int, Given]]:
+        """Tractions on outer sides of a substructure, with their spans and axes."""
+        for span in self.rectangles.outer[number]:
+            for component, given in enumerate(self.stack.sides[span.side]):
+                if not given.prescribed and not given.is_zero:
+                    yield span, component, given
+
+    def _weight_of(self, mesh: Rectangle) -> Array | None:
+        """Nodal forces of the weight, (2 n_nodes, n_instants), scaled, or None."""
+        stack = self.stack
+        if stack.body_force is None:
+            return None
+        areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
+        density = stack.body_force * stack.length / stack.young
+        # Zero is added so that -0 is 0.
+        force = areas.reshape(-1, 1, 1) * density + 0.0
+        if not force.any():
+            return None
+        return read_only(force.reshape(-1, len(stack.instants)))
 
     def values(self, number: int, span: Span, given: Given) -> Array:
         """Given displacement or traction at the nodes of a span of an outer side.
