@@ -45,8 +45,8 @@ class CutBodies:
         How each body is cut.
     frames
         Directions of the degrees of freedom at all nodes.
-    pieces
-        Pieces of the joints.
+    joint_names, pieces
+        Names of the joints, and their pieces.
     first_parts
         Numbers of the first part of each body, and of the parts.
     shape_parts
@@ -71,6 +71,7 @@ class CutBodies:
         self.frames = NodeFrames(
             bodies, structure.first_nodes, structure.joints, structure.held
         )
+        self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
@@ -114,11 +115,6 @@ class CutBodies:
                 diagonals[id(operator)] = diagonal[operator.trace]
             found.append(diagonals[id(operator)])
         return np.concatenate(found)
-
-    @property
-    def joint_names(self) -> list[str]:
-        """Names of all joints."""
-        return [joint.name for joint in self.structure.joints]
 
     def owner(self, number: int, part: int) -> int:
         """Number of a part of a body among all."""
