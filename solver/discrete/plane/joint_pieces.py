@@ -155,15 +155,16 @@ def pieces_of(
     for number, (joint, has_pair) in enumerate(
         zip(joints, frames.has_pair, strict=True)
     ):
-        key = tuple((id(cuts[body]), chain.tobytes()) for body, chain in joint.sides)
+        sides = tuple((id(cuts[body]), chain.tobytes()) for body, chain in joint.sides)
+        key = sides, has_pair.tobytes()
         if key not in known:
-            known[key] = _pieces_of_joint(bodies, number, joint, cuts)
-        found = [_of_joint(piece, number, joint, first_parts) for piece in known[key]]
-        if has_pair.all():
-            pieces += found
-            continue
-        kept = [piece for piece in found if has_pair[piece.places].any()]
-        if not kept:
+            whole = _pieces_of_joint(bodies, number, joint, cuts)
+            known[key] = [
+                _paired(piece, has_pair[piece.places])
+                for piece in whole
+                if has_pair[piece.places].any()
+            ]
+        if not known[key]:
             raise RefusedError(
                 f"{joint}.nodes",
                 Words("without a pair"),
@@ -171,7 +172,7 @@ def pieces_of(
                 "direction",
                 "make its elements smaller, or leave it out",
             )
-        pieces += [_paired(piece, has_pair[piece.places]) for piece in kept]
+        pieces += [_of_joint(piece, number, joint, first_parts) for piece in known[key]]
     return pieces
 
 
