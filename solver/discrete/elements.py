@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import product
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
@@ -29,6 +30,10 @@ HIGHEST_DEGREE = 10
 """Largest macro degree of a long side. With 6, layers of 200 times their
 thickness cut in two up take more than 150 iterations to 1 %; with 8 and 10, 37 and 25
 (measured)."""
+
+
+ENTRY = 12
+"""Memory of an entry of a sparse factor, with its place, B."""
 
 
 def elastic_matrix(young: float, poisson: float, state: str) -> Array:
@@ -124,6 +129,8 @@ class Rectangle:
     height: float
     elastic: Array
 
+    n_axes: ClassVar[int] = 2
+
     @property
     def n_nodes(self) -> int:
         """Number of nodes."""
@@ -177,6 +184,13 @@ class Rectangle:
         }
         return edges[side]
 
+    def slenderness(self, side: str) -> float:
+        """Length of a side over the depth behind it."""
+        ratio = self.columns * self.width / (self.rows * self.height)
+        if side in ("left", "right"):
+            return 1.0 / ratio
+        return ratio
+
     def edge_weights(self, side: str) -> Array:
         """Length of a side that belongs to each node, (nodes along,), scaled."""
         if side in ("left", "right"):
@@ -199,31 +213,23 @@ def dofs_of(nodes: Indices) -> Indices:
     return np.stack([2 * nodes, 2 * nodes + 1], axis=-1).reshape(*nodes.shape[:-1], -1)
 
 
-def side_basis(rectangle: Rectangle, side: str, n_points: int, degree: int) -> Array:
-    """Macro basis of Legendre polynomials over a side, shape (n_points, n_macro).
-
-    `n_points` points of the side have rows; `degree` is that of a side that is not
-    long.
-
-    Forces that balance only point by point may bend the side, which resists with E d^3
-    q^4 / 24 per area at the wavenumber q, where d is the depth behind it. Bending waves
-    that are long beside d are so soft that no k suits both them and the waves shorter
-    than d: the macro forces are to balance them. About 0.7 times the root of l / d
-    waves are softer than E d / l^2, the stretching of the side of length l.
-    """
-    ratio = rectangle.columns * rectangle.width / (rectangle.rows * rectangle.height)
-    if side in ("bottom", "top"):
-        slenderness = ratio
-    else:
-        slenderness = 1.0 / ratio
-    return legendre_basis(np.linspace(-1.0, 1.0, n_points), slenderness, degree)
-
-
 def legendre_basis(positions: Array, slenderness: float, degree: int) -> Array:
-    """Legendre polynomials at positions from -1 to 1, (n,): shape (n, n_macro).
+    """Macro basis of a line: Legendre polynomials, shape (n_points, n_macro).
 
-    `slenderness` is the length over the depth behind it, `degree` that of a line that
-    is not long.
+    Forces that balance only point by point may bend the side of a part, which resists
+    with E d^3 q^4 / 24 per area at the wavenumber q, where d is the depth behind it.
+    Bending waves that are long beside d are so soft that no k suits both them and the
+    waves shorter than d: the macro forces are to balance them. About 0.7 times the root
+    of l / d waves are softer than E d / l^2, the stretching of the side of length l.
+
+    Parameters
+    ----------
+    positions
+        Positions along the line, from -1 to 1, (n_points,).
+    slenderness
+        Length of the line over the depth behind it.
+    degree
+        Degree for a line that is not long.
     """
     # A long side has many soft waves, which the macro forces have to balance.
     wanted = round(degree * max(LONG_SIDES * np.sqrt(slenderness), 1.0))
@@ -270,21 +276,22 @@ class SchurComplement:
             inner = others[:, self._rest]
             if isinstance(inner, np.ndarray):
                 self._solve = partial(cho_solve, cho_factor(inner))
+                self._factor_nbytes = inner.nbytes
             else:
-                self._solve = sparse_factor(sparse.csc_array(inner)).solve
+                factor = sparse_factor(sparse.csc_array(inner))
+                self._solve = factor.solve
+                self._factor_nbytes = ENTRY * factor.nnz
             self._response = self._solve(coupling)
             condensed -= coupling.T @ self._response
         self.stiffness: Array = 0.5 * (condensed + condensed.T)
 
     @property
     def nbytes(self) -> int:
-        """Memory of all dense matrices, also of the condensation before, B."""
+        """Memory of matrices and factors, also of the condensation before, B."""
         nbytes = self.stiffness.nbytes
         if len(self._rest):
-            nbytes += self._response.nbytes
+            nbytes += self._response.nbytes + self._factor_nbytes
         if self._before is not None:
-            # The inside of what was condensed before is factored as a dense matrix.
-            nbytes += len(self._rest) ** 2 * self.stiffness.itemsize
             nbytes += self._before.nbytes
         return nbytes
 

@@ -2,95 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
 from solver.arrays import Array, Indices, read_only
-from solver.discrete.elements import SchurComplement
+from solver.discrete.condensed_part import N_AXES, CondensedPart
 from solver.discrete.scales import Scales
-from solver.discrete.substructure import Elasticity, Substructure
+from solver.discrete.substructure import Substructure
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
 that of a translation."""
 MOVES = 1e-6
 """Smallest share in a free motion, over its size, of a body that moves."""
-N_AXES = 3
-"""Ways in which a node may move: along x, along y, and turning."""
-
-
-class CondensedPart(Protocol):
-    """A substructure whose inside is condensed: what `Inside` asks of it."""
-
-    @property
-    def condensed(self) -> SchurComplement:
-        """Stiffness condensed onto some of its degrees of freedom."""
-
-    @property
-    def elasticity(self) -> Elasticity:
-        """Operator, which equal parts share."""
-
-    @property
-    def rows(self) -> Mapping[Hashable, Indices]:
-        """Boundary rows by what has them, shape (n_nodes, n_components) each."""
-
-    @property
-    def nodes(self) -> Indices:
-        """Numbers of its nodes among those of all bodies, of any shape."""
-
-    @property
-    def body(self) -> int:
-        """Number of its body."""
-
-    @property
-    def force(self) -> Array | None:
-        """Forces on all its degrees of freedom, (n, n_instants), scaled, or None."""
-
-    @property
-    def dofs(self) -> Indices:
-        """Numbers of its degrees of freedom among those of all nodes, shape (n,).
-
-        Each node has `N_AXES` of these numbers, whether it uses them or not.
-        """
-
-    @property
-    def directions(self) -> Array:
-        """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
-
-    @property
-    def elements(self) -> Indices:
-        """Corners of every element among its own nodes, shape (n_elements, 4).
-
-        Triangles have their last corner twice, beams both ends twice.
-        """
-
-    def motion(self, moved: Array) -> Array:
-        """Displacement of its nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
-
-    def forces(self, nodal: Array) -> Array:
-        """Forces on its degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
-
-    def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled.
-
-        `displacement` is that of its nodes, (n_nodes, 2), scaled by the length.
-        """
-
-
-def substructure_of(part: CondensedPart, dofs: Indices) -> Substructure:
-    """Substructure of a condensed part, with its degrees of freedom, (n_kept,)."""
-    body_force = None
-    if part.force is not None:
-        body_force = part.condensed.condense(part.force)
-    return Substructure(
-        elasticity=part.elasticity,
-        dofs=dofs,
-        rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
-        body_force=body_force,
-    )
 
 
 class Inside:
@@ -132,12 +58,33 @@ class Inside:
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
         self.positions = positions[skeleton // N_AXES]
-        corners = [part.nodes.ravel()[part.elements] for part in parts]
+        corners = [part.nodes.ravel()[part.mesh.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(elements) for elements in corners]
         self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
         self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
         self.directions: Array = np.concatenate(along)[first]
+
+    def substructures(self) -> tuple[Substructure, ...]:
+        """Substructures of the problem, part by part."""
+        substructures = list[Substructure]()
+        # Equal parts with the very same forces share what is condensed of these.
+        known = dict[tuple[int, int], Array]()
+        for part, dofs in zip(self._parts, self.dofs, strict=True):
+            body_force = None
+            if part.force is not None:
+                key = id(part.condensed), id(part.force)
+                if key not in known:
+                    known[key] = part.condensed.condense(part.force)
+                body_force = known[key]
+            substructure = Substructure(
+                elasticity=part.operator.elasticity,
+                dofs=dofs,
+                rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
+                body_force=body_force,
+            )
+            substructures.append(substructure)
+        return tuple(substructures)
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Displacement of all nodes at n instants, (n_nodes, 2, n), m.

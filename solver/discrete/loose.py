@@ -11,11 +11,6 @@ from solver.discrete.problem import Problem
 from solver.laws import Contact
 
 
-def is_loose(problem: Problem) -> bool:
-    """Check whether bodies can move though all contacts are closed and stick."""
-    return len(loose_bodies(problem)) > 0
-
-
 def loose_bodies(problem: Problem) -> Indices:
     """Numbers of the bodies that can move though all contacts are closed and stick.
 

@@ -12,7 +12,7 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.cut_stack import ends_along
+from solver.discrete.plane.cut_rectangles import ends_along
 from solver.discrete.plane.sides import Given, Side
 from solver.discrete.plane.stack import Stack
 from solver.discrete.probes import LoopFields

@@ -34,6 +34,7 @@ from solver.discrete import (
     elements,
 )
 from solver.discrete.probes import reaction
+from solver.kept import KEPT
 from solver.latin import Latin, solve
 from solver.reference.assembly import external_force
 from solver.reference.distance import distance_to
@@ -308,6 +309,7 @@ def test_as_many_factors_are_made_as_there_are_parts_that_differ(
     monkeypatch.setattr(elements, "sparse_factor", counted)
     for voussoirs in (9, 61):
         made.clear()
+        KEPT.clear()
         discretise(arch(voussoirs))
         # Both abutments, and one voussoir for all.
         assert len(made) == 3

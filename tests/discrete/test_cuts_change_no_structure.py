@@ -14,7 +14,8 @@ from solver.arrays import Array
 from solver.discrete import discretise
 from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.cut_stack import CutStack, ends_along
+from solver.discrete.plane.cut_rectangles import ends_along
+from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.sides import Given, Side
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
@@ -231,15 +232,15 @@ def test_substructures_end_at_cuts_and_where_bodies_end() -> None:
 
 def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
     cut = CutStack(pressed((3, 2), bodies=2))
-    areas = [part.rectangle.columns * part.rectangle.rows for part in cut.parts]
+    areas = [len(part.mesh.elements) for part in cut.parts]
     assert sum(areas) == 2 * 6 * 4
     sides = chain.from_iterable(part.rows.values() for part in cut.parts)
     rows = np.concatenate([rows.ravel() for rows in sides])
     assert np.array_equal(np.sort(rows), np.arange(len(rows)))
     lengths: dict[str, float] = {}
-    for joint, (_, length) in cut.pairs.items():
-        name = cut.name(joint)
-        lengths[name] = lengths.get(name, 0.0) + float(length.sum())
+    for piece in cut.pieces:
+        name = cut.joint_names[piece.joint]
+        lengths[name] = lengths.get(name, 0.0) + float(piece.weights.sum())
     assert lengths["support"] == pytest.approx(1.0)
     assert lengths["contact 1-2"] == pytest.approx(1.0)
 

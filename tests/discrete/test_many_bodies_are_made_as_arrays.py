@@ -1,21 +1,35 @@
-"""An arch takes no work of Python for each voussoir but a few calls."""
+"""Many bodies take no work of Python for each of them but a few calls."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import pytest
 from counting import calls_of
-from shaped import arch
+from shaped import arch, courses_of_blocks
 
-from solver.discrete import discretise
+from solver.discrete import Bodies, discretise
 
 
-def test_a_further_voussoir_takes_few_calls() -> None:
-    arches = {voussoirs: arch(voussoirs) for voussoirs in (31, 121)}
-    # What is made once for all does not count twice.
-    discretise(arches[31])
-
-    def made(voussoirs: int) -> int:
-        return calls_of(lambda: discretise(arches[voussoirs]))
-
-    # Each voussoir is a substructure; its joint and what it shares are arrays. With
-    # its own meshes, frames and laws it took several hundred.
-    assert made(121) - made(31) <= 90 * 90
+# Each body is a substructure; its joints and what it shares are arrays. With its own
+# meshes, frames and laws a voussoir took several hundred calls, and a block among
+# others, at whose corners joints have no pair, 240 with its own pieces of joints.
+@pytest.mark.parametrize(
+    ("structure", "sizes", "calls"),
+    [
+        (arch, (31, 121), 90),
+        (lambda columns: courses_of_blocks(columns, 4), (5, 15), 150),
+    ],
+)
+def test_a_further_body_takes_few_calls(
+    structure: Callable[[int], Bodies], sizes: tuple[int, int], calls: int
+) -> None:
+    bodies = []
+    made = []
+    for size in sizes:
+        few_or_many = structure(size)
+        # What is made once for all, and kept, does not count.
+        discretise(few_or_many)
+        bodies.append(len(few_or_many.bodies))
+        made.append(calls_of(lambda each=few_or_many: discretise(each)))
+    assert made[1] - made[0] <= calls * (bodies[1] - bodies[0])

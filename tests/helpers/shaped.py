@@ -220,3 +220,44 @@ def half_wire(fine: int, force: float) -> Bodies:
     below = wire.n_corners - len(outer)
     foot = wire.along(np.arange(below - fine, below + fine + 1))
     return pressed_wire(wire, len(angles), force, foot)
+
+
+def courses_of_blocks(columns: int, courses: int) -> Bodies:
+    """Blocks 0.1 by 0.05 m beside and above each other; each has joints all round.
+
+    Those of the lowest course are held at their feet, which no joint reaches.
+    """
+    mesh = grid(np.linspace(0.0, 0.1, 5), np.linspace(0.0, 0.05, 3))
+    chains = sides(mesh, 4, 2)
+    bodies = []
+    joints = []
+    for course in range(courses):
+        for column in range(columns):
+            number = len(bodies)
+            origin = np.array([0.1 * column, 0.05 * course])
+            bodies.append(Body(f"block {number}", mesh, 2e10, 0.2, origin=origin))
+            if course:
+                joints.append(
+                    _joint_below(chains, number, number - columns, ("bottom", "top"))
+                )
+            if column:
+                joints.append(
+                    _joint_below(chains, number, number - 1, ("left", "right"))
+                )
+    t = np.linspace(0.0, 1.0, 5)
+    held = [
+        Held(f"foot {number} {axis}", number, chains["bottom"], axis, 0.0 * t)
+        for number, axis in np.ndindex(columns, 2)
+    ]
+    return Bodies(bodies, joints, held, [], t, 1.0)
+
+
+def _joint_below(
+    chains: dict[str, Numbers], above: int, below: int, names: tuple[str, str]
+) -> Joint:
+    """Joint of equal blocks, along their sides by name, that of the one above first."""
+    nodes = chains[names[0]]
+    normal = {"bottom": [0.0, 1.0], "left": [1.0, 0.0]}[names[0]]
+    normals = np.tile(normal, (len(nodes), 1))
+    name = f"{below} and {above}"
+    return Joint(name, above, nodes, below, chains[names[1]], normals, friction=0.5)

@@ -19,6 +19,8 @@ from solver.settings.scene import Settings
 
 SCENES = ("block", "layers", "fault", "incline", "wall", "strand")
 """Scenes whose contacts are condensed."""
+OF_ANY_SHAPE = ("arch", "belt", "bundle")
+"""Scenes of bodies of any shape."""
 LOADS = {
     "block": {"top_tangential_displacement": 3e-5},
     "layers": {"deflection": 0.003},
@@ -72,7 +74,7 @@ def test_more_friction_leaves_the_stiffness_as_it_is(scene: str) -> None:
     assert alone.load.tobytes() == after.load.tobytes()
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", [*SCENES, *OF_ANY_SHAPE])
 def test_a_run_after_another_is_as_the_first(scene: str) -> None:
     settings = small(scene)
     moved = with_more_friction(settings)
@@ -105,12 +107,29 @@ def test_another_structure_has_another_stiffness(changes: dict[str, Any]) -> Non
     assert after.stiffness.tobytes() == alone.stiffness.tobytes()
 
 
-def test_substructures_of_the_next_run_share_the_operators() -> None:
-    settings = small("wall")
+@pytest.mark.parametrize("scene", ["wall", *OF_ANY_SHAPE])
+def test_substructures_of_the_next_run_share_the_operators(scene: str) -> None:
+    settings = small(scene)
     before = discretise(settings).substructures
     after = discretise(with_more_friction(settings)).substructures
     for first, second in zip(before, after, strict=True):
         assert first.elasticity is second.elasticity
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"thickness": 0.25}, {"young": 3e10}, {"elements": 3}, {"substructures": 2}],
+)
+def test_another_arch_has_the_operators_of_a_first_one(changes: dict[str, Any]) -> None:
+    discretise(small("arch"))
+    after = discretise(small("arch", **changes)).substructures
+    KEPT.clear()
+    alone = discretise(small("arch", **changes)).substructures
+    for first, second in zip(after, alone, strict=True):
+        assert first.elasticity is not second.elasticity
+        for name in ("stiffness", "trace", "direction"):
+            kept = getattr(first.elasticity, name)
+            assert kept.tobytes() == getattr(second.elasticity, name).tobytes()
 
 
 def test_what_is_kept_cannot_be_changed() -> None:

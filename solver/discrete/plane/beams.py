@@ -12,6 +12,7 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.checks import POSITIVE, Numbers, check
 from solver.discrete.plane.meshes import on_nodes
+from solver.kept import content_of
 
 HALVES = np.array([0.5, 0.5])
 """Shares of a uniform force on a beam, at its ends."""
@@ -58,6 +59,11 @@ class Beam:
             area=POSITIVE,
             second_moment=POSITIVE,
         )
+
+    @cached_property
+    def content(self) -> bytes:
+        """Digest of nodes and cross-section."""
+        return content_of(self.nodes, np.array([self.area, self.second_moment]))
 
     @cached_property
     def lengths(self) -> Array:

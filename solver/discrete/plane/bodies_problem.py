@@ -7,20 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
-from solver.discrete.inside import Inside, substructure_of
+from solver.discrete.inside import Inside
 from solver.discrete.loose import loose_bodies
 from solver.discrete.plane.band import Band
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
-from solver.discrete.plane.joint_laws import law_of_joints
+from solver.discrete.plane.joint_laws import glued, laws_of
+from solver.discrete.plane.joints_of_bodies import law_of_joints
 from solver.discrete.problem import Problem
-from solver.discrete.scales import Scales
 from solver.laws import Dirichlet, Interface, Perfect
 from solver.refusal import RefusedError, Words
 
@@ -34,23 +35,18 @@ def problem_of(structure: Bodies) -> Problem:
         If bodies can move though all contacts are closed and stick.
     """
     cut = CutBodies(structure)
-    scales = Scales(cut.length, cut.young * cut.length, structure.duration)
+    scales = cut.scales
     nodes = np.concatenate([body.nodes for body in structure.bodies]) / cut.length
     inside = Inside(cut.parts, nodes, scales, len(structure.instants))
-    n_pairs = sum(len(piece.places) for piece in cut.pieces)
-    n_steps = sum(len(joint.nodes) for joint in structure.joints)
     problem = Problem(
-        substructures=tuple(
-            substructure_of(part, dofs)
-            for part, dofs in zip(cut.parts, inside.dofs, strict=True)
-        ),
+        substructures=inside.substructures(),
         interfaces=dict(_interfaces(cut)),
         positions=inside.positions * scales.displacement,
         instants=structure.instants,
         scales=scales,
         inside=inside,
-        has_short_joints=n_pairs < n_steps,
-        order=tuple(joint.name for joint in structure.joints),
+        has_short_joints=not all(pairs.all() for pairs in cut.frames.has_pair),
+        order=tuple(cut.joint_names),
     )
     loose = loose_bodies(problem)
     if len(loose):
@@ -85,15 +81,7 @@ def problem_of_band(band: Band) -> Problem:
 
 def _interfaces(cut: CutBodies) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed displacements."""
-    kinds = dict[str, list[int]]()
-    for number, joint in enumerate(cut.structure.joints):
-        kind = "supports" if joint.below is None else "contacts"
-        kinds.setdefault(kind, []).append(number)
-    for kind, numbers in kinds.items():
-        name = kind
-        if len(numbers) == 1:
-            name = cut.structure.joints[numbers[0]].name
-        yield name, law_of_joints(cut, numbers)
+    yield from laws_of(cut, partial(law_of_joints, cut))
     for body, of_body in enumerate(cut.structure.bodies):
         for number, seam in enumerate(cut.cuts[body].seams):
             first, second = seam.parts
@@ -111,18 +99,15 @@ def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
     first, second = [cut.parts[cut.owner(body, part)] for part in seam.parts]
     rows = first.rows["first", body, number]
     opposite = second.rows["second", body, number]
-    if rows.shape[1] == 2:
-        reach = np.abs(seam.positions).max()
-        length = seam.weights.sum()
-        slenderness = (length / first.of_shape.size) ** 2
-        along = legendre_basis(
-            seam.positions / reach, slenderness, cut.structure.macro_degree
-        )
-        frames = cut.local_frames(body, seam.nodes)
-        macro = (frames[:, :, None, :] * along[:, None, :, None]).reshape(rows.size, -1)
-    else:
-        macro = np.eye(rows.size)
-    return Perfect(rows.ravel(), opposite.ravel(), macro)
+    if rows.shape[1] > 2:
+        # Beams are cut at a node, whose three components all balance.
+        return glued(rows, opposite, np.ones((1, 1)))
+    reach = np.abs(seam.positions).max()
+    size = cut.shape_parts[cut.owner(body, seam.parts[0])].size
+    slenderness = (seam.weights.sum() / size) ** 2
+    degree = cut.structure.macro_degree
+    basis = legendre_basis(seam.positions / reach, slenderness, degree)
+    return glued(rows, opposite, basis, cut.local_frames(body, seam.nodes))
 
 
 def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
@@ -138,5 +123,11 @@ def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
         own = cut.parts[cut.owner(held.body, part)]
         if ("held", number) in own.rows:
             rows.append(own.rows["held", number].ravel())
-            values.append(scaled[np.isin(held.nodes, own.of_shape.nodes)])
+            values.append(
+                scaled[
+                    np.isin(
+                        held.nodes, cut.shape_parts[cut.owner(held.body, part)].nodes
+                    )
+                ]
+            )
     return Dirichlet(np.concatenate(rows), np.concatenate(values))

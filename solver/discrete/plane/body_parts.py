@@ -1,11 +1,11 @@
-"""Parts of bodies of any shape: their elasticity, and the fields inside them.
+"""Parts of shapes of bodies: their elasticity, loads and stresses.
 
 Forces are scaled by E L and displacements by L, so that a stiffness is scaled by E.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,8 +13,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.discrete.elements import SchurComplement, elastic_matrix
-from solver.discrete.inside import N_AXES
+from solver.discrete.elements import elastic_matrix
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Body
 from solver.discrete.plane.mesh_elasticity import (
@@ -23,7 +22,7 @@ from solver.discrete.plane.mesh_elasticity import (
     mesh_volumes,
 )
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.substructure import Elasticity
+from solver.kept import content_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,15 +35,29 @@ class ShapePart:
         A body of this shape and material.
     chosen, nodes
         Numbers of its elements and of its nodes among those of the shape, ascending.
-    young, state
-        Unit of stress, Pa, and "strain" or "stress".
+    units
+        Units of length, m, and of stress, Pa.
+    state
+        "strain" or "stress".
     """
 
     body: Body
     chosen: Indices
     nodes: Indices
-    young: float
+    units: tuple[float, float]
     state: str
+
+    @property
+    def young(self) -> float:
+        """Unit of stress, Pa."""
+        return self.units[1]
+
+    @cached_property
+    def content(self) -> Hashable:
+        """Key that is equal for the same part of the same shape and material."""
+        body = self.body
+        material = body.young, body.poisson, self.state
+        return body.shape.content, content_of(self.chosen), material, self.units
 
     @property
     def n_axes(self) -> int:
@@ -128,8 +141,16 @@ class ShapePart:
         corners = self.body.shape.element_corners[self.chosen]
         return np.searchsorted(self.nodes, corners)
 
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled.
+
+        `displacement` is that of its nodes, (n_nodes, 2), scaled.
+        """
+        moved = self.units[0] * displacement.ravel()
+        return np.asarray((self._stresses @ moved).reshape(-1, 3))
+
     @cached_property
-    def stresses(self) -> sparse.csr_array:
+    def _stresses(self) -> sparse.csr_array:
         """Matrix from displacements of nodes to stresses, scaled by E over metres.
 
         Stresses xx, yy, xy of each element in turn, (3 n_elements, 2 n_nodes).
@@ -146,17 +167,17 @@ class ShapePart:
         blocks = sparse.kron(sparse.eye_array(len(self.chosen)), elastic)
         return sparse.csr_array(blocks @ strains[:, dofs])
 
-    def condensed(self, frames: Array, kept: Indices) -> SchurComplement:
-        """Stiffness condensed onto some degrees of freedom, (n_kept,).
+    def stiffness_in(self, frames: Array) -> sparse.csc_array:
+        """Stiffness in the directions at each node, (n_nodes n_axes, n_nodes n_axes).
 
-        `frames` are the directions of those of each node in the axes of the shape,
-        (n_nodes, 2, 2).
+        `frames` are those of its degrees of freedom in the axes of the shape, (n_nodes,
+        2, 2).
         """
         stiffness = self.stiffness
         if np.any(frames != np.eye(2)):
             turn = self._turn(frames)
             stiffness = turn @ stiffness @ turn.T
-        return SchurComplement(sparse.csc_array(stiffness), kept)
+        return sparse.csc_array(stiffness)
 
     def _turn(self, frames: Array) -> sparse.csr_array:
         """Matrix from x, y (and turn) of all nodes to their degrees of freedom."""
@@ -168,76 +189,3 @@ class ShapePart:
         rows = np.repeat(dofs, n_axes, axis=1).ravel()
         columns = np.tile(dofs, n_axes).ravel()
         return sparse.csr_array((blocks.ravel(), (rows, columns)))
-
-
-@dataclass(frozen=True, eq=False)
-class BodyPart:
-    """A part of a body of any shape, as `CondensedPart`.
-
-    Attributes
-    ----------
-    of_shape
-        The part of the shape, which bodies of one shape share.
-    condensed, elasticity
-        Stiffness condensed onto its boundary rows, and operator; equal parts share
-        them.
-    nodes
-        Numbers of its nodes among those of all bodies, shape (n_nodes,).
-    body
-        Number of its body.
-    rows
-        Boundary rows by what has them, shape (n_nodes, n_components) each.
-    force
-        Forces on its degrees of freedom, (n, n_instants), scaled, or None.
-    frames
-        Motion of the degrees of freedom of each node along x and y, and its turn,
-        (n_nodes, n_axes, 3).
-    rotation
-        Matrix from the axes of the body to the global ones, (2, 2).
-    length
-        Unit of length, m.
-    """
-
-    of_shape: ShapePart
-    condensed: SchurComplement
-    elasticity: Elasticity
-    nodes: Indices
-    body: int
-    rows: Mapping[Hashable, Indices]
-    force: Array | None
-    frames: Array
-    rotation: Array
-    length: float
-
-    @property
-    def dofs(self) -> Indices:
-        """Numbers of its degrees of freedom among those of all nodes, shape (n,)."""
-        axes = np.arange(self.of_shape.n_axes)
-        return np.add.outer(N_AXES * self.nodes, axes).ravel()
-
-    @property
-    def directions(self) -> Array:
-        """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
-        return self.frames.reshape(-1, N_AXES)
-
-    @property
-    def elements(self) -> Indices:
-        """Corners of every element among its own nodes, shape (n_elements, 4)."""
-        return self.of_shape.elements
-
-    def motion(self, moved: Array) -> Array:
-        """Displacement of its nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
-        own = moved.reshape(*self.frames.shape[:2], -1)
-        return np.asarray(self.frames[:, :, :2].swapaxes(1, 2) @ own)
-
-    def forces(self, nodal: Array) -> Array:
-        """Forces on its degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
-        return np.asarray((self.frames[:, :, :2] @ nodal[:, :, None]).ravel())
-
-    def stress(self, displacement: Array) -> Array:
-        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled."""
-        own = self.length * (displacement @ self.rotation).ravel()
-        xx, yy, xy = (self.of_shape.stresses @ own).reshape(-1, 3).T
-        tensors = np.moveaxis(np.array([[xx, xy], [xy, yy]]), -1, 0)
-        turned = self.rotation @ tensors @ self.rotation.T
-        return np.stack([turned[:, 0, 0], turned[:, 1, 1], turned[:, 0, 1]], axis=1)

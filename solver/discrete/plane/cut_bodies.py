@@ -4,42 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.elements import SchurComplement
-from solver.discrete.inside import N_AXES
+from solver.discrete.condensed_part import (
+    N_AXES,
+    CondensedPart,
+    Operator,
+    Trace,
+    numbered,
+)
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
-from solver.discrete.plane.body_parts import BodyPart, ShapePart
+from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.plane.cut_shapes import CutShape
+from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.substructure import Elasticity
+from solver.discrete.scales import Scales
+from solver.kept import KEPT, content_of
 from solver.refusal import RefusedError, Words
 
 DIGITS = 9
 """Decimal digits to which parts agree that share an operator."""
-
-
-class NodalTrace(NamedTuple):
-    """Boundary rows at some nodes of a part.
-
-    Attributes
-    ----------
-    dofs
-        Degrees of freedom of the part at the rows, shape (n_nodes, n_components).
-    direction
-        Search direction k of each row, of the same shape, scaled.
-    has_macro
-        Whether macro forces balance there.
-    """
-
-    dofs: Indices
-    direction: Array
-    has_macro: bool
 
 
 class CutBodies:
@@ -51,16 +39,18 @@ class CutBodies:
 
     Attributes
     ----------
-    length, young
-        Units of length, m, and of stress, Pa.
+    length, young, scales
+        Units of length, m, of stress, Pa, and of fields.
     cuts
         How each body is cut.
     frames
         Directions of the degrees of freedom at all nodes.
-    pieces
-        Pieces of the joints.
+    joint_names, pieces
+        Names of the joints, and their pieces.
     first_parts
         Numbers of the first part of each body, and of the parts.
+    shape_parts
+        All parts in the axes of their shapes.
     parts
         Parts, body by body. Their rows are by ("above", piece), ("below", piece),
         ("first", body, seam), ("second", body, seam) and ("held", number).
@@ -70,6 +60,7 @@ class CutBodies:
         self.structure = structure
         self.length = float(structure.box[1].max())
         self.young = max(_modulus(body) for body in structure.bodies)
+        self.scales = Scales(self.length, self.young * self.length, structure.duration)
         bodies = structure.bodies
         shapes = dict[tuple[int, int], CutShape]()
         for body in bodies:
@@ -80,15 +71,16 @@ class CutBodies:
         self.frames = NodeFrames(
             bodies, structure.first_nodes, structure.joints, structure.held
         )
+        self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
-        self._shape_parts = self._of_shapes()
-        self._traces: list[dict[Hashable, NodalTrace]] = [{} for _ in self._shape_parts]
+        self.shape_parts = self._of_shapes()
+        self._traces: list[dict[Hashable, Trace]] = [{} for _ in self.shape_parts]
         self._trace_pieces()
         self._trace_seams()
         self._trace_held()
-        self._operators = dict[Hashable, tuple[SchurComplement, Elasticity]]()
+        self._operators = dict[Hashable, Operator]()
         self.parts = list(self._parts())
 
     def is_mesh(self, number: int) -> bool:
@@ -117,7 +109,7 @@ class CutBodies:
         diagonals = dict[int, Array]()
         found = []
         for part in self.parts:
-            operator = part.elasticity
+            operator = part.operator.elasticity
             if id(operator) not in diagonals:
                 diagonal = operator.stiffness.diagonal()
                 diagonals[id(operator)] = diagonal[operator.trace]
@@ -154,7 +146,13 @@ class CutBodies:
             key = id(body.shape), body.substructures, body.young, body.poisson
             if key not in found:
                 found[key] = [
-                    ShapePart(body, elements, nodes, self.young, self.structure.state)
+                    ShapePart(
+                        body,
+                        elements,
+                        nodes,
+                        (self.length, self.young),
+                        self.structure.state,
+                    )
                     for elements, nodes in zip(cut.elements, cut.nodes, strict=True)
                 ]
             parts += found[key]
@@ -165,27 +163,26 @@ class CutBodies:
 
         `axes` are the numbers of those of each node, which broadcast with (n, 1).
         """
-        part = self._shape_parts[owner]
+        part = self.shape_parts[owner]
         local = np.searchsorted(part.nodes, nodes)
         return part.n_axes * local[:, None] + axes
 
     def _trace_pieces(self) -> None:
         """Add the rows of the joints."""
-        known = dict[Hashable, NodalTrace]()
+        known = dict[Hashable, Trace]()
         for number, piece in enumerate(self.pieces):
             joint = self.structure.joints[piece.joint]
             has_macro = joint.below is not None
-            sides = zip(("above", "below"), joint.sides, piece.parts, strict=False)
-            for name, (body, nodes), part in sides:
-                owner = self.owner(body, part)
-                own = self._shape_parts[owner]
+            sides = zip(JOINT_SIDES, joint.sides, piece.parts, strict=False)
+            for name, (_, nodes), owner in sides:
+                own = self.shape_parts[owner]
                 # Pieces of joints that are alike share their arrays.
                 key = id(own), nodes.tobytes(), id(piece.weights), has_macro
                 if key not in known:
                     dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
                     k = own.density * piece.weights
                     direction = np.repeat(k[:, None], 2, axis=1)
-                    known[key] = NodalTrace(dofs, direction, has_macro)
+                    known[key] = Trace(dofs, direction, has_macro)
                 self._traces[owner][name, number] = known[key]
 
     def _trace_seams(self) -> None:
@@ -194,13 +191,13 @@ class CutBodies:
             for number, seam in enumerate(cut.seams):
                 for name, part in zip(("first", "second"), seam.parts, strict=True):
                     owner = self.owner(body, part)
-                    own = self._shape_parts[owner]
+                    own = self.shape_parts[owner]
                     dofs = self._dofs(owner, seam.nodes, np.arange(own.n_axes))
                     if own.n_axes == 2:
                         k = np.repeat(own.density * seam.weights[:, None], 2, axis=1)
                     else:
                         k = np.array([[own.at_a_point, own.at_a_point, own.of_turn]])
-                    self._traces[owner][name, body, number] = NodalTrace(dofs, k, True)
+                    self._traces[owner][name, body, number] = Trace(dofs, k, True)
 
     def _trace_held(self) -> None:
         """Add the rows of prescribed displacements, in every part that has the node."""
@@ -208,7 +205,7 @@ class CutBodies:
             weights = self._weights_held(held)
             for part in range(self.structure.bodies[held.body].substructures):
                 owner = self.owner(held.body, part)
-                own = self._shape_parts[owner]
+                own = self.shape_parts[owner]
                 is_own = np.isin(held.nodes, own.nodes)
                 if not is_own.any():
                     continue
@@ -218,7 +215,7 @@ class CutBodies:
                 k = own.density * weights[is_own, None]
                 if held.axis == 2:
                     k = np.full_like(k, own.of_turn)
-                self._traces[owner]["held", number] = NodalTrace(dofs, k, False)
+                self._traces[owner]["held", number] = Trace(dofs, k, False)
 
     def axes_held(self, held: Held, nodes: Indices) -> tuple[Indices, Array]:
         """Degree of freedom of each node that is held, and its sign, (n,) both."""
@@ -233,7 +230,7 @@ class CutBodies:
             return np.full(len(held.nodes), shape.size / len(held.nodes))
         return shape.shares(held.nodes)
 
-    def _parts(self) -> Iterator[BodyPart]:
+    def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
         loads = self._loads()
@@ -248,30 +245,22 @@ class CutBodies:
                         "bodies that something holds",
                         "join it to another body, or hold some of its nodes",
                     )
-                own = self._shape_parts[owner]
+                own = self.shape_parts[owner]
                 frames = self._global_frames(body, own)
                 force = own.force(of_body.weight, loads.get(owner))
                 if force is not None:
                     turned = frames[:, :, :2] @ force / (self.young * self.length)
                     force = turned.reshape(-1, force.shape[-1])
-                condensed, operator = self._operator(body, owner, force is not None)
-                rows = dict[Hashable, Indices]()
-                for name, trace in self._traces[owner].items():
-                    count = trace.dofs.size
-                    numbers = n_rows + np.arange(count)
-                    rows[name] = numbers.reshape(trace.dofs.shape)
-                    n_rows += count
-                yield BodyPart(
-                    of_shape=own,
-                    condensed=condensed,
-                    elasticity=operator,
+                rows, n_rows = numbered(self._traces[owner], n_rows)
+                yield CondensedPart(
+                    mesh=own,
+                    operator=self._operator(body, owner, force is not None),
                     nodes=first_node + own.nodes,
                     body=body,
                     rows=rows,
                     force=force,
                     frames=frames,
                     rotation=of_body.rotation,
-                    length=self.length,
                 )
 
     def _global_frames(self, body: int, part: ShapePart) -> Array:
@@ -281,14 +270,12 @@ class CutBodies:
         frames[:, 2:, 2] = 1.0
         return frames
 
-    def _operator(
-        self, body: int, owner: int, has_force: bool
-    ) -> tuple[SchurComplement, Elasticity]:
-        """Condensed stiffness and operator of a part, the same for parts alike.
+    def _operator(self, body: int, owner: int, has_force: bool) -> Operator:
+        """Operator of a part, the same for parts alike.
 
         Members of a group of parts have forces inside all or none of them.
         """
-        part = self._shape_parts[owner]
+        part = self.shape_parts[owner]
         traces = list(self._traces[owner].values())
         nodes = self.structure.first_nodes[body] + part.nodes
         turned = self._rounded_frames[nodes].tobytes()
@@ -309,10 +296,11 @@ class CutBodies:
         )
         if alike not in self._operators:
             frames = self.local_frames(body, part.nodes)
-            condensed = part.condensed(frames, np.unique(dofs))
-            trace_of_rows = np.searchsorted(condensed.kept, dofs)
-            operator = Elasticity(condensed.stiffness, trace_of_rows, direction)
-            self._operators[alike] = condensed, operator
+            # No load and no friction changes the operator of the first of them.
+            key = "part", part.content, content_of(frames, dofs, direction), alike[-2:]
+            self._operators[alike] = KEPT.of(
+                key, lambda: Operator(part.stiffness_in(frames), traces)
+            )
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
 
@@ -327,7 +315,7 @@ class CutBodies:
             taken = np.zeros(len(load.nodes), dtype=bool)
             for part in range(self.structure.bodies[load.body].substructures):
                 owner = self.owner(load.body, part)
-                nodes = self._shape_parts[owner].nodes
+                nodes = self.shape_parts[owner].nodes
                 is_own = np.isin(load.nodes, nodes) & ~taken
                 taken |= is_own
                 if is_own.any():

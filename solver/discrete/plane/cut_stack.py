@@ -1,4 +1,4 @@
-"""Bodies in the plane, cut into rectangles: meshes, joints, boundary rows and loads.
+"""Stacks cut into substructures: meshes, operators, boundary rows and loads.
 
 Lengths are scaled by the length of a body, stresses by E. Tractions act on the
 substructures themselves, and need no interface.
@@ -6,89 +6,30 @@ substructures themselves, and need no interface.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from functools import cache
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices, read_only
+from solver.arrays import Array, Indices, read_only
+from solver.discrete.condensed_part import CondensedPart, Operator, Trace, numbered
 from solver.discrete.elements import (
     EDGE_MASS,
     Rectangle,
-    SchurComplement,
     elastic_matrix,
-    side_basis,
+    legendre_basis,
 )
-from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
-from solver.discrete.plane.rectangular_parts import RectangularSubstructure
+from solver.discrete.plane.bricks import BrickJoint
+from solver.discrete.plane.cut_rectangles import SIDES, CutRectangles, Span
+from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.sides import Given
-from solver.discrete.plane.stack import SETTLED, Stack
-from solver.discrete.substructure import Elasticity, substructure_sizes, tributary
+from solver.discrete.plane.stack import Stack
+from solver.discrete.scales import Scales
 from solver.kept import KEPT
 
-SIDES = "left", "right", "bottom", "top"
 
-
-def ends_along(elements: int, cuts: int, spans: Sequence[int]) -> Indices:
-    """Ends of substructures along a pile, in elements, (n_ends,), ascending.
-
-    0 is left out. Substructures end at the cuts of the longest body, and where any body
-    ends.
-    """
-    return np.union1d(np.cumsum(substructure_sizes(elements, cuts)), spans)
-
-
-class _RectangularPiece(NamedTuple):
-    """A substructure: its rectangle, the number of its body, and its name in cuts."""
-
-    rectangle: Brick
-    body: int
-    name: str
-
-
-def _pieces(stack: Stack) -> Iterator[_RectangularPiece]:
-    """All substructures, body by body and row by row."""
-    for body, brick in enumerate(stack.rectangles):
-        ends_across = _ends_across(stack, brick)
-        sizes_up = substructure_sizes(brick.rows, stack.substructures[1])
-        ends_up = np.cumsum([0, *sizes_up]).tolist()
-        of_body = ""
-        if body:
-            of_body = f" of {body + 1}"
-        for row, (low, high) in enumerate(pairwise(ends_up), start=1):
-            for column, (left, right) in enumerate(pairwise(ends_across), start=1):
-                rectangle = Brick(
-                    x=brick.x + left,
-                    y=brick.y + low,
-                    columns=right - left,
-                    rows=high - low,
-                )
-                yield _RectangularPiece(rectangle, body, f"{column}.{row}{of_body}")
-
-
-def _ends_across(stack: Stack, brick: Brick) -> list[int]:
-    """Ends of the substructures of a body along x, in elements from its left side."""
-    spans = [brick.columns]
-    if stack.is_pile:
-        spans = [each.columns for each in stack.rectangles]
-    ends = ends_along(max(spans), stack.substructures[0], spans)
-    return [0, *ends[ends <= brick.columns].tolist()]
-
-
-class Span(NamedTuple):
-    """Part of a side of a substructure on which no other body lies.
-
-    `first` and `last` are its ends, in elements from the beginning of the side.
-    """
-
-    side: str
-    first: int
-    last: int
-
-
-class _Trace(NamedTuple):
+class _SideTrace(NamedTuple):
     """Boundary rows along a part of a side of a substructure.
 
     Nodes `first` to `last` of the side (without the last) have rows of the components:
@@ -102,28 +43,15 @@ class _Trace(NamedTuple):
     last: int | None = None
     has_macro: bool = False
 
-    def dofs(self, rectangle: Rectangle) -> Indices:
-        """Degrees of freedom of a rectangle at the rows, (n_nodes, n_components)."""
-        nodes = rectangle.edge(self.side)[self.first : self.last]
-        return np.add.outer(2 * nodes, self.components)
-
-    def weights(self, rectangle: Rectangle) -> Array:
-        """Length that belongs to each row, (n_nodes * n_components,), scaled."""
-        lengths = rectangle.edge_weights(self.side)[self.first : self.last]
-        return lengths.repeat(len(self.components))
-
-
-def _numbered(
-    traces: Mapping[Hashable, _Trace], mesh: Rectangle, first: int
-) -> dict[Hashable, Indices]:
-    """Row numbers of each trace, (n_nodes, n_components), counted from `first`."""
-    numbers = dict[Hashable, Indices]()
-    for name, trace in traces.items():
-        shape = trace.dofs(mesh).shape
-        count = shape[0] * shape[1]
-        numbers[name] = first + np.arange(count).reshape(shape)
-        first += count
-    return numbers
+    def of(self, mesh: Rectangle, modulus: float) -> Trace:
+        """Rows of a rectangle of a scaled Young's modulus."""
+        own = slice(self.first, self.last)
+        nodes = mesh.edge(self.side)[own]
+        dofs = np.add.outer(2 * nodes, self.components)
+        size = np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
+        k = modulus / size * mesh.edge_weights(self.side)[own]
+        direction = np.repeat(k[:, None], len(self.components), axis=1)
+        return Trace(dofs, direction, self.has_macro)
 
 
 def _node_numbers(grids: Sequence[Array]) -> list[Indices]:
@@ -138,45 +66,6 @@ def _node_numbers(grids: Sequence[Array]) -> list[Indices]:
     return numbers
 
 
-class Operator:
-    """Stiffness of a rectangular part, condensed onto its boundary rows.
-
-    No load and no friction changes it: it is kept between runs (`solver.kept`).
-
-    Parameters
-    ----------
-    mesh
-        Mesh of the part.
-    modulus
-        Its E, scaled.
-    traces
-        Its boundary rows.
-
-    Attributes
-    ----------
-    condensed, elasticity
-        As of `RectangularSubstructure`.
-    """
-
-    def __init__(
-        self, mesh: Rectangle, modulus: float, traces: Sequence[_Trace]
-    ) -> None:
-        dofs = np.concatenate([trace.dofs(mesh).ravel() for trace in traces])
-        density = modulus / np.sqrt(mesh.columns * mesh.width * mesh.rows * mesh.height)
-        weights = np.concatenate([trace.weights(mesh) for trace in traces])
-        self.condensed = SchurComplement(mesh.outline, np.unique(dofs))
-        self.elasticity = Elasticity(
-            stiffness=read_only(self.condensed.stiffness),
-            trace=np.searchsorted(self.condensed.kept, dofs),
-            direction=density * weights,
-        )
-
-    @property
-    def nbytes(self) -> int:
-        """Memory that the operator takes, B."""
-        return self.condensed.nbytes
-
-
 class CutStack:
     """A stack cut into rectangular substructures.
 
@@ -186,31 +75,33 @@ class CutStack:
 
     Attributes
     ----------
+    rectangles
+        Where the substructures touch, and what lies open.
+    scales
+        Units of fields.
     positions
         Coordinates of all nodes, body by body, shape (n_nodes, 2), scaled.
     parts
         Substructures, body by body and row by row; boundary rows are numbered part by
         part and side by side.
-    pairs
-        Of each joint the numbers of its nodes along the grid of all elements, and the
-        length that belongs to each, scaled; shape (n_pairs,) both.
+    joint_names, pieces
+        Names of the contacts of bodies, and their pieces.
     """
 
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
-        height = stack.height / stack.length
-        self._element = (1.0 / stack.elements[0], height / stack.elements[1])
+        self.rectangles = CutRectangles(stack)
+        self.scales = Scales(stack.length, stack.young * stack.length, stack.duration)
         grids = self._grids()
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
-        self._pieces = list(_pieces(stack))
-        joints = self._joints()
-        self._covered = self._covered_by(joints)
-        self.pairs = self._paired(joints)
-        # Equal substructures share a mesh and an operator.
+        self.joint_names = self.rectangles.joint_names
+        self.pieces = self.rectangles.pieces
+        # Equal substructures share a mesh, an operator, and the forces of the weight.
         self._mesh = cache(self._mesh_of)
+        self._trace = cache(_SideTrace.of)
         self._operator = cache(self._operator_of)
         self._basis = cache(self._basis_of)
-        self._entries = cache(self._entries_of)
+        self._weight = cache(self._weight_of)
         self.parts = list(self._parts(_node_numbers(grids)))
 
     def _grids(self) -> list[Array]:
@@ -227,57 +118,26 @@ class CutStack:
             grids.append(np.stack(np.meshgrid(x[along], y[up]), axis=-1))
         return grids
 
-    def _joints(self) -> list[BrickJoint]:
-        """Joints of substructures; those with a support only where there is one."""
-        joints = joints_of([piece.rectangle for piece in self._pieces])
-        if self.stack.support is not None and not self.stack.strips:
-            return joints
-        return [joint for joint in joints if joint.below is not None]
-
-    def _covered_by(self, joints: Sequence[BrickJoint]) -> dict[tuple[int, str], Flags]:
-        """Elements of each side of a substructure that joints cover, (elements,)."""
-        covered = dict[tuple[int, str], Flags]()
-        for joint in joints:
-            for number, side in joint.sides:
-                count, corner = self._extent(number, side)
-                none = np.zeros(count, dtype=bool)
-                elements = covered.setdefault((number, side), none)
-                elements[joint.first - corner : joint.last - corner] = True
-        return covered
-
-    def _extent(self, number: int, side: str) -> tuple[int, int]:
-        """Elements along a side of a substructure, and where it begins on the grid."""
-        rectangle = self._pieces[number].rectangle
-        if side in ("left", "right"):
-            return rectangle.rows, rectangle.y
-        return rectangle.columns, rectangle.x
-
-    def _paired(
-        self, joints: Sequence[BrickJoint]
-    ) -> dict[BrickJoint, tuple[Indices, Array]]:
-        """Pairs of nodes of those joints that have any, (n_pairs,) each, as `pairs`."""
-        pairs = {joint: self._pairs_of(joint) for joint in joints}
-        return {joint: found for joint, found in pairs.items() if len(found[0])}
-
-    def _parts(self, nodes: Sequence[Indices]) -> Iterator[RectangularSubstructure]:
+    def _parts(self, nodes: Sequence[Indices]) -> Iterator[CondensedPart]:
         """Substructures, by the numbers of each body's nodes, (n_rows, n_columns)."""
         n_rows = 0
         for number, traces in enumerate(self._traces()):
-            rectangle, body, _ = self._pieces[number]
+            body = self.rectangles.body_of(number)
             modulus = self.stack.modulus(body)
-            mesh = self._mesh(rectangle.columns, rectangle.rows, modulus)
+            mesh = self.mesh(number)
             force = self._force(number, mesh)
             # Members of a group have body forces on all or on none, and see the same
             # macro forces.
             kinds = tuple(traces.values())
             has_force = force is not None
-            operator = self._operator(mesh, modulus, kinds, has_force)
-            rows = _numbered(traces, mesh, n_rows)
-            n_rows += sum(each.size for each in rows.values())
-            yield RectangularSubstructure(
-                rectangle=mesh,
-                condensed=operator.condensed,
-                elasticity=operator.elasticity,
+            of_mesh = {
+                name: self._trace(trace, mesh, modulus)
+                for name, trace in traces.items()
+            }
+            rows, n_rows = numbered(of_mesh, n_rows)
+            yield CondensedPart(
+                mesh=mesh,
+                operator=self._operator(mesh, modulus, kinds, has_force),
                 nodes=self._own_nodes(number, nodes[body]),
                 body=body,
                 rows=rows,
@@ -286,237 +146,125 @@ class CutStack:
 
     def _own_nodes(self, number: int, nodes: Indices) -> Indices:
         """Nodes of a substructure, (n_rows, n_columns), out of those of its body."""
-        rectangle, body, _ = self._pieces[number]
+        rectangle, body, _ = self.rectangles.each[number]
         brick = self.stack.rectangles[body]
         inside = rectangle._replace(x=rectangle.x - brick.x, y=rectangle.y - brick.y)
         along, up = inside.nodes()
         return nodes[up, along]
 
+    def mesh(self, number: int) -> Rectangle:
+        """Mesh of a substructure, which equal ones share."""
+        rectangle, body, _ = self.rectangles.each[number]
+        modulus = self.stack.modulus(body)
+        return self._mesh(rectangle.columns, rectangle.rows, modulus)
+
     def _mesh_of(self, columns: int, rows: int, modulus: float) -> Rectangle:
         elastic = elastic_matrix(modulus, self.stack.poisson, self.stack.state)
-        return Rectangle(columns, rows, *self._element, elastic)
+        return Rectangle(columns, rows, *self.rectangles.element, elastic)
 
     def _operator_of(
         self,
         mesh: Rectangle,
         modulus: float,
-        traces: tuple[_Trace, ...],
+        traces: tuple[_SideTrace, ...],
         has_force: bool,
     ) -> Operator:
         """Operator of a part, from an earlier structure if it has the same.
 
         `has_force` tells operators apart.
         """
-        shape = mesh.columns, mesh.rows, *self._element
+        shape = mesh.columns, mesh.rows, *self.rectangles.element
         material = modulus, self.stack.poisson, self.stack.state
         key = "operator", shape, material, traces, has_force
-        return KEPT.of(key, lambda: Operator(mesh, modulus, traces))
+        of_mesh = [self._trace(trace, mesh, modulus) for trace in traces]
+        # No load and no friction changes it.
+        return KEPT.of(key, lambda: Operator(mesh.outline, of_mesh))
 
-    def _outer(self, number: int) -> Iterator[Span]:
-        """Outer sides of a substructure: free, loaded or prescribed.
+    def macro_basis(self, number: int) -> Array:
+        """Macro basis of one component on a piece by number, (n_pairs, n_macro).
 
-        Of the top and the bottom those parts that no body covers. On the left and right
-        only those of bodies that reach farthest. A traction acts on all of them, as a
-        fluid would; a displacement is that of what lies farthest out, as a press or the
-        ground would touch.
+        Without columns where no macro forces balance. The substructure above gives the
+        degree.
         """
-        rectangle = self._pieces[number].rectangle
-        columns, _ = self.stack.grid
-        is_end = {
-            "left": rectangle.x == 0,
-            "right": rectangle.x + rectangle.columns == columns,
-        }
-        for side in SIDES:
-            if not is_end.get(side, True):
-                continue
-            count, _ = self._extent(number, side)
-            covered = self._covered.get((number, side), np.zeros(count, dtype=bool))
-            # Where it begins and ends to be covered; outside it counts as covered.
-            changes = np.diff(covered, prepend=True, append=True)
-            ends = np.flatnonzero(changes).reshape(-1, 2)
-            for first, last in ends.tolist():
-                yield Span(side, first, last)
+        joint = self.rectangles.joints[number]
+        count = len(self.pieces[number].places)
+        if not self.rectangles.has_macro(joint):
+            return np.zeros((count, 0))
+        part, side = joint.sides[0]
+        return self._basis(self.mesh(part), side, count)
 
-    def body_of(self, number: int) -> int:
-        """Number of the body of a substructure."""
-        return self._pieces[number].body
+    def macro_basis_of_cut(self, joint: BrickJoint) -> Array:
+        """Macro basis of one component on a cut, (n_pairs, n_macro).
 
-    def bodies(self, joint: BrickJoint) -> tuple[int, int | None]:
-        """Body above or to the right of a joint, and the other one (None: support)."""
-        above = self._pieces[joint.above].body
-        if joint.below is None:
-            return above, None
-        return above, self._pieces[joint.below].body
-
-    def is_within_body(self, joint: BrickJoint) -> bool:
-        """Check whether both sides of a joint are of one body, which is glued there."""
-        above, below = self.bodies(joint)
-        return above == below
-
-    def has_macro(self, joint: BrickJoint) -> bool:
-        """Check whether macro forces balance on a joint.
-
-        They do on cuts and between bodies of different groups, not on the support.
+        The substructure below gives the degree.
         """
-        above, below = self.bodies(joint)
-        groups = self.stack.groups
-        if below is None or groups is None or above == below:
-            return below is not None
-        return bool(groups[above] != groups[below])
-
-    def name(self, joint: BrickJoint) -> str:
-        """Name of the interface to which a joint belongs."""
-        above, below = self.bodies(joint)
-        if joint.below is not None and above == below:
-            first = self._pieces[joint.below].name
-            second = self._pieces[joint.above].name
-            return f"cut {first} to {second}"
-        if self.stack.is_pile:
-            if below is None:
-                return "support"
-            return f"contact {above}-{above + 1}"
-        strips = self.stack.strips
-        brick = f"brick {above + 1 - strips}"
-        if below is None:
-            return f"support and {brick}"
-        if below >= strips:
-            return f"brick {below + 1 - strips} and {brick}"
-        if self.stack.settlement[below].any():
-            return f"{SETTLED} and {brick}"
-        return f"support and {brick}"
-
-    def basis(self, joint: BrickJoint, which: int) -> Array:
-        """Macro basis of one component on a joint, (n_points, n_macro).
-
-        `which` is the side of the joint whose substructure gives the degree: 0 is the
-        one above.
-        """
-        number, side = joint.sides[which]
-        part = self.parts[number]
-        return self._basis(part.rectangle, side, len(part.rows[joint]))
-
-    def entries(self, joint: BrickJoint) -> tuple[Indices, Indices, Array]:
-        """Macro basis of one component on a joint from above: rows, columns, values.
-
-        Columns ascend; entries that are zero are left out.
-        """
-        number, side = joint.sides[0]
-        part = self.parts[number]
-        return self._entries(part.rectangle, side, len(part.rows[joint]))
+        part, side = joint.sides[1]
+        return self._basis(self.mesh(part), side, joint.last - joint.first + 1)
 
     def _basis_of(self, mesh: Rectangle, side: str, count: int) -> Array:
-        return side_basis(mesh, side, count, self.stack.macro_degree)
+        positions = np.linspace(-1.0, 1.0, count)
+        degree = self.stack.macro_degree
+        return legendre_basis(positions, mesh.slenderness(side), degree)
 
-    def _entries_of(
-        self, mesh: Rectangle, side: str, count: int
-    ) -> tuple[Indices, Indices, Array]:
-        basis = self._basis(mesh, side, count)
-        columns, rows = np.nonzero(basis.T)
-        return rows, columns, basis[rows, columns]
+    def _traces(self) -> Iterator[dict[Hashable, _SideTrace]]:
+        """Traces of every substructure, side by side.
 
-    def _is_known(self, joint: BrickJoint) -> bool:
-        """Check whether a joint is with a support of known strength."""
-        support = self.stack.support
-        return (
-            joint.below is None and support is not None and support.strength is not None
-        )
-
-    def _pairs_of(self, joint: BrickJoint) -> tuple[Indices, Array]:
-        """Nodes of a joint on the grid, and their scaled lengths, (n_pairs,) both."""
-        before, after = self._left_out(joint)
-        count = joint.last - joint.first
-        lengths = self._element[joint.is_upright] * tributary(count)
-        if joint.is_upright:
-            # The length of a node that is left out goes to its neighbour.
-            lengths[1] += before * lengths[0]
-            lengths[-2] += after * lengths[-1]
-        paired = slice(int(before), count + 1 - after)
-        nodes = np.arange(joint.first, joint.last + 1)
-        return nodes[paired], lengths[paired]
-
-    def _left_out(self, joint: BrickJoint) -> tuple[bool, bool]:
-        """Check whether the first, and the last, node of a joint has no pair.
-
-        A lying joint has no pair at an end where the left or right side prescribes the
-        normal displacement: any pressing force would be a solution there, and so would
-        any friction up to it. An upright joint has no pair at the ends of its bodies:
-        three contacts would meet in a corner, of whose forces only sums are determined,
-        and which of them slips would depend on how they share.
+        By the side and number of a piece, by the cut, by the span of an outer side, or
+        by "spring". Contacts have both components, or with a support of known strength
+        the one along it; cuts both; an outer side those that are prescribed; the foot
+        under a spring both.
         """
-        if self.is_within_body(joint) or self._is_known(joint):
-            return False, False
-        if joint.is_upright:
-            numbers = [self._pieces[piece].body for piece, _ in joint.sides]
-            bodies = [self.stack.rectangles[number] for number in numbers]
-            lowest = max(brick.y for brick in bodies)
-            highest = min(brick.y + brick.rows for brick in bodies)
-            return joint.first == lowest, joint.last == highest
-        sides = self.stack.sides
-        at_left = joint.first == 0
-        at_right = joint.last == self.stack.grid[0]
-        return (
-            at_left and sides["left"].y.prescribed,
-            at_right and sides["right"].y.prescribed,
-        )
-
-    def _traces(self) -> Iterator[dict[Hashable, _Trace]]:
-        """Traces of every substructure, by joint or by the span of an outer side.
-
-        A joint has both components, or with a support of known strength the one along
-        it; an outer side those that are prescribed; the foot under a spring ("spring")
-        both.
-        """
-        of_joints = self._traces_of_joints()
-        for number, at_joints in enumerate(of_joints):
-            traces = at_joints | self._traces_of_sides(number)
+        for number, of_joints in enumerate(self._traces_of_joints()):
+            traces = of_joints | self._traces_of_sides(number)
             in_order = sorted(
                 traces.items(), key=lambda named: SIDES.index(named[1].side)
             )
             yield dict(in_order)
 
-    def _traces_of_joints(self) -> list[dict[Hashable, _Trace]]:
-        """Traces of every substructure on its joints."""
-        traces: list[dict[Hashable, _Trace]] = [{} for _ in self._pieces]
-        for joint, (nodes, _) in self.pairs.items():
+    def _traces_of_joints(self) -> list[dict[Hashable, _SideTrace]]:
+        """Traces of every substructure on its contacts and cuts."""
+        traces: list[dict[Hashable, _SideTrace]] = [{} for _ in self.rectangles.each]
+        for n, (joint, piece) in enumerate(
+            zip(self.rectangles.joints, self.pieces, strict=True)
+        ):
             components: tuple[int, ...] = (0, 1)
-            if self._is_known(joint):
+            if self.rectangles.is_known(joint):
                 components = (0,)
-            has_macro = self.has_macro(joint)
+            has_macro = self.rectangles.has_macro(joint)
+            first = int(piece.places[0])
+            last = int(piece.places[-1])
+            sides = zip(JOINT_SIDES, joint.sides, strict=False)
+            for name, (number, side) in sides:
+                _, corner = self.rectangles.extent(number, side)
+                traces[number][name, n] = _SideTrace(
+                    side, components, first - corner, last - corner + 1, has_macro
+                )
+        for joint in self.rectangles.cuts:
             for number, side in joint.sides:
-                rectangle = self._pieces[number].rectangle
-                corner = rectangle.y if joint.is_upright else rectangle.x
-                first = int(nodes[0]) - corner
-                last = first + len(nodes)
-                trace = _Trace(side, components, first, last, has_macro)
-                traces[number][joint] = trace
+                # A cut is a whole side.
+                count, _ = self.rectangles.extent(number, side)
+                traces[number][joint] = _SideTrace(side, last=count + 1, has_macro=True)
         return traces
 
-    def _traces_of_sides(self, number: int) -> dict[Hashable, _Trace]:
+    def _traces_of_sides(self, number: int) -> dict[Hashable, _SideTrace]:
         """Traces of a substructure on prescribed outer sides, and at a spring."""
         stack = self.stack
-        rectangle, body, _ = self._pieces[number]
+        rectangle, body, _ = self.rectangles.each[number]
         is_foot = (rectangle.y, body) == (0, 0)
-        traces = dict[Hashable, _Trace]()
-        for span in self._outer(number):
+        traces = dict[Hashable, _SideTrace]()
+        for span in self.rectangles.outer[number]:
             components = tuple(
                 component
                 for component, given in enumerate(stack.sides[span.side])
                 if given.prescribed
             )
-            if components and self._is_outermost(number, span):
-                traces[span] = _Trace(span.side, components, span.first, span.last + 1)
+            if components and self.rectangles.is_outermost(number, span):
+                traces[span] = _SideTrace(
+                    span.side, components, span.first, span.last + 1
+                )
             elif span.side == "right" and stack.spring is not None and is_foot:
-                traces["spring"] = _Trace(span.side, (0, 1), 0, 1)
+                traces["spring"] = _SideTrace(span.side, (0, 1), 0, 1)
         return traces
-
-    def _is_outermost(self, number: int, span: Span) -> bool:
-        """Check whether a span of an outer side lies as far out as any of that side."""
-        rectangle = self._pieces[number].rectangle
-        if span.side == "bottom":
-            return rectangle.y == 0
-        if span.side == "top":
-            return rectangle.y + rectangle.rows == self.stack.grid[1]
-        return True
 
     def _force(self, number: int, mesh: Rectangle) -> Array | None:
         """Nodal forces of tractions and weight, scaled, or None.
@@ -524,27 +272,49 @@ class CutStack:
         Shape (2 n_nodes, n_instants).
         """
         stack = self.stack
+        weight = None
+        if self.rectangles.body_of(number) >= stack.strips:
+            weight = self._weight(mesh)
+        tractions = list(self._tractions(number))
+        if not tractions:
+            return weight
         total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
-        for span in self._outer(number):
-            for component, given in enumerate(stack.sides[span.side]):
-                if given.prescribed or given.is_zero:
-                    continue
-                traction = self.values(number, span, given) / stack.young
-                _add_traction(total[:, component], mesh, span, traction)
-        if stack.body_force is not None and self.body_of(number) >= stack.strips:
-            areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
-            density = stack.body_force * stack.length / stack.young
-            total += areas.reshape(-1, 1, 1) * density
-        if total.any():
-            return total.reshape(-1, len(stack.instants))
+        for span, component, given in tractions:
+            traction = self.values(number, span, given) / stack.young
+            _add_traction(total[:, component], mesh, span, traction)
+        force = total.reshape(-1, len(stack.instants))
+        if weight is not None:
+            force += weight
+        if force.any():
+            return force
         return None
+
+    def _tractions(self, number: int) -> Iterator[tuple[Span, int, Given]]:
+        """Tractions on outer sides of a substructure, with their spans and axes."""
+        for span in self.rectangles.outer[number]:
+            for component, given in enumerate(self.stack.sides[span.side]):
+                if not given.prescribed and not given.is_zero:
+                    yield span, component, given
+
+    def _weight_of(self, mesh: Rectangle) -> Array | None:
+        """Nodal forces of the weight, (2 n_nodes, n_instants), scaled, or None."""
+        stack = self.stack
+        if stack.body_force is None:
+            return None
+        areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
+        density = stack.body_force * stack.length / stack.young
+        # Zero is added so that -0 is 0.
+        force = areas.reshape(-1, 1, 1) * density + 0.0
+        if not force.any():
+            return None
+        return read_only(force.reshape(-1, len(stack.instants)))
 
     def values(self, number: int, span: Span, given: Given) -> Array:
         """Given displacement or traction at the nodes of a span of an outer side.
 
         Shape (n_nodes, n_instants), m or Pa.
         """
-        rectangle, body, _ = self._pieces[number]
+        rectangle, body, _ = self.rectangles.each[number]
         if span.side in ("left", "right"):
             brick = self.stack.rectangles[body]
             corner = rectangle.y - brick.y

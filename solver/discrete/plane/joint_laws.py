@@ -1,255 +1,267 @@
-"""Contact laws of joints of bodies of any shape."""
+"""Laws of joints in the plane: contact of two sides, and glued cuts."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Flags, Indices
-from solver.discrete.elements import legendre_basis
-from solver.discrete.plane.cut_bodies import CutBodies
-from solver.discrete.plane.joint_pieces import JointPiece
-from solver.laws import Component, Contact, Friction, NodalStiffness, Unilateral
+from solver.arrays import Array, Indices
+from solver.discrete.condensed_part import CondensedPart
+from solver.discrete.scales import Scales
+from solver.laws import (
+    BodyStiffness,
+    Component,
+    Contact,
+    Friction,
+    FrictionLaw,
+    NodalStiffness,
+    Perfect,
+    Unilateral,
+)
 from solver.laws.friction import compliance_of
-from solver.laws.stiffness import of_whole_mesh
+
+JOINT_SIDES = "above", "below"
+"""Sides of joints; the rows of a part at a piece are by these and its number."""
 
 
-class _JointPairs(NamedTuple):
-    """Pairs of nodes of joints, joint by joint and piece by piece.
+class JointPiece(NamedTuple):
+    """Part of a joint between a part of the body above and a part of what is below.
 
     Attributes
     ----------
-    joints, pieces
-        Numbers of the joints, and of their pieces.
-    joint_of_pairs
-        Place of the joint of each pair in `joints`, ascending, (n_pairs,).
-    keys
-        Number of the node of each pair among those of all these joints, (n_pairs,).
-    firsts
-        Number of the first node of each joint, (n_joints + 1,).
+    joint
+        Number of the joint.
+    parts
+        Number of the part above, and of that below, among all parts; on a rigid support
+        of the part above alone.
+    places
+        Numbers of the nodes of its pairs along the joint, ascending, (n,).
     weights
-        Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
+        Length that belongs to each pair, (n,), m.
+    along
+        Component along the joint among those of a node: 0 the first, 1 the second.
     """
 
-    joints: Sequence[int]
-    pieces: Sequence[int]
-    joint_of_pairs: Indices
-    keys: Indices
-    firsts: Indices
+    joint: int
+    parts: tuple[int, ...]
+    places: Indices
     weights: Array
+    along: int = 0
 
 
-def _pairs_of(cut: CutBodies, joints: Sequence[int]) -> _JointPairs:
-    """Pairs of nodes of joints, by the numbers of these."""
-    owners = np.array([piece.joint for piece in cut.pieces])
-    numbers = np.flatnonzero(np.isin(owners, joints)).tolist()
+class Cut(Protocol):
+    """Bodies that are cut into parts, and their joints into pieces."""
+
+    @property
+    def parts(self) -> Sequence[CondensedPart]:
+        """Parts of all bodies."""
+
+    @property
+    def pieces(self) -> Sequence[JointPiece]:
+        """Pieces of all joints, joint by joint."""
+
+    @property
+    def joint_names(self) -> Sequence[str]:
+        """Names of all joints."""
+
+
+class JointPairs(NamedTuple):
+    """Pairs of nodes of joints that have one law, joint by joint and piece by piece.
+
+    Attributes
+    ----------
+    names
+        Names of the joints.
+    pieces
+        Numbers of the pieces of these joints.
+    counts
+        Number of pairs of each piece, (n_pieces,).
+    joints
+        Place of the joint of each pair in `names`, ascending, (n_pairs,).
+    places
+        Number of the node of each pair along its joint, (n_pairs,).
+    weights
+        Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
+    tangent, normal
+        Boundary rows along and across the joints; no normal ones where the pressure is
+        known.
+    """
+
+    names: Sequence[str]
+    pieces: Sequence[int]
+    counts: Indices
+    joints: Indices
+    places: Indices
+    weights: Array
+    tangent: Component
+    normal: Component | None
+
+    @classmethod
+    def of(cls, cut: Cut, numbers: Sequence[int]) -> JointPairs:
+        """Pairs of joints by number, ascending."""
+        owners = np.array([piece.joint for piece in cut.pieces])
+        chosen = np.flatnonzero(np.isin(owners, numbers)).tolist()
+        pieces = [cut.pieces[number] for number in chosen]
+        counts = np.array([len(piece.places) for piece in pieces])
+        tangent, normal = _components(cut, chosen, counts)
+        return cls(
+            names=[cut.joint_names[number] for number in numbers],
+            pieces=chosen,
+            counts=counts,
+            joints=np.repeat(np.searchsorted(numbers, owners[chosen]), counts),
+            places=np.concatenate([piece.places for piece in pieces]),
+            weights=np.concatenate([piece.weights for piece in pieces]),
+            tangent=tangent,
+            normal=normal,
+        )
+
+
+def _components(
+    cut: Cut, numbers: Sequence[int], counts: Indices
+) -> tuple[Component, Component | None]:
+    """Rows along and across pieces, by their numbers and counts of pairs, (n,).
+
+    There are none across where parts have rows of one component.
+    """
     pieces = [cut.pieces[number] for number in numbers]
-    counts = [len(piece.places) for piece in pieces]
-    joint_of_pairs = np.repeat(np.searchsorted(joints, owners[numbers]), counts)
-    sizes = [len(cut.structure.joints[number].nodes) for number in joints]
-    firsts = np.cumsum([0, *sizes])
-    places = np.concatenate([piece.places for piece in pieces])
-    return _JointPairs(
-        joints=joints,
-        pieces=numbers,
-        joint_of_pairs=joint_of_pairs,
-        keys=firsts[joint_of_pairs] + places,
-        firsts=firsts,
-        weights=np.concatenate([piece.weights for piece in pieces]),
-    )
+    along = np.repeat([piece.along for piece in pieces], counts)
+    every = np.arange(len(along))
+    tangential = list[Indices]()
+    across = list[Indices]()
+    for side, name in enumerate(JOINT_SIDES[: len(pieces[0].parts)]):
+        of_pieces = [
+            cut.parts[piece.parts[side]].rows[name, number]
+            for number, piece in zip(numbers, pieces, strict=True)
+        ]
+        rows = np.concatenate(of_pieces)
+        tangential.append(rows[every, along])
+        if rows.shape[1] > 1:
+            across.append(rows[every, 1 - along])
+    if not across:
+        return Component(*tangential), None
+    return Component(*tangential), Component(*across)
 
 
-def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
-    """Law of joints: all on a support, or all between bodies."""
-    pairs = _pairs_of(cut, numbers)
-    joints = [cut.structure.joints[number] for number in numbers]
-    known, points = np.unique(pairs.keys, return_inverse=True)
-    tangent, normal = _components(cut, pairs.pieces)
-    gap = _along_joints([(joint.gap, len(joint.nodes)) for joint in joints])
-    mu = _along_joints([(joint.friction, len(joint.nodes)) for joint in joints])
-    interfaces = None
+class Surface(NamedTuple):
+    """Friction and opening of the pairs of joints, along these.
+
+    Attributes
+    ----------
+    positions
+        Distance of each pair along its joint, (n_pairs,), m.
+    law
+        Friction law beside the coefficients.
+    gap
+        Opening of each pair, (n_pairs,), m.
+    friction
+        Coefficient mu of each pair, (n_pairs,); not read where `known` is given.
+    known
+        Friction force that known pressure makes, scaled, (n_pairs, n_instants), or
+        None.
+    slip_ratio
+        Slip over the tangential displacement of the rows.
+    """
+
+    positions: Array
+    law: FrictionLaw
+    gap: Array
+    friction: Array
+    known: Array | None = None
+    slip_ratio: float = 1.0
+
+
+def laws_of(
+    cut: Cut, law_of: Callable[[Sequence[int]], Contact]
+) -> Iterator[tuple[str, Contact]]:
+    """Yield a law for all joints on supports, and one for all between bodies.
+
+    `law_of` makes a law by the numbers of its joints. That of a single joint has its
+    name.
+    """
+    kinds = dict[str, list[int]]()
+    on_support = {piece.joint: len(piece.parts) == 1 for piece in cut.pieces}
+    for number, is_on_support in on_support.items():
+        kind = "supports" if is_on_support else "contacts"
+        kinds.setdefault(kind, []).append(number)
+    for kind, numbers in kinds.items():
+        name = kind
+        if len(numbers) == 1:
+            name = cut.joint_names[numbers[0]]
+        yield name, law_of(numbers)
+
+
+def contact_of(
+    pairs: JointPairs,
+    surface: Surface,
+    scales: Scales,
+    stiffness_beside: BodyStiffness | NodalStiffness,
+    bases: Sequence[Array],
+) -> Contact:
+    """Law of joints: all on a support, or all between bodies.
+
+    Pairs at one node of a joint are one point. `bases` are the macro bases of their
+    pieces in one component, (n_pairs_of_piece, n_macro) each; without columns where no
+    macro forces balance.
+    """
+    keys = pairs.joints * (pairs.places.max() + 1) + pairs.places
+    _, first, points = np.unique(keys, return_index=True, return_inverse=True)
     names: tuple[str, ...] = ()
-    if len(joints) > 1:
-        names = tuple(joint.name for joint in joints)
-        interfaces = np.searchsorted(pairs.firsts, known, side="right") - 1
+    interfaces = None
+    if len(pairs.names) > 1:
+        names = tuple(pairs.names)
+        interfaces = pairs.joints[first]
     return Contact(
-        normal=_normal_law(cut, normal, pairs, gap[pairs.keys]),
-        tangential=_friction(cut, tangent, pairs, gap[pairs.keys], mu[pairs.keys]),
+        normal=_normal_law(pairs, surface, scales),
+        tangential=_friction(pairs, surface, scales),
         points=points.ravel(),
-        positions=_positions(cut, numbers)[known],
+        positions=surface.positions[first],
         weights=pairs.weights,
-        stiffness_beside=_stiffness_beside(cut, pairs, tangent, normal),
-        macro=_macro_basis(cut, [cut.pieces[number] for number in pairs.pieces]),
+        stiffness_beside=stiffness_beside,
+        macro=_beside_each_other(bases),
+        slip_ratio=surface.slip_ratio,
         names=names,
         interfaces=interfaces,
     )
 
 
 def _normal_law(
-    cut: CutBodies, component: Component, pairs: _JointPairs, gap: Array
-) -> Unilateral:
-    """Unilateral law across joints, whose opening is `gap`, (n_pairs,), m."""
-    scales = cut.length, cut.young * cut.length
-    stiffness = cut.structure.friction_law.normal_stiffness
+    pairs: JointPairs, surface: Surface, scales: Scales
+) -> Unilateral | None:
+    """Unilateral law across joints; None where the pressure is known."""
+    if pairs.normal is None:
+        return None
+    units = scales.displacement, scales.force
+    stiffness = surface.law.normal_stiffness
     return Unilateral(
-        component=component,
-        gap=gap / cut.length,
-        compliance=compliance_of(stiffness, pairs.weights, scales),
+        component=pairs.normal,
+        gap=surface.gap / scales.displacement,
+        compliance=compliance_of(stiffness, pairs.weights, units),
     )
 
 
-def _friction(
-    cut: CutBodies, component: Component, pairs: _JointPairs, gap: Array, mu: Array
-) -> Friction:
-    """Friction law along joints of opening `gap`, m, and coefficient mu, (n_pairs,)."""
-    scales = cut.length, cut.young * cut.length
-    law = cut.structure.friction_law
-    friction = law.at(component, pairs.weights, scales, friction=mu)
+def _friction(pairs: JointPairs, surface: Surface, scales: Scales) -> Friction:
+    """Friction law along joints."""
+    units = scales.displacement, scales.force
+    law = surface.law
+    if surface.known is not None:
+        return law.at(pairs.tangent, pairs.weights, units, known=surface.known)
+    mu = surface.friction
+    friction = law.at(pairs.tangent, pairs.weights, units, friction=mu)
     # Nothing is bonded across a gap.
-    is_closed = (gap <= 0.0)[:, None]
+    is_closed = (surface.gap <= 0.0)[:, None]
     return replace(friction, bound=friction.bound * is_closed)
 
 
-def _along_joints(values: Sequence[tuple[Array | float, int]]) -> Array:
-    """Values of joints, each with its number of nodes, node by node: (n_nodes,)."""
-    sizes = [size for _, size in values]
-    constants = [value for value, _ in values if isinstance(value, float)]
-    if len(constants) == len(values):
-        return np.repeat(constants, sizes)
-    return np.concatenate([np.broadcast_to(value, size) for value, size in values])
-
-
-def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
-    """Distance of the nodes of joints from the first of each, (n_nodes,), m."""
-    known = dict[Hashable, Array]()
-    found = []
-    for number in numbers:
-        joint = cut.structure.joints[number]
-        shape = cut.structure.bodies[joint.above].shape
-        key = id(shape), joint.nodes.tobytes()
-        if key not in known:
-            known[key] = _distances(shape.nodes[joint.nodes])
-        found.append(known[key])
-    return np.concatenate(found)
-
-
-def _distances(nodes: Array) -> Array:
-    """Distance of nodes, (n, 2), from the first along the line of them, (n,)."""
-    steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
-    return np.cumsum(np.append(0.0, steps))
-
-
-def _components(cut: CutBodies, pieces: Sequence[int]) -> tuple[Component, Component]:
-    """Tangential and normal component of pieces of joints."""
-    joints = cut.structure.joints
-    sides = list[Indices]()
-    for side, name in enumerate(("above", "below")):
-        rows = list[Indices]()
-        for number in pieces:
-            piece = cut.pieces[number]
-            bodies = joints[piece.joint].sides
-            if side < len(bodies):
-                owner = cut.owner(bodies[side][0], piece.parts[side])
-                rows.append(cut.parts[owner].rows[name, number])
-        if rows:
-            sides.append(np.concatenate(rows))
-    along = [rows[:, 0] for rows in sides]
-    across = [rows[:, 1] for rows in sides]
-    return Component(*along), Component(*across)
-
-
-def _stiffness_beside(
-    cut: CutBodies, pairs: _JointPairs, tangent: Component, normal: Component
-) -> NodalStiffness:
-    """Stiffness of the bodies at joints, for their search direction.
-
-    A mesh resists with about E as a whole (`of_whole_mesh`). Beams resist with E A / l
-    along a joint of length l; across it they stay where they are pressed.
-    """
-    of_joint = pairs.joint_of_pairs
-    lengths: Array = np.bincount(of_joint, weights=pairs.weights).astype(float)
-    share = pairs.weights / lengths[of_joint]
-    components = [np.stack(each.sides, axis=1) for each in (tangent, normal)]
-    rows = np.stack(components, axis=1)
-    local = cut.local_stiffness[rows]
-    whole = np.empty_like(local)
-    squeezed = np.full(len(share), np.inf)
-    for side in range(rows.shape[2]):
-        on_support = rows.shape[2] == 1
-        of_joints, across = _whole_joints(cut, pairs, side, lengths, on_support)
-        along = of_joints[of_joint] * share
-        # Across beams k is at least that along them, as their tension presses them.
-        tension = np.maximum(local[:, 1, side], np.sqrt(along * local[:, 0, side]))
-        is_beam = ~_is_mesh(cut, pairs, side)[of_joint]
-        local[is_beam, 1, side] = tension[is_beam]
-        whole[:, 0, side] = along
-        whole[:, 1, side] = np.where(is_beam, tension, along)
-        squeezed = np.minimum(squeezed, across[of_joint] * share)
-    return NodalStiffness(whole, local, squeezed)
-
-
-def _bodies(cut: CutBodies, pairs: _JointPairs, side: int) -> list[int]:
-    """Numbers of the bodies on a side of joints, 0 above and 1 below."""
-    return [cut.structure.joints[number].sides[side][0] for number in pairs.joints]
-
-
-def _is_mesh(cut: CutBodies, pairs: _JointPairs, side: int) -> Flags:
-    """Check which bodies on a side of joints are meshes, (n_joints,)."""
-    return np.array([cut.is_mesh(number) for number in _bodies(cut, pairs, side)])
-
-
-def _whole_joints(
-    cut: CutBodies, pairs: _JointPairs, side: int, lengths: Array, on_support: bool
-) -> tuple[Array, Array]:
-    """Stiffness of bodies on a side of whole joints: as a whole, and squeezed.
-
-    Shape (n_joints,) both, scaled; `lengths` are those of the joints, (n_joints,), m.
-    """
-    bodies = _bodies(cut, pairs, side)
-    is_mesh = _is_mesh(cut, pairs, side)
-    modulus = cut.moduli[bodies] / np.where(is_mesh, 1.0, lengths)
-    depth = np.where(is_mesh, cut.volumes[bodies] / lengths, lengths)
-    of_mesh = of_whole_mesh(depth, lengths, on_support=on_support)
-    return modulus * np.where(is_mesh, of_mesh, 1.0), modulus * lengths / depth
-
-
-def _macro_basis(
-    cut: CutBodies, pieces: Sequence[JointPiece]
-) -> sparse.csr_array | None:
-    """Macro basis of one component, (n_pairs, n_macro), or None on a support.
-
-    Each piece has columns of its own.
-    """
-    joints = cut.structure.joints
-    if joints[pieces[0].joint].below is None:
-        return None
-    known = dict[Hashable, Array]()
-    blocks = []
-    for piece in pieces:
-        joint = joints[piece.joint]
-        part = cut.parts[cut.owner(joint.above, piece.parts[0])].of_shape
-        # Pieces of joints that are alike share their arrays.
-        key = id(part), joint.nodes.tobytes(), id(piece.weights)
-        if key not in known:
-            nodes = cut.structure.bodies[joint.above].shape.nodes
-            along = _distances(nodes[joint.nodes[piece.places]])
-            reach = along[-1] or 1.0
-            slenderness = (piece.weights.sum() / part.size) ** 2
-            known[key] = legendre_basis(
-                2.0 * along / reach - 1.0, slenderness, cut.structure.macro_degree
-            )
-        blocks.append(known[key])
-    return _beside_each_other(blocks)
-
-
-def _beside_each_other(blocks: Sequence[Array]) -> sparse.csr_array:
-    """Diagonal matrix of blocks, (n_rows, n_columns) each."""
+def _beside_each_other(blocks: Sequence[Array]) -> sparse.csr_array | None:
+    """Diagonal matrix of blocks, (n_rows, n_columns) each; None without any column."""
     heights = np.array([block.shape[0] for block in blocks])
     widths = np.array([block.shape[1] for block in blocks])
+    if not widths.any():
+        return None
     # Rows of one block are as wide as it.
     of_rows = np.repeat(widths, heights)
     ends = np.append(0, np.cumsum(of_rows))
@@ -257,4 +269,27 @@ def _beside_each_other(blocks: Sequence[Array]) -> sparse.csr_array:
     columns = np.arange(ends[-1]) - np.repeat(ends[:-1] - first_columns, of_rows)
     values = np.concatenate([block.ravel() for block in blocks])
     shape = len(of_rows), int(widths.sum())
-    return sparse.csr_array((values, columns, ends), shape)
+    whole = sparse.csr_array((values, columns, ends), shape)
+    whole.eliminate_zeros()
+    return whole
+
+
+def glued(
+    rows: Indices, opposite: Indices, basis: Array, frames: Array | None = None
+) -> Perfect:
+    """Perfect interface of two parts of one body.
+
+    Parameters
+    ----------
+    rows, opposite
+        Boundary rows of both parts, shape (n_nodes, n_components).
+    basis
+        Macro basis of one component, (n_nodes, n_macro).
+    frames
+        Directions of the degrees of freedom at the nodes in the axes of the body,
+        (n_nodes, 2, 2); None where they are these axes. Macro forces are along them.
+    """
+    if frames is None:
+        frames = np.eye(rows.shape[1])[None]
+    macro = frames[:, :, None, :] * basis[:, None, :, None]
+    return Perfect(rows.ravel(), opposite.ravel(), macro.reshape(rows.size, -1))

@@ -7,40 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.plane.body import Body, Held, Joint
 from solver.discrete.plane.cut_shapes import CutShape
+from solver.discrete.plane.joint_laws import JointPiece
 from solver.refusal import RefusedError, Words
 
 ALIKE = 1e-9
 """Largest difference of two directions that are the same."""
 ON_AXIS = 1e-12
 """Component of a unit normal up to which it counts as zero."""
-
-
-class JointPiece(NamedTuple):
-    """Part of a joint between a part of the body above and a part of what is below.
-
-    Attributes
-    ----------
-    joint
-        Number of the joint.
-    parts
-        Number of the part above, and of that below, among the parts of their bodies.
-    places
-        Numbers of its pairs along the joint, ascending, (n,).
-    weights
-        Length that belongs to each pair, (n,), m.
-    """
-
-    joint: int
-    parts: tuple[int, int]
-    places: Indices
-    weights: Array
 
 
 def snapped(vectors: Array) -> Array:
@@ -161,6 +140,8 @@ def pieces_of(
 ) -> list[JointPiece]:
     """Pieces of all joints, joint by joint and along each.
 
+    Parts of bodies are numbered one body after the other.
+
     Raises
     ------
     RefusedError
@@ -169,18 +150,21 @@ def pieces_of(
     pieces = list[JointPiece]()
     # Joints along the same nodes of the same shapes have the same pieces.
     known = dict[Hashable, list[JointPiece]]()
+    counts = [len(cut.elements) for cut in cuts]
+    first_parts = np.cumsum([0, *counts]).tolist()
     for number, (joint, has_pair) in enumerate(
         zip(joints, frames.has_pair, strict=True)
     ):
-        key = tuple((id(cuts[body]), chain.tobytes()) for body, chain in joint.sides)
+        sides = tuple((id(cuts[body]), chain.tobytes()) for body, chain in joint.sides)
+        key = sides, has_pair.tobytes()
         if key not in known:
-            known[key] = _pieces_of_joint(bodies, number, joint, cuts)
-        found = [piece._replace(joint=number) for piece in known[key]]
-        if has_pair.all():
-            pieces += found
-            continue
-        kept = [piece for piece in found if has_pair[piece.places].any()]
-        if not kept:
+            whole = _pieces_of_joint(bodies, number, joint, cuts)
+            known[key] = [
+                _paired(piece, has_pair[piece.places])
+                for piece in whole
+                if has_pair[piece.places].any()
+            ]
+        if not known[key]:
             raise RefusedError(
                 f"{joint}.nodes",
                 Words("without a pair"),
@@ -188,14 +172,25 @@ def pieces_of(
                 "direction",
                 "make its elements smaller, or leave it out",
             )
-        pieces += [_paired(piece, has_pair[piece.places]) for piece in kept]
+        pieces += [_of_joint(piece, number, joint, first_parts) for piece in known[key]]
     return pieces
+
+
+def _of_joint(
+    piece: JointPiece, number: int, joint: Joint, first_parts: Sequence[int]
+) -> JointPiece:
+    """The piece of a joint, by its number, that is like one with parts of bodies."""
+    numbers = [
+        first_parts[body] + part
+        for (body, _), part in zip(joint.sides, piece.parts, strict=False)
+    ]
+    return piece._replace(joint=number, parts=tuple(numbers))
 
 
 def _pieces_of_joint(
     bodies: Sequence[Body], number: int, joint: Joint, cuts: Sequence[CutShape]
 ) -> list[JointPiece]:
-    """Pieces of a joint, with pairs at all nodes."""
+    """Pieces of a joint, with pairs at all nodes and the numbers of parts of bodies."""
     elements, shares = bodies[joint.above].shape.steps(joint.nodes)
     above = cuts[joint.above].labels[elements]
     below = np.zeros_like(above)

@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices
 from solver.checks import Numbers, check
+from solver.kept import content_of
 from solver.refusal import RefusedError, Words
 
 if TYPE_CHECKING:
@@ -55,6 +56,11 @@ class Mesh:
             corners=Numbers(((None, 2),)),
             elements=Numbers(((None, 3), (None, 4)), low=0, high=last, whole=True),
         )
+
+    @cached_property
+    def content(self) -> bytes:
+        """Digest of corners and elements."""
+        return content_of(self.corners, self.elements)
 
     @cached_property
     def grid(self) -> skfem.Mesh:

@@ -6,37 +6,39 @@ the support, are in contact. Contact forces are lumped at the nodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from itertools import chain
+from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.inside import Inside, substructure_of
-from solver.discrete.loose import is_loose
+from solver.discrete.inside import Inside
+from solver.discrete.loose import loose_bodies
 from solver.discrete.plane.bricks import BrickJoint
-from solver.discrete.plane.cut_stack import CutStack, Span
-from solver.discrete.plane.rectangular_parts import RectangularSubstructure
+from solver.discrete.plane.cut_rectangles import Span
+from solver.discrete.plane.cut_stack import CutStack
+from solver.discrete.plane.joint_laws import (
+    JointPairs,
+    Surface,
+    contact_of,
+    glued,
+    laws_of,
+)
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
 from solver.discrete.plane.stack import Stack
 from solver.discrete.problem import Problem
-from solver.discrete.scales import Scales
 from solver.laws import (
     BodyStiffness,
     Component,
     Contact,
     Dirichlet,
-    Friction,
     FrictionLaw,
     Interface,
     Perfect,
     Unilateral,
 )
-from solver.laws.friction import compliance_of
 from solver.refusal import RefusedError, Words
 
 NO_BODY = -1
@@ -52,30 +54,23 @@ def problem_of(stack: Stack) -> Problem:
         If bodies can move though all contacts are closed and stick.
     """
     cut = CutStack(stack)
-    contacts = _contacts_of(cut)
-    order = [*contacts]
+    order = [*cut.joint_names]
     if stack.spring is not None:
         order.append("spring")
-    scales = Scales(stack.length, stack.young * stack.length, stack.duration)
+    scales = cut.scales
     inside = Inside(cut.parts, cut.positions, scales, len(stack.instants))
-    has_short_joints = any(
-        joint.is_upright and not cut.is_within_body(joint) for joint in cut.pairs
-    )
     problem = Problem(
-        substructures=tuple(
-            substructure_of(part, dofs)
-            for part, dofs in zip(cut.parts, inside.dofs, strict=True)
-        ),
-        interfaces=dict(_interfaces(cut, contacts)),
+        substructures=inside.substructures(),
+        interfaces=dict(_interfaces(cut)),
         positions=inside.positions * scales.displacement,
         instants=stack.instants,
         scales=scales,
         inside=inside,
         rest=_rest(stack, inside),
-        has_short_joints=has_short_joints,
+        has_short_joints=any(joint.is_upright for joint in cut.rectangles.joints),
         order=tuple(order),
     )
-    if is_loose(problem):
+    if len(loose_bodies(problem)):
         held = [name for name, side in stack.sides.items() if _is_moved(side)]
         raise RefusedError(
             "Stack.sides",
@@ -111,28 +106,14 @@ def _rest(stack: Stack, inside: Inside) -> Array | None:
     return rest
 
 
-def _contacts_of(cut: CutStack) -> dict[str, list[BrickJoint]]:
-    """Joints of each contact by its name, in the order of the joints."""
-    contacts = dict[str, list[BrickJoint]]()
-    for joint in cut.pairs:
-        if not cut.is_within_body(joint):
-            contacts.setdefault(cut.name(joint), []).append(joint)
-    return contacts
-
-
-def _interfaces(
-    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]
-) -> Iterator[tuple[str, Interface]]:
+def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
     """All interfaces by name: contacts, then cuts, then prescribed sides."""
     stack = cut.stack
-    yield from _laws_of_contact(cut, contacts)
+    yield from laws_of(cut, partial(_contact, cut))
     if stack.spring is not None:
         yield "spring", _spring(cut, stack.spring)
-    # By the substructure below; upright cuts before lying ones.
-    cuts = [joint for joint in cut.pairs if cut.is_within_body(joint)]
-    cuts.sort(key=lambda joint: (joint.sides[1][0], not joint.is_upright))
-    for joint in cuts:
-        yield cut.name(joint), _glued(cut, joint)
+    for joint in cut.rectangles.cuts:
+        yield cut.rectangles.cut_name(joint), _glued(cut, joint)
     # A corner that two sides prescribe is held by the first: as `_prescribed` moves it.
     for side in ("top", "bottom", "left", "right"):
         given = stack.sides[side]
@@ -140,254 +121,131 @@ def _interfaces(
             yield from _prescribed(cut, side, given)
 
 
-def _laws_of_contact(
-    cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]
-) -> Iterator[tuple[str, Contact]]:
-    """Yield a law for all contacts with the support, and one for those of bodies."""
-    alike = dict[str, list[str]]()
-    for name, joints in contacts.items():
-        kind = "supports" if joints[0].below is None else "contacts"
-        alike.setdefault(kind, []).append(name)
-    for kind, names in alike.items():
-        key = kind
-        if len(names) == 1:
-            key = names[0]
-        yield key, _contact(cut, {name: contacts[name] for name in names})
-
-
 def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
     """Perfect interface of two substructures of one body."""
-    rows_above, rows_below = _rows_of(cut, [joint])
-    macro = np.asarray(np.kron(cut.basis(joint, 1), np.eye(2)))
-    return Perfect(rows_below.ravel(), rows_above.ravel(), macro)
+    above, below = [cut.parts[number].rows[joint] for number, _ in joint.sides]
+    return glued(below, above, cut.macro_basis_of_cut(joint))
 
 
-class _Pairs(NamedTuple):
-    """Pairs of nodes of contacts, contact by contact and joint by joint.
+class _Beside(NamedTuple):
+    """Bodies beside pairs of nodes.
 
     Attributes
     ----------
-    joints
-        Joints of all contacts.
-    counts
-        Number of pairs of each joint, (n_joints,).
-    contacts
-        Number of the contact of each pair, ascending, (n_pairs,).
     bodies, others
         Body above, or to the right, of each pair, and the other one, (n_pairs,);
         `NO_BODY` is the support.
-    nodes
-        Node of each pair on the grid of all elements, along the contact, (n_pairs,).
     is_upright
         Whether the joint of each pair is upright, (n_pairs,).
-    areas
-        Tributary area of each pair for a metre of thickness, (n_pairs,), m^2.
     """
 
-    joints: Sequence[BrickJoint]
-    counts: Indices
-    contacts: Indices
     bodies: Indices
     others: Indices
-    nodes: Indices
     is_upright: Flags
-    areas: Array
+
+    @classmethod
+    def of(cls, cut: CutStack, pairs: JointPairs) -> _Beside:
+        """Bodies beside the pairs of joints."""
+        joints = [cut.rectangles.joints[number] for number in pairs.pieces]
+        both = [cut.rectangles.bodies(joint) for joint in joints]
+        others = [NO_BODY if below is None else below for _, below in both]
+        return cls(
+            bodies=np.repeat([above for above, _ in both], pairs.counts),
+            others=np.repeat(others, pairs.counts),
+            is_upright=np.repeat([joint.is_upright for joint in joints], pairs.counts),
+        )
 
 
-def _pairs_of(cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]) -> _Pairs:
-    """Pairs of nodes of contacts."""
-    joints = list(chain.from_iterable(contacts.values()))
-    n_joints = [len(of_contact) for of_contact in contacts.values()]
-    numbers = np.repeat(np.arange(len(contacts)), n_joints)
-    nodes = [cut.pairs[joint][0] for joint in joints]
-    lengths = [cut.pairs[joint][1] for joint in joints]
-    counts = np.array([len(of_joint) for of_joint in nodes])
-    bodies = [cut.body_of(joint.above) for joint in joints]
-    others = [
-        NO_BODY if joint.below is None else cut.body_of(joint.below) for joint in joints
-    ]
-    return _Pairs(
-        joints=joints,
-        counts=counts,
-        contacts=np.repeat(numbers, counts),
-        bodies=np.repeat(bodies, counts),
-        others=np.repeat(others, counts),
-        nodes=np.concatenate(nodes),
-        is_upright=np.repeat([joint.is_upright for joint in joints], counts),
-        areas=cut.stack.length * np.concatenate(lengths),
+def _contact(cut: CutStack, numbers: Sequence[int]) -> Contact:
+    """Law of contacts by number: of bodies with the support, or with each other."""
+    pairs = JointPairs.of(cut, numbers)
+    beside = _Beside.of(cut, pairs)
+    return contact_of(
+        pairs,
+        _surface(cut, pairs, beside),
+        cut.scales,
+        _stiffness_beside(cut.stack, beside),
+        [cut.macro_basis(number) for number in pairs.pieces],
     )
 
 
-def _contact(cut: CutStack, contacts: Mapping[str, Sequence[BrickJoint]]) -> Contact:
-    """Law of contacts by name: of bodies with the support, or with each other."""
+def _surface(cut: CutStack, pairs: JointPairs, beside: _Beside) -> Surface:
+    """Friction and opening of contacts."""
     stack = cut.stack
-    pairs = _pairs_of(cut, contacts)
-    gap = np.zeros(len(pairs.nodes))
-    slip_ratio = 1.0
-    support = stack.support
-    if support is not None and pairs.others[0] == NO_BODY:
-        gap = support.gap[pairs.nodes] / stack.length
-        if support.is_image:
-            slip_ratio = 2.0
-    n_nodes = max(stack.grid) + 1
-    keys = pairs.contacts * n_nodes + pairs.nodes
-    _, first, points = np.unique(keys, return_index=True, return_inverse=True)
-    tangent, normal = _components(cut, pairs)
-    names: tuple[str, ...] = ()
-    interfaces = None
-    if len(contacts) > 1:
-        names = tuple(contacts)
-        interfaces = pairs.contacts[first]
-    return Contact(
-        normal=_normal_law(stack, normal, pairs, gap),
-        tangential=_friction(stack, tangent, pairs, gap),
-        points=points,
-        positions=_positions(stack, pairs)[first],
-        weights=pairs.areas,
-        stiffness_beside=_stiffness_beside(stack, pairs),
-        macro=_macro_basis(cut, pairs),
-        slip_ratio=slip_ratio,
-        names=names,
-        interfaces=interfaces,
-    )
-
-
-def _positions(stack: Stack, pairs: _Pairs) -> Array:
-    """Position of each pair along its contact, (n_pairs,), m."""
-    length = stack.length / stack.elements[0]
-    height = stack.height / stack.elements[1]
-    return np.asarray(pairs.nodes * np.where(pairs.is_upright, height, length), float)
-
-
-def _components(cut: CutStack, pairs: _Pairs) -> tuple[Component, Component | None]:
-    """Tangential and normal component of contacts; no normal one at known strength."""
-    rows = _rows_of(cut, pairs.joints)
-    has_normal = rows[0].shape[1] > 1
-    if not has_normal:
-        sides = [rows_of_side[:, 0] for rows_of_side in rows]
-        return Component(*sides), None
-    along = pairs.is_upright.astype(np.intp)
-    every = np.arange(len(along))
-    tangential = [rows_of_side[every, along] for rows_of_side in rows]
-    across = [rows_of_side[every, 1 - along] for rows_of_side in rows]
-    return Component(*tangential), Component(*across)
-
-
-def _normal_law(
-    stack: Stack, component: Component | None, pairs: _Pairs, gap: Array
-) -> Unilateral | None:
-    """Unilateral law across contacts, with their opening, (n_pairs,), scaled."""
-    if component is None:
-        return None
-    scales = (stack.length, stack.young * stack.length)
-    compliance = compliance_of(stack.friction_law.normal_stiffness, pairs.areas, scales)
-    return Unilateral(component=component, gap=gap, compliance=compliance)
-
-
-def _friction(
-    stack: Stack, component: Component, pairs: _Pairs, gap: Array
-) -> Friction:
-    """Friction law along contacts, whose opening is `gap`, (n_pairs,), scaled."""
-    scales = (stack.length, stack.young * stack.length)
-    law = stack.friction_law
     support = None
-    if pairs.others[0] == NO_BODY:
+    if beside.others[0] == NO_BODY:
         support = stack.support
-    if support is not None and support.is_image:
-        law = law.of_one_side()
-    if support is not None and support.strength is not None:
-        scaled = support.strength[pairs.nodes] / (stack.young * stack.length)
-        known = scaled * pairs.areas[:, None]
-        return law.at(component, pairs.areas, scales, known=known)
-    mu = _coefficients(stack, support, pairs)
-    friction = law.at(component, pairs.areas, scales, friction=mu)
-    # Nothing is bonded across a gap.
-    is_closed = (gap <= 0.0)[:, None]
-    return replace(friction, bound=friction.bound * is_closed)
+    steps: Array = np.where(
+        beside.is_upright,
+        stack.height / stack.elements[1],
+        stack.length / stack.elements[0],
+    )
+    surface = Surface(
+        positions=steps * pairs.places,
+        law=stack.friction_law,
+        gap=np.zeros(len(steps)),
+        friction=_coefficients(stack, support, pairs.places, beside),
+    )
+    if support is None:
+        return surface
+    surface = surface._replace(gap=support.gap[pairs.places])
+    if support.is_image:
+        law = stack.friction_law.of_one_side()
+        surface = surface._replace(law=law, slip_ratio=2.0)
+    if support.strength is not None:
+        scaled = support.strength[pairs.places] / cut.scales.force
+        surface = surface._replace(known=scaled * pairs.weights[:, None])
+    return surface
 
 
-def _coefficients(stack: Stack, support: Support | None, pairs: _Pairs) -> Array:
-    """Coefficient of friction of each pair, (n_pairs,)."""
+def _coefficients(
+    stack: Stack, support: Support | None, nodes: Indices, beside: _Beside
+) -> Array:
+    """Coefficient of friction of each pair, (n_pairs,).
+
+    `nodes` are those of the pairs along the grid of all elements, (n_pairs,).
+    """
     if support is not None:
         mu = np.asarray(support.friction)
     else:
         mu = np.asarray(stack.friction)
     if mu.ndim < 2:
         mu = np.atleast_2d(mu)
-        rows = np.zeros_like(pairs.nodes)
+        rows = np.zeros_like(nodes)
     else:
-        rows = pairs.bodies - 1
-    columns = pairs.nodes if mu.shape[1] > 1 else 0
+        rows = beside.bodies - 1
+    columns = nodes if mu.shape[1] > 1 else 0
     of_pairs = np.asarray(mu[rows, columns])
     if stack.head_friction is not None:
-        of_pairs = np.where(pairs.is_upright, stack.head_friction, of_pairs)
+        of_pairs = np.where(beside.is_upright, stack.head_friction, of_pairs)
     if stack.strips and stack.support is not None:
-        on_ground = (pairs.others >= 0) & (pairs.others < stack.strips)
+        on_ground = (beside.others >= 0) & (beside.others < stack.strips)
         of_ground = np.broadcast_to(stack.support.friction, stack.grid[0] + 1)
         of_pairs = of_pairs.copy()
-        of_pairs[on_ground] = of_ground[pairs.nodes[on_ground]]
+        of_pairs[on_ground] = of_ground[nodes[on_ground]]
     return of_pairs
 
 
-def _stiffness_beside(stack: Stack, pairs: _Pairs) -> BodyStiffness:
+def _stiffness_beside(stack: Stack, beside: _Beside) -> BodyStiffness:
     """Moduli and depth of the bodies at contacts, for their search direction."""
     moduli = np.array([stack.modulus(body) for body in range(len(stack.rectangles))])
     rows = np.array([rectangle.rows for rectangle in stack.rectangles])
     depths = stack.height * (rows / stack.elements[1])
     return BodyStiffness(
-        above=moduli[pairs.bodies],
-        below=np.where(pairs.others == NO_BODY, np.inf, moduli[pairs.others]),
-        depth=depths[pairs.bodies],
+        above=moduli[beside.bodies],
+        below=np.where(beside.others == NO_BODY, np.inf, moduli[beside.others]),
+        depth=depths[beside.bodies],
     )
-
-
-def _macro_basis(cut: CutStack, pairs: _Pairs) -> sparse.csr_array | None:
-    """Macro basis of one component, (n_pairs, n_macro), or None.
-
-    Each joint on which macro forces balance has columns of its own.
-    """
-    firsts = np.cumsum(pairs.counts) - pairs.counts
-    rows = list[Indices]()
-    columns = list[Indices]()
-    values = list[Array]()
-    n_macro = 0
-    for first, joint in zip(firsts.tolist(), pairs.joints, strict=True):
-        if not cut.has_macro(joint):
-            continue
-        row, column, value = cut.entries(joint)
-        rows.append(first + row)
-        columns.append(n_macro + column)
-        values.append(value)
-        n_macro += int(column[-1]) + 1
-    if not values:
-        return None
-    entries = np.concatenate(rows), np.concatenate(columns)
-    shape = len(pairs.nodes), n_macro
-    return sparse.csr_array((np.concatenate(values), entries), shape=shape)
-
-
-def _rows_of(cut: CutStack, joints: Sequence[BrickJoint]) -> list[Indices]:
-    """Boundary rows of each side of joints, the one above first.
-
-    Each has shape (n_points, n_components); a support has no rows.
-    """
-    rows = [np.concatenate([cut.parts[joint.above].rows[joint] for joint in joints])]
-    below = [
-        cut.parts[joint.below].rows[joint]
-        for joint in joints
-        if joint.below is not None
-    ]
-    if below:
-        rows.append(np.concatenate(below))
-    return rows
 
 
 def _spring(cut: CutStack, spring: Spring) -> Contact:
     """Contact of a spring, which pushes the foot to the right as if from the left."""
     stack = cut.stack
-    (part,) = [part for part in cut.parts if "spring" in part.rows]
-    rows = part.rows["spring"]
-    areas = part.rectangle.edge_weights("right")
+    (number,) = [
+        number for number, part in enumerate(cut.parts) if "spring" in part.rows
+    ]
+    rows = cut.parts[number].rows["spring"]
+    areas = cut.mesh(number).edge_weights("right")
     return Contact(
         normal=Unilateral(
             component=Component(rows[:, 0]),
@@ -417,7 +275,7 @@ def _prescribed(
             for column, component in enumerate(components):
                 moved = cut.values(number, span, given[component])
                 if side in ("left", "right"):
-                    _move_corners(cut, part, side, component, moved)
+                    _move_corners(cut, number, side, component, moved)
                 rows.append(of_span[:, column])
                 values.append(moved / cut.stack.length)
     if rows:
@@ -426,23 +284,24 @@ def _prescribed(
 
 def _move_corners(
     cut: CutStack,
-    part: RectangularSubstructure,
+    number: int,
     side: str,
     component: int,
     moved: Array,
 ) -> None:
     """Write the displacement of top and bottom into the corners of an upright side.
 
-    Only where top or bottom prescribe the component; `moved` is the displacement of the
-    side's nodes, (n_nodes, n_instants), m.
+    Only where top or bottom prescribe the component; `number` is that of the
+    substructure, `moved` the displacement of the side's nodes, (n_nodes, n_instants),
+    m.
     """
     sign = 1.0 if side == "right" else -1.0
-    spans = [name for name in part.rows if isinstance(name, Span)]
+    spans = [name for name in cut.parts[number].rows if isinstance(name, Span)]
     for level, corner in (("bottom", 0), ("top", -1)):
         given = cut.stack.sides[level][component]
         on_level = [span for span in spans if span.side == level]
         if side == "right":
-            columns = part.rectangle.columns
+            columns = cut.mesh(number).columns
             is_prescribed = any(span.last == columns for span in on_level)
         else:
             is_prescribed = any(span.first == 0 for span in on_level)

@@ -1,0 +1,186 @@
+"""Parts of bodies in the plane, condensed onto their boundary rows."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from scipy import sparse
+
+from solver.arrays import Array, Indices, read_only
+from solver.discrete.elements import SchurComplement
+from solver.discrete.substructure import Elasticity
+
+N_AXES = 3
+"""Ways in which a node may move: along x, along y, and turning."""
+
+
+class Trace(NamedTuple):
+    """Boundary rows at some nodes of a part.
+
+    Attributes
+    ----------
+    dofs
+        Degrees of freedom of the part at the rows, shape (n_nodes, n_components).
+    direction
+        Search direction k of each row, of the same shape, scaled.
+    has_macro
+        Whether macro forces balance there.
+    """
+
+    dofs: Indices
+    direction: Array
+    has_macro: bool
+
+
+class Operator:
+    """Stiffness of a part, condensed onto its boundary rows; equal parts share it.
+
+    Parameters
+    ----------
+    whole
+        Stiffness of the part, sparse, or condensed before.
+    traces
+        Boundary rows of the part.
+
+    Attributes
+    ----------
+    condensed, elasticity
+        Condensed stiffness, and the operator of a substructure.
+    """
+
+    def __init__(
+        self, whole: sparse.csc_array | SchurComplement, traces: Sequence[Trace]
+    ) -> None:
+        dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
+        direction = np.concatenate([trace.direction.ravel() for trace in traces])
+        self.condensed = SchurComplement(whole, np.unique(dofs))
+        self.elasticity = Elasticity(
+            stiffness=read_only(self.condensed.stiffness),
+            trace=np.searchsorted(self.condensed.kept, dofs),
+            direction=direction,
+        )
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the operator takes, B."""
+        return self.condensed.nbytes
+
+
+def numbered(
+    traces: Mapping[Hashable, Trace], first: int
+) -> tuple[dict[Hashable, Indices], int]:
+    """Row numbers of each trace, (n_nodes, n_components), counted from `first`.
+
+    Beside them the number after the last.
+    """
+    rows = dict[Hashable, Indices]()
+    for name, trace in traces.items():
+        last = first + trace.dofs.size
+        rows[name] = np.arange(first, last).reshape(trace.dofs.shape)
+        first = last
+    return rows, first
+
+
+class PartMesh(Protocol):
+    """Mesh of a part, in axes of its own."""
+
+    @property
+    def n_axes(self) -> int:
+        """Number of degrees of freedom of a node: x, y, and the turn of beams."""
+
+    @property
+    def elements(self) -> Indices:
+        """Corners of every element among its own nodes, shape (n_elements, 4).
+
+        Triangles have their last corner twice, beams both ends twice.
+        """
+
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled.
+
+        `displacement` is that of all nodes, (n_nodes, 2), scaled.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class CondensedPart:
+    """A part of a body, whose inside is condensed.
+
+    Attributes
+    ----------
+    mesh, operator
+        Its mesh and operator, which equal parts share.
+    nodes
+        Numbers of its nodes among those of all bodies: of a rectangle shape (n_rows,
+        n_columns), of others (n_nodes,).
+    body
+        Number of its body.
+    rows
+        Boundary rows by what has them, shape (n_nodes, n_components) each.
+    force
+        Forces on its degrees of freedom, (n, n_instants), scaled, or None.
+    frames
+        Motion of the degrees of freedom of each node along x and y, and its turn,
+        (n_nodes, n_axes, 3); None where they are along x and y.
+    rotation
+        Matrix from the axes of the mesh to the global ones, (2, 2); None where they are
+        the same.
+    """
+
+    mesh: PartMesh
+    operator: Operator
+    nodes: Indices
+    body: int
+    rows: Mapping[Hashable, Indices]
+    force: Array | None
+    frames: Array | None = None
+    rotation: Array | None = None
+
+    @property
+    def condensed(self) -> SchurComplement:
+        """Stiffness condensed onto the degrees of freedom at its boundary rows."""
+        return self.operator.condensed
+
+    @property
+    def dofs(self) -> Indices:
+        """Numbers of its degrees of freedom among those of all nodes, shape (n,).
+
+        Each node has `N_AXES` of these numbers, whether it uses them or not.
+        """
+        axes = np.arange(self.mesh.n_axes)
+        return np.add.outer(N_AXES * self.nodes.ravel(), axes).ravel()
+
+    @property
+    def directions(self) -> Array:
+        """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
+        if self.frames is None:
+            return np.tile(np.eye(2, N_AXES), (self.nodes.size, 1))
+        return self.frames.reshape(-1, N_AXES)
+
+    def motion(self, moved: Array) -> Array:
+        """Displacement of its nodes, (n_nodes, 2, n_columns), from (n, n_columns)."""
+        if self.frames is None:
+            return moved.reshape(-1, 2, moved.shape[1])
+        own = moved.reshape(*self.frames.shape[:2], -1)
+        return np.asarray(self.frames[:, :, :2].swapaxes(1, 2) @ own)
+
+    def forces(self, nodal: Array) -> Array:
+        """Forces on its degrees of freedom, (n,), from those on nodes, (n_nodes, 2)."""
+        if self.frames is None:
+            return nodal.ravel()
+        return np.asarray((self.frames[:, :, :2] @ nodal[:, :, None]).ravel())
+
+    def stress(self, displacement: Array) -> Array:
+        """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), scaled.
+
+        `displacement` is that of its nodes, (n_nodes, 2), scaled.
+        """
+        if self.rotation is None:
+            return self.mesh.stress(displacement)
+        xx, yy, xy = self.mesh.stress(displacement @ self.rotation).T
+        tensors = np.moveaxis(np.array([[xx, xy], [xy, yy]]), -1, 0)
+        turned = self.rotation @ tensors @ self.rotation.T
+        return np.stack([turned[:, 0, 0], turned[:, 1, 1], turned[:, 0, 1]], axis=1)

@@ -1,0 +1,142 @@
+"""Joints of bodies of any shape: their pairs, stiffness beside them, macro bases."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+
+import numpy as np
+
+from solver.arrays import Array, Flags
+from solver.discrete.elements import legendre_basis
+from solver.discrete.plane.cut_bodies import CutBodies
+from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
+from solver.laws import Contact, NodalStiffness
+from solver.laws.stiffness import of_whole_mesh
+
+
+def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
+    """Law of joints by number: all on a support, or all between bodies."""
+    joints = [cut.structure.joints[number] for number in numbers]
+    pairs = JointPairs.of(cut, numbers)
+    sizes = [len(joint.nodes) for joint in joints]
+    # Numbers among the nodes of all these joints.
+    nodes = (np.cumsum(sizes) - sizes)[pairs.joints] + pairs.places
+    gap = _along_joints([joint.gap for joint in joints], sizes)
+    mu = _along_joints([joint.friction for joint in joints], sizes)
+    surface = Surface(
+        positions=_positions(cut, numbers)[nodes],
+        law=cut.structure.friction_law,
+        gap=gap[nodes],
+        friction=mu[nodes],
+    )
+    beside = _stiffness_beside(cut, numbers, pairs)
+    return contact_of(pairs, surface, cut.scales, beside, _macro_bases(cut, pairs))
+
+
+def _along_joints(values: Sequence[Array | float], sizes: Sequence[int]) -> Array:
+    """Values of joints of these sizes, node by node: (n_nodes,)."""
+    constants = [value for value in values if isinstance(value, float)]
+    if len(constants) == len(values):
+        return np.repeat(constants, sizes)
+    along = zip(values, sizes, strict=True)
+    return np.concatenate([np.broadcast_to(value, size) for value, size in along])
+
+
+def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
+    """Distance of the nodes of joints from the first of each, (n_nodes,), m."""
+    known = dict[Hashable, Array]()
+    found = []
+    for number in numbers:
+        joint = cut.structure.joints[number]
+        shape = cut.structure.bodies[joint.above].shape
+        key = id(shape), joint.nodes.tobytes()
+        if key not in known:
+            known[key] = _distances(shape.nodes[joint.nodes])
+        found.append(known[key])
+    return np.concatenate(found)
+
+
+def _distances(nodes: Array) -> Array:
+    """Distance of nodes, (n, 2), from the first along the line of them, (n,)."""
+    steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
+    return np.cumsum(np.append(0.0, steps))
+
+
+def _stiffness_beside(
+    cut: CutBodies, numbers: Sequence[int], pairs: JointPairs
+) -> NodalStiffness:
+    """Stiffness of the bodies at joints, for their search direction.
+
+    A mesh resists with about E as a whole (`of_whole_mesh`). Beams resist with E A / l
+    along a joint of length l; across it they stay where they are pressed.
+    """
+    assert pairs.normal is not None
+    of_joint = pairs.joints
+    lengths: Array = np.bincount(of_joint, weights=pairs.weights).astype(float)
+    share = pairs.weights / lengths[of_joint]
+    components = pairs.tangent, pairs.normal
+    rows = np.stack([np.stack(each.sides, axis=1) for each in components], axis=1)
+    local = cut.local_stiffness[rows]
+    whole = np.empty_like(local)
+    squeezed = np.full(len(share), np.inf)
+    for side in range(rows.shape[2]):
+        bodies = [cut.structure.joints[number].sides[side][0] for number in numbers]
+        on_support = rows.shape[2] == 1
+        of_joints, across = _whole_joints(cut, bodies, lengths, on_support)
+        along = of_joints[of_joint] * share
+        # Across beams k is at least that along them, as their tension presses them.
+        tension = np.maximum(local[:, 1, side], np.sqrt(along * local[:, 0, side]))
+        is_beam = ~_is_mesh(cut, bodies)[of_joint]
+        local[is_beam, 1, side] = tension[is_beam]
+        whole[:, 0, side] = along
+        whole[:, 1, side] = np.where(is_beam, tension, along)
+        squeezed = np.minimum(squeezed, across[of_joint] * share)
+    return NodalStiffness(whole, local, squeezed)
+
+
+def _is_mesh(cut: CutBodies, bodies: Sequence[int]) -> Flags:
+    """Check which bodies, by number, are meshes, (n,)."""
+    return np.array([cut.is_mesh(number) for number in bodies])
+
+
+def _whole_joints(
+    cut: CutBodies, bodies: Sequence[int], lengths: Array, on_support: bool
+) -> tuple[Array, Array]:
+    """Stiffness of bodies on a side of whole joints: as a whole, and squeezed.
+
+    `bodies` are their numbers, joint by joint, `lengths` those of the joints, m; shape
+    (n_joints,) all, the stiffnesses scaled.
+    """
+    is_mesh = _is_mesh(cut, bodies)
+    modulus = cut.moduli[bodies] / np.where(is_mesh, 1.0, lengths)
+    depth = np.where(is_mesh, cut.volumes[bodies] / lengths, lengths)
+    of_mesh = of_whole_mesh(depth, lengths, on_support=on_support)
+    return modulus * np.where(is_mesh, of_mesh, 1.0), modulus * lengths / depth
+
+
+def _macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
+    """Macro bases of pieces in one component, (n_pairs, n_macro) each.
+
+    Without columns on a support.
+    """
+    joints = cut.structure.joints
+    pieces = [cut.pieces[number] for number in pairs.pieces]
+    if pairs.tangent.below is None:
+        return [np.zeros((len(piece.places), 0)) for piece in pieces]
+    known = dict[Hashable, Array]()
+    bases = []
+    for piece in pieces:
+        joint = joints[piece.joint]
+        part = cut.shape_parts[piece.parts[0]]
+        # Pieces of joints that are alike share their arrays.
+        key = id(part), joint.nodes.tobytes(), id(piece.weights)
+        if key not in known:
+            nodes = cut.structure.bodies[joint.above].shape.nodes
+            along = _distances(nodes[joint.nodes[piece.places]])
+            reach = along[-1] or 1.0
+            slenderness = (piece.weights.sum() / part.size) ** 2
+            known[key] = legendre_basis(
+                2.0 * along / reach - 1.0, slenderness, cut.structure.macro_degree
+            )
+        bases.append(known[key])
+    return bases
