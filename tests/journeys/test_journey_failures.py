@@ -146,7 +146,9 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
 
 
 @pytest.mark.parametrize("query", FOOLISH, ids=range(len(FOOLISH)))
-def test_a_foolish_address_is_answered_by_a_page_that_says_that_it_loads(server: Server, query: str) -> None:
+def test_a_foolish_address_is_answered_by_a_page_that_says_that_it_loads(
+    server: Server, query: str
+) -> None:
     before = len(server.log)
     with urllib.request.urlopen(server.address + query) as answer:
         text = answer.read().decode()
