@@ -35,8 +35,6 @@ MEASURED = """() => {
   return points?.data.x.length
 }"""
 """Script that counts the measured points on the figure to draw on."""
-QUICK = f"{ANSWER}&pace=fastest"
-"""In an address: as few pictures as there can be, also of what a lesson runs."""
 QUESTION = "Is a small indicator a small error?"
 DRAWN = "Is there a best k?"
 """A lesson whose answer is drawn as a curve."""
@@ -85,7 +83,7 @@ def follow(visit: Visit, code: str) -> Page:
 def page(chrome: Chrome, server: Server) -> Iterator[Page]:
     """A page that takes a lesson, and later leads a class."""
     with visits(server, chrome) as visit:
-        yield visit(f"?{QUICK}")
+        yield visit(f"?{ANSWER}")
 
 
 def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
@@ -132,7 +130,7 @@ def school(page: Page, chrome: Chrome, server: Server) -> Iterator[School]:
     with visits(server, chrome) as visit:
         leader = page
         # Whoever took a lesson looks at another instant.
-        go(leader, f"?{QUICK}&instant=0.75")
+        go(leader, f"?{ANSWER}&instant=0.75")
         expect(status(leader)).to_contain_text("answer:")
         is_solved(leader)
         code = lead(leader)
