@@ -93,11 +93,11 @@ def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(
     scene: str,
 ) -> None:
     for name in new_names(scene):
+        state = of_scene(scene)
+        control = SettingControl(name, state)
+        if control.slider is None:
+            continue
         for end in ("start", "end"):
-            state = of_scene(scene)
-            control = SettingControl(name, state)
-            if control.slider is None:
-                break
             place = getattr(control.slider, end)
             control.slider.value = place
             with param.edit_constant(control.slider):

@@ -30,7 +30,7 @@ from solver.settings.scene import Settings
 SCENES = tuple(CATALOGUE)
 KINDS = tuple(chain.from_iterable(CARDS))
 NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
-SMALL = {"elements": 24, "instants": 21}
+SMALL = {"elements": 24, "instants": 21, "rings": 1}
 PHASES = np.linspace(0.0, 1.0, 7)
 
 

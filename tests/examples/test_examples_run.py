@@ -12,7 +12,6 @@ from contextlib import chdir, redirect_stdout
 from pathlib import Path
 
 import pytest
-from browser import Chrome, serving
 
 from solver.commands.cli import main
 
@@ -112,24 +111,6 @@ def test_a_fit_finds_the_friction_of_the_rig(tmp_path: Path) -> None:
 def test_a_page_comes_to_the_closed_form(tmp_path: Path) -> None:
     lines = printed_by_itself("page", tmp_path)
     assert float(lines["ratio to exact"]) == pytest.approx(1.0, abs=1e-3)
-
-
-TITLES = """[...(window.Bokeh?.documents[0]?._all_models.values() ?? [])]
-    .filter((model) => model.type === "Figure").map((model) => model.title.text)"""
-"""Titles of all figures of a page, in its browser."""
-
-
-def test_a_page_that_is_served_shows_one_iteration_after_the_other(
-    tmp_path: Path, chrome: Chrome
-) -> None:
-    panel = str(Path(sys.executable).with_name("panel"))
-    command = (panel, "serve", str(SCRIPTS / "page.py"))
-    page = chrome.new_page()
-    with serving(tmp_path / "log", serves=command, place=tmp_path) as server:
-        page.goto(f"{server.root}/page")
-        assert page.title() == "A bar is pulled"
-        page.wait_for_function(f"{TITLES}[0] === 'iteration 10'", polling=20)
-    chrome.leave(page)
 
 
 def test_every_script_has_a_test_here() -> None:

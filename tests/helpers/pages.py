@@ -14,8 +14,9 @@ ENDLESS = (
     "method=paper&max_iterations=100000&tolerance=1e-30&k_scale=0.1&pace=20 a second"
 )
 """In an address: a run that goes on."""
-ANSWER = "start=nested&finish=at-once"
-"""In an address: a run whose answer is there at once."""
+ANSWER = "start=nested&finish=at-once&pace=fastest"
+"""In an address: a run whose answer is there at once, and after it searches, as those
+of lessons and cases, with as few pictures as there can be."""
 IGNORED = re.compile(
     "GL Driver Message|Failed to repull session"
     "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not "
@@ -23,13 +24,15 @@ IGNORED = re.compile(
 )
 """In the console: a hint on speed, and what is said of a network that is cut, and
 was."""
-POLL_MS = 50.0
+POLL_MS = 100.0
+"""Time between two looks at a page, ms. By default Playwright looks with each frame
+that is painted, and what goes through all models then takes a core."""
 FAULT = re.compile(r"Traceback|ERROR|WARNING")
 """In the server's log."""
 CLOSED = re.compile(
-    r"[^\n]*(Failed sending message as connection was closed\n"
+    r"^[^\n]*(Failed sending message as connection was closed\n"
     r"|Task exception was never retrieved\n.*?WebSocketClosedError(?!\()[^\n]*\n)",
-    re.DOTALL,
+    re.DOTALL | re.MULTILINE,
 )
 """What is said of a message that was on its way to a page that closed, and of nothing
 else."""
@@ -124,11 +127,12 @@ def is_solved(page: Page) -> None:
 
 def holds(page: Page, expression: str, arg: Any = None) -> None:
     """Wait until an expression of `model`, which finds models by name, holds."""
-    page.wait_for_function(
-        f"(arg) => {{ const model = {MODEL}; return ({expression}) }}",
-        arg=arg,
-        polling=POLL_MS,
-    )
+    comes(page, f"(arg) => {{ const model = {MODEL}; return ({expression}) }}", arg)
+
+
+def comes(page: Page, script: str, arg: Any = None) -> None:
+    """Wait until a function in the browser returns what counts as true."""
+    page.wait_for_function(script, arg=arg, polling=POLL_MS)
 
 
 def painted(page: Page, more: int = 1) -> None:

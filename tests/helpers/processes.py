@@ -26,7 +26,8 @@ def wait_for(condition: Callable[[], object]) -> None:
     end = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < end
-        time.sleep(0.01)
+        # What is asked may be the whole table of processes, or a page
+        time.sleep(0.05)
 
 
 @contextmanager

@@ -51,6 +51,7 @@ class Visitor:
         self._label = f'"label":{json.dumps(label)}'
         self._pulse: str | None = None
         self._count = 0
+        self._whole = asyncio.Lock()
 
     async def open(self, address: str) -> None:
         """Open a page, and go on saying what is painted."""
@@ -132,8 +133,10 @@ class Visitor:
     async def _send(self, kind: str, content: dict[str, Any]) -> None:
         self._count += 1
         header = {"msgid": f"{id(self)}-{self._count}", "msgtype": kind}
-        for part in (header, {}, content):
-            await self._socket.write_message(json.dumps(part))
+        # What is pressed while a picture is answered would come between its parts
+        async with self._whole:
+            for part in (header, {}, content):
+                await self._socket.write_message(json.dumps(part))
 
 
 class Crowd:

@@ -95,14 +95,6 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
     is_solved(page)
 
 
-def test_while_a_slow_page_loads_a_word_says_so(server: Server) -> None:
-    with urllib.request.urlopen(server.address) as answer:
-        text = answer.read().decode()
-    # It is there before any script has come.
-    assert "Slipfront is loading" in text.partition("<body")[0]
-    assert 'id="loader"' in text
-
-
 def test_a_reload_keeps_the_settings_and_back_undoes_them(page: Page) -> None:
     go(page, f"?{ANSWER}")
     expect(field(page, "Peak load")).to_have_value("900")
@@ -130,8 +122,8 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
     def strike(visit: Visit, blow: signal.Signals) -> tuple[Page, int]:
         """A page, and its worker, which has taken a blow."""
         known = server.processes()
-        page = visit(f"?{ENDLESS}")
-        expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+        page = visit(f"?{ENDLESS}&pace=5 a second")
+        expect(status(page)).to_contain_text(re.compile(r"iteration \d"))
         worker = newest_worker(server, known)
         os.kill(worker, blow)
         return page, worker
@@ -154,10 +146,15 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
 
 
 @pytest.mark.parametrize("query", FOOLISH, ids=range(len(FOOLISH)))
-def test_a_foolish_address_is_answered_by_a_page(server: Server, query: str) -> None:
+def test_a_foolish_address_is_answered_by_a_page_that_says_that_it_loads(
+    server: Server, query: str
+) -> None:
     before = len(server.log)
     with urllib.request.urlopen(server.address + query) as answer:
-        assert "Slipfront" in answer.read().decode()
+        text = answer.read().decode()
+    # While a slow page loads a word says so, and is there before any script has come.
+    assert "Slipfront is loading" in text.partition("<body")[0]
+    assert 'id="loader"' in text
     assert "Traceback" not in server.log[before:]
 
 
