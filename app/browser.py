@@ -48,6 +48,13 @@ SPEAK = "document.getElementById('spoken').textContent = browser.spoken"
 text. A pane of Panel makes its content anew, which they may pass over."""
 GO = "if (browser.destination) { location.search = browser.destination }"
 """Script that opens the page of another address, also one that is there already."""
+FADE = """
+const style = document.documentElement.style
+style.setProperty("--seen", browser.is_stale ? 0.3 : 1)
+style.setProperty("--fading", browser.is_stale ? "0.1s 0.15s" : "0s")
+"""
+"""Script that fades what is of a run before the present one; a short wait is no change.
+A class of the page's columns would have Bokeh lay out all figures anew."""
 TELL = """
 // Once idle, React has shown all values, and sent back those that it sends back.
 const idle = window.requestIdleCallback ?? ((tell) => setTimeout(tell, 500))
@@ -210,8 +217,9 @@ class Browser(DataModel):
     `count` grows with every key. `search` is the address to which the browser went back
     or on, `copied` a link that it is to copy, `spoken` a text for screen readers,
     `destination` an address whose page it is to open. `given` is the number of values
-    that the page gave to widgets, `shown` of those that the browser has shown. A
-    browser is new until somebody has done something on a page.
+    that the page gave to widgets, `shown` of those that the browser has shown. What is
+    seen is stale while it is of a run before the present one. A browser is new until
+    somebody has done something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
@@ -225,6 +233,7 @@ class Browser(DataModel):
     destination: str = String(default="")  # type: ignore[assignment]
     given: int = Int(default=0)  # type: ignore[assignment]
     shown: int = Int(default=0)  # type: ignore[assignment]
+    is_stale: bool = Bool(default=False)  # type: ignore[assignment]
 
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
@@ -244,6 +253,7 @@ class Browser(DataModel):
         self.js_on_change("is_new", CustomJS(code=f"if (!cb_obj.is_new) {{ {MET} }}"))
         self.js_on_change("destination", CustomJS(args=args, code=GO))
         self.js_on_change("given", CustomJS(args=args, code=TELL))
+        self.js_on_change("is_stale", CustomJS(args=args, code=FADE))
         self.on_change(
             "shown",
             lambda name, old, new: document.add_timeout_callback(
@@ -251,7 +261,10 @@ class Browser(DataModel):
             ),
         )
         self.given = state.given
-        state.param.watch(lambda event: self.update(given=event.new), "given")
+        state.param.watch(
+            lambda *events: self.update(**{event.name: event.new for event in events}),
+            ["given", "is_stale"],
+        )
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
         document.js_on_event(DocumentReady, CustomJS(args=args, code=TELL))

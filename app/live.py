@@ -80,9 +80,9 @@ class Live:
         below = wrapped(self._sentence, self._figures, styles=styles, **look)
         self.view = column("live", self._above, below)
         state.param.watch(
-            lambda *events: self._write(), ["running", "message", "refusal"]
+            lambda *events: self._write(),
+            ["running", "message", "refusal", "is_stale"],
         )
-        state.param.watch(lambda event: self._fade(), "is_stale")
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
@@ -178,17 +178,10 @@ class Live:
             if case.surroundings.is_upright:
                 shape = ["high", "upright"]
         classes += shape
-        if state.is_stale:
-            classes.append("stale")
         return classes
 
     def _reshape(self) -> None:
         self.view.css_classes = self._shape
-
-    def _fade(self) -> None:
-        """Fade what is of a run before the present one."""
-        self._reshape()
-        self._write()
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
