@@ -198,10 +198,11 @@ class Transport:
         else:
             self._state.go_on()
 
-    def play(self, until: float = 1.0) -> None:
+    def play(self, until: float = 1.0, *, by_itself: bool = False) -> None:
         """Play from the selected instant to a share of the interval and again, or stop.
 
-        Playing ends, too, once another instant is selected.
+        Playing ends, too, once another instant is selected. What plays by itself, as no
+        person has asked for it, ends after a while where it began.
         """
         if self._playing is not None:
             self.stop()
@@ -215,10 +216,9 @@ class Transport:
             passed = time.monotonic() - began
             if self._state.selection.phase != shown:
                 self.stop()
-            elif self._is_lively and passed > LIVELY / max(PAGES.count, 1):
+            elif by_itself and passed > LIVELY / max(PAGES.count, 1):
                 self.stop()
-                # As the page began.
-                self._state.select(phase=Selection.phase)
+                self._state.select(phase=first)
             else:
                 shown = (first + passed / PLAYED_IN) % until
                 self._state.select(phase=shown)
@@ -248,7 +248,7 @@ class Transport:
         frame = self._state.frame
         self._is_touched = True
         if self._state.settings.finish == SEARCH["finish"] and not frame.run.is_idle:
-            self.play()
+            self.play(by_itself=True)
             self._is_lively = True
 
     def _touch(self, *events: Any) -> None:

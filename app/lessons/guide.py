@@ -193,7 +193,7 @@ class Guide:
             if lesson.until == 1.0:
                 start = Selection.phase
             state.select(phase=start)
-            self._transport.play(lesson.until)
+            self._transport.play(lesson.until, by_itself=True)
 
     def _parts(self, lesson: Lesson) -> list[Any]:
         """The question, and after the choice the answer with its explanation."""

@@ -40,7 +40,7 @@ class Player:
 
     until = 0.0
 
-    def play(self, until: float = 1.0) -> None:
+    def play(self, until: float = 1.0, *, by_itself: bool = False) -> None:
         self.until = until
 
     def stop(self) -> None:
