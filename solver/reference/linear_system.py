@@ -14,18 +14,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lapack
 
 from solver.arrays import ROUNDING, Array, Indices, as_slice, largest_size
 from solver.reference.assembly import Interrupted
 from solver.reference.condensation import Condensation
+from solver.reference.factors import Factors, UpdatedFactors
 from solver.reference.rules import HELD, Increment, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is
 free."""
-SINGULAR = 1e-12
-"""Pivot, as a share of the largest, below which a system is singular."""
+MANY = 200
+"""Unknowns from which on factors are updated: those of fewer are made anew as soon."""
+CHANGED = 6
+"""Factors are updated where at most one unknown in this number comes or goes: from step
+to step it is one in a hundred."""
 FAR = 100.0
 """Rigid motion over deformation, the largest of both, from which on the digits of the
 deformation count by themselves."""
@@ -110,7 +113,9 @@ class LinearSystem:
         self.unit: Array = alone / (1.0 + alone * rules.compliance)
         self._is_plain = not self._compliance.any() and not self._gauge.size
         self._states: States | None = None
-        self._factors: Factors
+        self._factors: Factors | UpdatedFactors
+        # The last factors of a whole matrix, with its states and rows.
+        self._whole: tuple[States, Indices, Factors] | None = None
         self.solutions = 0
         self.unbalanced = 0.0
         self.has_negative_determinant = False
@@ -137,6 +142,7 @@ class LinearSystem:
         self.friction = friction
         self._growth = growth
         self._states = None
+        self._whole = None
 
     def __call__(self, states: States, sides: Sides) -> Increment:
         """Solve for the step from the instant before, with states of shape (n,)."""
@@ -298,11 +304,49 @@ class LinearSystem:
         """Factor the system of states, (n,)."""
         self._states = states.copy()
         self._choose_rows(states)
+        self._factors = self._updated(states) or self._factored(states)
+        self.has_negative_determinant = self._factors.has_negative_determinant
+
+    def _factored(self, states: States) -> Factors:
+        """Factors of the whole matrix of states, (n,)."""
         matrix = self._with_friction()
         if len(self._sprung):
             matrix[self._sprung] = self._rows_of_sprung(matrix[self._sprung])
-        self._factors = Factors(matrix, LOOSE * float(self.unit.max(initial=0.0)))
-        self.has_negative_determinant = self._factors.has_negative_determinant
+        factors = Factors(matrix, LOOSE * float(self.unit.max(initial=0.0)))
+        self._whole = None
+        if len(self._rows) >= MANY and not factors.singular:
+            self._whole = states.copy(), self._rows, factors
+        return factors
+
+    def _updated(self, states: States) -> UpdatedFactors | None:
+        """Update the last factors to the states, (n,); None where that does not pay.
+
+        What comes and goes are jumps that are free or held now, and those that slip the
+        other way. Where something is in series, equations change in other ways, too.
+        """
+        if self._whole is None or self._grows or self._compliance.any():
+            return None
+        before, rows, factors = self._whole
+        is_new = states != before
+        removed = np.flatnonzero(is_new[rows])
+        added = np.flatnonzero(is_new[self._rows])
+        if (len(removed) + len(added)) * CHANGED > len(rows):
+            return None
+        # Equations that stay are the same under both states, and others are dropped.
+        direction = np.where(np.abs(states[rows]) == 1, states[rows], 0)
+        drag = direction * self.friction[rows]
+        new = self._rows[added]
+        updated = UpdatedFactors(
+            factors,
+            removed,
+            added,
+            columns=self._less_friction(rows, drag, new),
+            rows=self._less_friction(new, self._drag[added], rows),
+            corner=self._less_friction(new, self._drag[added], new),
+        )
+        if updated.is_doubtful:
+            return None
+        return updated
 
     def _choose_rows(self, states: States) -> None:
         """Choose unknowns and rows of the system by states (n,), and their friction."""
@@ -332,20 +376,29 @@ class LinearSystem:
 
     def _with_friction(self) -> Array:
         """Force of each row less its friction by all unknowns, (n_rows, n_rows)."""
-        unknowns = self._unknowns
-        # Each row is f + s mu f_n = -s r: the force of a jump less its friction.
-        matrix = self._of_unknowns[np.ix_(self._rows, unknowns)]
-        if self._grows:
-            matrix *= self._lengthening[:, None]
-        # Few rows drag, and each reads a further row of S.
-        tied = np.flatnonzero(self._drag)
-        if len(tied):
-            normal = self._of_unknowns[np.ix_(self._carriers[tied], unknowns)]
-            matrix[tied] += self._drag[tied, None] * normal
+        matrix = self._less_friction(self._rows, self._drag, self._unknowns)
         if self._grows:
             self._jumps_of_rows = self._jumps_of(self._rows)
             slips = self._jumps_of_rows[:, self._free]
             matrix[:, : len(self._free)] += self._growth_of_rows[:, None] * slips
+        return matrix
+
+    def _less_friction(self, rows: Indices, drag: Array, unknowns: Indices) -> Array:
+        """Forces of rows less what their normal forces carry, by some unknowns.
+
+        Shape (n_rows, n_unknowns); `drag` is mu with the direction of friction,
+        (n_rows,). Where friction grows with slip, the rows are all of the system.
+        """
+        # Each row is f + s mu f_n = -s r: the force of a jump less its friction.
+        matrix = self._of_unknowns[np.ix_(rows, unknowns)]
+        if self._grows:
+            matrix *= self._lengthening[:, None]
+        # Few rows drag, and each reads a further row of S.
+        tied = np.flatnonzero(drag)
+        if len(tied):
+            carriers = self._partner[rows[tied]]
+            normal = self._of_unknowns[np.ix_(carriers, unknowns)]
+            matrix[tied] += drag[tied, None] * normal
         return np.asarray(matrix)
 
     def _rows_of_sprung(self, forces: Array) -> Array:
@@ -378,42 +431,3 @@ class LinearSystem:
         jumps = np.zeros((len(numbers), len(self._base)))
         jumps[np.arange(len(numbers)), numbers] = 1.0
         return jumps
-
-
-class Factors:
-    """A square matrix, factored.
-
-    Attributes
-    ----------
-    has_negative_determinant
-        Sign of the determinant.
-    singular
-        A pivot is too small, or not above the `smallest` one.
-    """
-
-    def __init__(self, matrix: Array, smallest: float) -> None:
-        self._matrix = matrix
-        self._factors = matrix
-        self._pivots = np.zeros(0, dtype=np.intp)
-        if len(matrix):
-            self._factors, self._pivots, _ = lapack.dgetrf(matrix)
-        diagonal = np.diagonal(self._factors)
-        # Every exchange of rows changes the sign of the determinant.
-        swaps = np.count_nonzero(self._pivots != np.arange(len(matrix)))
-        changes_of_sign = np.count_nonzero(diagonal < 0.0) + swaps
-        self.has_negative_determinant = bool(changes_of_sign % 2)
-        sizes = np.abs(diagonal)
-        smallest = max(SINGULAR * float(sizes.max(initial=0.0)), smallest)
-        self.singular = bool(sizes.min(initial=np.inf) <= smallest)
-
-    def solve(self, right: Array) -> Array:
-        """Solve A x = b with b and x of shape (n,).
-
-        Where A is singular, x is the smallest of those that fit best.
-        """
-        if not len(right):
-            return right
-        if self.singular:
-            return np.asarray(np.linalg.lstsq(self._matrix, right, rcond=SINGULAR)[0])
-        solved, _ = lapack.dgetrs(self._factors, self._pivots, right)
-        return np.asarray(solved).reshape(right.shape)
