@@ -145,7 +145,7 @@ class Pairs(Interface):
         if values.size == len(values):
             size = len(self.positions)
             sums = np.bincount(self.points, values.ravel(), minlength=size)
-            return sums.reshape(size, *values.shape[1:])
+            return np.asarray(sums.reshape(size, *values.shape[1:]), dtype=float)
         return np.asarray(self._pairs_of_points @ values)
 
     @cached_property

@@ -254,7 +254,7 @@ class MethodSettings(param.Parameterized):
         return clean
 
     @classmethod
-    def _of(cls, values: Mapping[str, Any]) -> Self:
+    def _of(cls, values: dict[str, Any]) -> Self:
         """Settings of plain values that are checked each by itself."""
         definitions = cls.definitions()
         method = values.get("method", definitions["method"].default)
