@@ -27,7 +27,6 @@ class Factors:
     """
 
     def __init__(self, matrix: Array, smallest: float = 0.0) -> None:
-        self._matrix = matrix
         self._factors = matrix
         self._pivots = np.zeros(0, dtype=np.intp)
         if len(matrix):
@@ -41,6 +40,10 @@ class Factors:
         largest = float(sizes.max(initial=0.0))
         smallest = max(SINGULAR * largest, smallest)
         self.singular = bool(sizes.min(initial=np.inf) <= smallest)
+        # Solutions of a singular matrix are found by itself.
+        self._matrix = np.zeros((0, 0))
+        if self.singular:
+            self._matrix = matrix
         self.evenness = 1.0
         if largest > 0.0:
             self.evenness = float(sizes.min()) / largest
