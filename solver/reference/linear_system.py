@@ -168,10 +168,11 @@ class LinearSystem:
 
     def _apart(self, solved: Solved, sides: Sides) -> Solved:
         """Set rigid motions apart, and refine the solution where that is needed."""
-        jump = solved.unknown[: len(self._base)]
-        motion = self._gauge.T @ jump
+        if not self._gauge.size:
+            return self._refined(solved, sides)
+        motion = self._gauge.T @ solved.strained
         moved = self._gauge @ motion
-        strained = jump - moved
+        strained = solved.strained - moved
         apart = Solved(solved.unknown, strained, motion, solved.force)
         if largest_size(moved) > FAR * largest_size(strained) or len(self._sprung):
             return self._refined(apart, sides)
@@ -183,23 +184,30 @@ class LinearSystem:
         Beside a motion that is far larger than the deformation, the solution has lost
         digits of the forces: those by the deformation alone have them.
         """
-        n_base = len(self._base)
-        # Once more, as rounding of a large motion is a deformation, too.
-        motion = self._gauge.T @ solved.strained
-        strained = solved.strained - self._gauge @ motion
-        motion = solved.motion + motion
-        unknown = solved.unknown.copy()
-        unknown[:n_base] = strained
-        force = self._of_unknowns @ unknown
-        force[self._base_rows] -= sides.load
+        unknown = solved.unknown
+        strained = solved.strained
+        motion = solved.motion
+        force = solved.force
+        if len(motion):
+            # Once more, as rounding of a large motion is a deformation, too.
+            further = self._gauge.T @ strained
+            strained = strained - self._gauge @ further
+            motion = motion + further
+            deformed = unknown.copy()
+            deformed[: len(strained)] = strained
+            force = self._of_unknowns @ deformed
+            force[self._base_rows] -= sides.load
         change = np.zeros_like(unknown)
         if not self.is_singular:
-            missing = self._missing(solved.unknown, force, sides)
+            missing = self._missing(unknown, force, sides)
             change[self._unknowns] = self._factors.solve(missing)
-            force += self._forces(change, self._unknowns, self._stiffness_rows)
-        further = self._gauge.T @ change[:n_base]
-        strained += change[:n_base] - self._gauge @ further
-        return Solved(solved.unknown + change, strained, motion + further, force)
+            force = force + self._forces(change, self._unknowns, self._stiffness_rows)
+        changed = change[: len(strained)]
+        if len(motion):
+            further = self._gauge.T @ changed
+            changed = changed - self._gauge @ further
+            motion = motion + further
+        return Solved(unknown + change, strained + changed, motion, force)
 
     def _missing(self, unknown: Array, force: Array, sides: Sides) -> Array:
         """Differences from the equations, (n_rows,), with some unknowns, (n,).
