@@ -142,6 +142,10 @@ class Pairs(Interface):
 
     def by_point(self, values: Array) -> Array:
         """Sum over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
+        if values.size == len(values):
+            size = len(self.positions)
+            sums = np.bincount(self.points, values.ravel(), minlength=size)
+            return np.asarray(sums.reshape(size, *values.shape[1:]), dtype=float)
         return np.asarray(self._pairs_of_points @ values)
 
     @cached_property

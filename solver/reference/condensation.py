@@ -11,8 +11,7 @@ Three parts are kept apart, as they may differ by any number of digits:
 - The rigid motions a of bodies that contact alone holds: jump = y + Q a, with Q the
   jumps that they make, orthonormal. They cost no force, S Q = 0, so forces follow from
   the deformation y alone. The deformation is chosen with Q' y = 0, which says that the
-  forces are in equilibrium with the load, as Q' q is known exactly. With that S may be
-  replaced by S + s Q Q', which is definite.
+  forces are in equilibrium with the load, as Q' q is known exactly.
 - A compliance in series with a jump, like a spring: it is no part of S.
 - Jumps that depend on each other. If they have a compliance in series they follow from
   a `base` of the others; where contacts close a rigid ring, S takes them for
@@ -101,8 +100,6 @@ class GluedStructure:
         Jumps of the base that prescribed displacements make, (n_base, n_instants).
     given_force
         S times these jumps, same shape, scaled.
-    pulls_of_gauge
-        As of `Condensation`.
     """
 
     def __init__(
@@ -143,13 +140,12 @@ class GluedStructure:
         if self.gauge.size:
             self._set_motions_apart()
         read_only(self.stiffness)
-        self.pulls_of_gauge = read_only(self.stiffness @ self.gauge)
 
     @property
     def nbytes(self) -> int:
         """Memory that the structure takes, B, without what is sparse and small."""
         dense = [self.stiffness, self.motions, self.gauge, self.stresses]
-        dense += [self.given, self.given_force, self.pulls_of_gauge]
+        dense += [self.given, self.given_force]
         entries: int = self._factor.nnz + self.pulled.nnz
         return sum(field.nbytes for field in dense) + OF_ENTRY * entries
 
@@ -189,15 +185,14 @@ class GluedStructure:
         stiffness[np.ix_(rings, rings)] += self.tie * stresses @ stresses.T
 
     def _set_motions_apart(self) -> None:
-        """Remove the rounding of rigid motions from S, and add s Q Q' to it."""
+        """Remove what rounding makes rigid motions cost in S, in place."""
         gauge = self.gauge
         stiffness = self.stiffness
         costs = stiffness @ gauge
         # Half of Q Q' S Q Q' each time, as rows and columns both subtract it.
         costs -= 0.5 * gauge @ (gauge.T @ costs)
-        size = float(np.diagonal(stiffness).mean())
         for rows in _blocks(len(stiffness)):
-            excess = costs[rows] @ gauge.T + gauge[rows] @ (costs - size * gauge).T
+            excess = costs[rows] @ gauge.T + gauge[rows] @ costs.T
             stiffness[rows] -= excess
 
 
@@ -214,7 +209,7 @@ class Condensation:
         Places among these of the jumps from which all follow, shape (n_base,); and the
         matrix by which they follow, shape (n_moving, n_base).
     stiffness
-        S + s Q Q' between the base, shape (n_base, n_base), symmetric, scaled.
+        S between the base, shape (n_base, n_base), symmetric, scaled.
     load
         q of the base, shape (n_base, n_instants), scaled.
     springs
@@ -222,8 +217,6 @@ class Condensation:
     motions, gauge
         Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q
         of the base that they make, shape (n_base, n_motions).
-    pulls_of_gauge
-        (S + s Q Q') Q, shape (n_base, n_motions), scaled.
     stresses, tie
         Forces that move nothing, where jumps of the base depend on each other, shape
         (n_base, n_stresses); and the stiffness in S that keeps the jumps from coming
@@ -264,7 +257,6 @@ class Condensation:
         self.springs = self._glued.springs
         self.motions = self._glued.motions
         self.gauge = self._glued.gauge
-        self.pulls_of_gauge = self._glued.pulls_of_gauge
         self.stresses = self._glued.stresses
         self.tie = self._glued.tie
         self._condense_load()
@@ -301,17 +293,6 @@ class Condensation:
             # The resultant of the loads is known exactly, without condensation.
             resultant = self.motions.T @ self._force
             self.load += self.gauge @ (resultant - self.gauge.T @ self.load)
-
-    @cached_property
-    def elastic(self) -> Array:
-        """S alone, in which rigid motions cost nothing, (n_base, n_base), scaled."""
-        stiffness = self.stiffness
-        gauge = self.gauge
-        if not gauge.size:
-            return stiffness
-        # Each of these motions is held by a stiffness of its own.
-        held = gauge * (gauge * (stiffness @ gauge)).sum(axis=0)
-        return np.asarray(stiffness - held @ gauge.T)
 
     @cached_property
     def shift(self) -> Array:

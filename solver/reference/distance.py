@@ -26,6 +26,9 @@ HIDDEN = 100.0
 """Largest size of forces, over the forces that act, where displacements alone have to
 prove an answer: a body that nothing holds may be far away, and leaves rounding that
 would hide all that acts."""
+SURE = 1e-9
+"""Square of the smallest singular value over that of the largest, above which columns
+are independent for sure."""
 NOTHING = 1e-12
 """Share of the forces inside elements up to which contact forces and reactions are
 rounding."""
@@ -177,19 +180,25 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
     bound = rules.bounds(force, np.zeros_like(force))
     holds = np.where(rules.normal[:, None], force, bound) > 0.0
     moved = jumps(problem) @ problem.motions
+    acts = holds.any(axis=0)
+    at_rest = ~np.logical_or.accumulate(acts)
+    # Mostly the contacts that hold whenever any do hold the bodies already.
+    always = holds[:, acts].all(axis=1)
+    if _are_independent(moved[always]):
+        return np.asarray(acts | at_rest)
     # Few patterns of contact occur, each at many instants: one rank for each pattern.
     patterns, kind = np.unique(holds, axis=1, return_inverse=True)
-    kind = kind.ravel()
-    at_rest = ~np.logical_or.accumulate(holds.any(axis=0))
-    # Mostly the contacts that hold in all patterns but none hold the bodies already.
-    acts = np.asarray(patterns.any(axis=0))
-    always = patterns[:, acts].all(axis=1)
-    if np.linalg.matrix_rank(moved[always]) == moved.shape[1]:
-        return np.asarray(acts[kind] | at_rest)
-    sure = []
-    for pattern in patterns.T:
-        sure.append(np.linalg.matrix_rank(moved[pattern]) == moved.shape[1])
-    return np.asarray(np.asarray(sure)[kind] | at_rest)
+    sure = [_are_independent(moved[pattern]) for pattern in patterns.T]
+    return np.asarray(np.asarray(sure)[kind.ravel()] | at_rest)
+
+
+def _are_independent(columns: Array) -> bool:
+    """Check that columns of a matrix, (n, m), are independent."""
+    squares = np.linalg.eigvalsh(columns.T @ columns)
+    # Singular values are dearer, and tell columns apart that are nearly dependent.
+    if squares[0] > SURE * squares[-1]:
+        return True
+    return bool(np.linalg.matrix_rank(columns) == columns.shape[1])
 
 
 def determinate_forces(problem: Problem) -> Flags:

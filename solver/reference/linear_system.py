@@ -1,31 +1,61 @@
 """Frictional contact at an instant with known states: a linear system.
 
-With S y = f + q and jumps y + Q a (`solver.reference.condensation`), the unknowns are y
-where a jump is not held or where something is in series, the forces of jumps that
-follow from others, and the rigid motions a. The equations are the friction law of free
-jumps, the given increments of held ones, and Q' y = 0.
+With S w = f + q (`solver.reference.condensation`), the unknowns are the jumps w where
+they are not held or where something is in series, and the forces of jumps that follow
+from others. The equations are the friction law of free jumps, and the given increments
+of held ones. Rigid motions a = Q' w cost no force, so they are set apart from the
+deformation y = w - Q a afterwards. Where they are far larger, the forces are those of
+the deformation, and the solution is refined by these.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lapack
 
-from solver.arrays import ROUNDING, Array, Indices, as_slice
+from solver.arrays import ROUNDING, Array, Indices, as_slice, largest_size
 from solver.reference.assembly import Interrupted
 from solver.reference.condensation import Condensation
+from solver.reference.factors import Factors, UpdatedFactors
 from solver.reference.rules import HELD, Increment, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is
 free."""
-SINGULAR = 1e-12
-"""Pivot, as a share of the largest, below which a system is singular."""
+MANY = 200
+"""Unknowns from which on factors are updated: those of fewer are made anew as soon."""
+CHANGED = 6
+"""Factors are updated where at most one unknown in this number comes or goes: from step
+to step it is one in a hundred."""
+FAR = 100.0
+"""Rigid motion over deformation, the largest of both, from which on the digits of the
+deformation count by themselves."""
 FEW = 4
 """Rows of S are gathered where they are at most one in this number; else all of S is
 read."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Solution of a linear system, scaled.
+
+    Attributes
+    ----------
+    unknown
+        Jumps of the base, then forces of the jumps beyond it, shape (n,).
+    strained, motion
+        The same jumps apart: y of the base, shape (n_base,), and the rigid motions,
+        shape (n_motions,).
+    force
+        Forces of all jumps, shape (n,).
+    """
+
+    unknown: Array
+    strained: Array
+    motion: Array
+    force: Array
 
 
 class LinearSystem:
@@ -33,7 +63,8 @@ class LinearSystem:
 
     The stiffness and gauge are those of the condensed structure, or others where
     springs hold it. Rows of the system are the jumps of the base that are free or have
-    something in series, and the jumps that follow from the base.
+    something in series, and the jumps that follow from the base: on a wall a fifth of
+    the jumps, fewer than its rigid motions.
 
     Attributes
     ----------
@@ -80,17 +111,17 @@ class LinearSystem:
         self._alone = np.diagonal(self._stiffness)
         alone = abs(condensed.ties) @ self._alone
         self.unit: Array = alone / (1.0 + alone * rules.compliance)
-        self._pulls_of_gauge = self._forces_of_motions(condensed)
-        self._gauge_square = self._gauge.T @ self._gauge
         self._is_plain = not self._compliance.any() and not self._gauge.size
         self._states: States | None = None
-        self._factors: Factors
+        self._factors: Factors | UpdatedFactors
+        # The last factors of a whole matrix, with its states and rows.
+        self._whole: tuple[States, Indices, Factors] | None = None
         self.solutions = 0
         self.unbalanced = 0.0
         self.has_negative_determinant = False
 
     def _forces_of_unknowns(self) -> Array:
-        """Forces of all jumps by y and by forces of jumps beyond the base, (n, n)."""
+        """Forces of all jumps by those of the base and by forces beyond it, (n, n)."""
         if self._ties is None:
             return self._stiffness
         n_base = len(self._base)
@@ -100,12 +131,6 @@ class LinearSystem:
         forces[self._base, n_base:] = -self._ties[self._others].T
         forces[self._others, np.arange(n_base, size)] = 1.0
         return forces
-
-    def _forces_of_motions(self, condensed: Condensation) -> Array:
-        """Forces of all jumps by y as of each motion, (n, n_motions)."""
-        if self._ties is None and self._gauge is condensed.gauge:
-            return condensed.pulls_of_gauge
-        return np.asarray(self._of_unknowns[:, : len(self._base)] @ self._gauge)
 
     @property
     def is_singular(self) -> bool:
@@ -117,6 +142,7 @@ class LinearSystem:
         self.friction = friction
         self._growth = growth
         self._states = None
+        self._whole = None
 
     def __call__(self, states: States, sides: Sides) -> Increment:
         """Solve for the step from the instant before, with states of shape (n,)."""
@@ -125,67 +151,94 @@ class LinearSystem:
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)
         self.solutions += 1
-        kept = self._kept
-        n_base = len(self._base)
-        n_free = len(self._free)
-        n_rows = len(self._rows)
+        # Jumps of the base, then forces of the jumps beyond it.
         unknown = np.zeros(len(self._of_unknowns))
-        unknown[kept] = sides.held[self._base[kept]]
-        force = self._force_of_kept(unknown, sides)
-        solution = self._factors.solve(self._right(unknown, force, sides))
-        motion = solution[n_rows:]
-        unknown[self._free] = solution[:n_free]
-        unknown[n_base:] = solution[n_free:n_rows]
-        if len(motion):
-            # Held jumps are given with the rigid motion: y is what remains of them.
-            unknown[kept] -= self._gauge_kept @ motion
-            force = self._force_of_kept(unknown, sides)
-        force = force + self._forces(unknown, self._unknowns, self._stiffness_rows)
-        strained = unknown[:n_base]
-        self._set_carried(force, strained, motion, sides)
-        end = self._ends(strained, motion, force, sides.held)
-        return Increment(end, force, strained, motion)
-
-    def _force_of_kept(self, unknown: Array, sides: Sides) -> Array:
-        """Forces of all jumps by y of held jumps and by the load, (n,)."""
+        unknown[self._kept] = sides.held[self._base[self._kept]]
         force = self._forces(unknown, self._kept)
         force[self._base_rows] -= sides.load
-        return force
+        missing = self._missing(unknown, force, sides)
+        unknown[self._unknowns] = self._factors.solve(missing)
+        force += self._forces(unknown, self._unknowns, self._stiffness_rows)
+        solved = Solved(unknown, unknown[: len(self._base)], unknown[:0], force)
+        if not self._is_plain:
+            solved = self._apart(solved, sides)
+        self._set_carried(solved, sides)
+        end = self._ends(solved, sides.held)
+        return Increment(end, solved.force, solved.strained, solved.motion)
 
-    def _right(self, unknown: Array, force: Array, sides: Sides) -> Array:
-        """Right side of the system, by y of held jumps and the force of these, (n,)."""
+    def _apart(self, solved: Solved, sides: Sides) -> Solved:
+        """Set rigid motions apart, and refine the solution where that is needed."""
+        if not self._gauge.size:
+            return self._refined(solved, sides)
+        motion = self._gauge.T @ solved.strained
+        moved = self._gauge @ motion
+        strained = solved.strained - moved
+        apart = Solved(solved.unknown, strained, motion, solved.force)
+        if largest_size(moved) > FAR * largest_size(strained) or len(self._sprung):
+            return self._refined(apart, sides)
+        return apart
+
+    def _refined(self, solved: Solved, sides: Sides) -> Solved:
+        """Refine a solution once.
+
+        Beside a motion that is far larger than the deformation, the solution has lost
+        digits of the forces: those by the deformation alone have them.
+        """
+        unknown = solved.unknown
+        strained = solved.strained
+        motion = solved.motion
+        force = solved.force
+        if len(motion):
+            # Once more, as rounding of a large motion is a deformation, too.
+            further = self._gauge.T @ strained
+            strained = strained - self._gauge @ further
+            motion = motion + further
+            deformed = unknown.copy()
+            deformed[: len(strained)] = strained
+            force = self._of_unknowns @ deformed
+            force[self._base_rows] -= sides.load
+        change = np.zeros_like(unknown)
+        if not self.is_singular:
+            missing = self._missing(unknown, force, sides)
+            change[self._unknowns] = self._factors.solve(missing)
+            force = force + self._forces(change, self._unknowns, self._stiffness_rows)
+        changed = change[: len(strained)]
+        if len(motion):
+            further = self._gauge.T @ changed
+            changed = changed - self._gauge @ further
+            motion = motion + further
+        return Solved(unknown + change, strained + changed, motion, force)
+
+    def _missing(self, unknown: Array, force: Array, sides: Sides) -> Array:
+        """Differences from the equations, (n_rows,), with some unknowns, (n,).
+
+        The forces are those of all jumps by these unknowns, shape (n,).
+        """
         rows = self._rows
-        strained = unknown[: len(self._base)]
-        right = (
+        jump = unknown[: len(self._base)]
+        missing = (
             -self._direction * sides.bound[rows]
             - self._lengthening * force[rows]
             - self._drag * force[self._carriers]
         )
         if self._grows:
-            slip = sides.held[rows] - self._jumps_of_rows @ strained
-            right += self._growth_of_rows * slip
-        if self._is_plain:
-            return np.asarray(right)
-        right = np.concatenate([right, self._gauge_kept.T @ unknown[self._kept]])
+            slip = sides.held[rows] - self._jumps_of_rows @ jump
+            missing += self._growth_of_rows * slip
         if len(self._sprung):
             springs = rows[self._sprung]
             length = self._compliance[springs] * force[springs]
-            end = self._jumps_of_sprung @ strained + length
-            right[self._sprung] = self._sprung_scale * (sides.held[springs] - end)
-        return right
+            end = self._jumps_of_sprung @ jump + length
+            missing[self._sprung] = self._sprung_scale * (sides.held[springs] - end)
+        return np.asarray(missing)
 
-    def _set_carried(
-        self, force: Array, strained: Array, motion: Array, sides: Sides
-    ) -> None:
-        """Set the forces of the rows by their friction law, and note the difference.
-
-        Forces have the shape (n,), y of the base (n_base,), and motions (n_motions,).
-        """
+    def _set_carried(self, solved: Solved, sides: Sides) -> None:
+        """Set the forces of the rows by their friction law, and note the difference."""
         rows = self._rows
+        force = solved.force
         carried = -self._direction * sides.bound[rows]
         carried = carried - self._drag * force[self._carriers]
         if self._grows:
-            jump = strained + self._gauge @ motion
+            jump = solved.unknown[: len(self._base)]
             slip = self._jumps_of_rows @ jump - sides.held[rows]
             carried = (carried - self._growth_of_rows * slip) / self._lengthening
         carried[self._sprung] = force[rows[self._sprung]]
@@ -219,22 +272,21 @@ class LinearSystem:
             rows = self._stiffness[places]
         return np.asarray(rows.T @ unknown[places])
 
-    def _jump(self, strained: Array, motion: Array) -> Array:
-        """Jumps (n,) by y of the base, (n_base,), and rigid motions, (n_motions,)."""
-        if len(motion):
-            strained = strained + self._gauge @ motion
-        if self._ties is None:
-            return strained
-        return np.asarray(self._ties @ strained)
-
-    def _ends(self, strained: Array, motion: Array, force: Array, held: Array) -> Array:
+    def _ends(self, solved: Solved, held: Array) -> Array:
         """Jumps with what is in series, (n,): those that are held to the last bit."""
+        ends = solved.unknown[: len(self._base)].copy()
         if self._is_plain:
-            return strained.copy()
-        ends = self._jump(strained, motion) + self._compliance * force
+            return ends
+        ends = self._jump(ends) + self._compliance * solved.force
         # What is held is known exactly, and rounding must not pass for slip.
         ends[self._held] = held[self._held]
         return ends
+
+    def _jump(self, base: Array) -> Array:
+        """Jumps, (n,), by those of the base, (n_base,)."""
+        if self._ties is None:
+            return base
+        return np.asarray(self._ties @ base)
 
     def on_base(self, force: Array) -> Array:
         """Forces on the base, (n_base,), that equal forces of all jumps, (n,)."""
@@ -251,23 +303,58 @@ class LinearSystem:
 
         Shape (1,) where there is none. The motion has the shape (n_motions,).
         """
-        if self._is_plain:
+        if not len(motion):
             return np.zeros(1)
-        moved = self._jump(np.zeros(len(self._base)), motion)
+        moved = self._jump(self._gauge @ motion)
         return np.asarray(ROUNDING * self.unit * np.abs(moved))
 
     def _factor(self, states: States) -> None:
         """Factor the system of states, (n,)."""
         self._states = states.copy()
         self._choose_rows(states)
-        smallest = 0.0
-        if self._is_plain:
-            smallest = LOOSE * float(self.unit.max(initial=0.0))
-        matrix = self._with_friction()
-        if not self._is_plain:
-            matrix = self._with_motions(matrix)
-        self._factors = Factors(matrix, smallest, scaled=not self._is_plain)
+        self._factors = self._updated(states) or self._factored(states)
         self.has_negative_determinant = self._factors.has_negative_determinant
+
+    def _factored(self, states: States) -> Factors:
+        """Factors of the whole matrix of states, (n,)."""
+        matrix = self._with_friction()
+        if len(self._sprung):
+            matrix[self._sprung] = self._rows_of_sprung(matrix[self._sprung])
+        factors = Factors(matrix, LOOSE * float(self.unit.max(initial=0.0)))
+        self._whole = None
+        if len(self._rows) >= MANY and not factors.singular:
+            self._whole = states.copy(), self._rows, factors
+        return factors
+
+    def _updated(self, states: States) -> UpdatedFactors | None:
+        """Update the last factors to the states, (n,); None where that does not pay.
+
+        What comes and goes are jumps that are free or held now, and those that slip the
+        other way. Where something is in series, equations change in other ways, too.
+        """
+        if self._whole is None or self._grows or self._compliance.any():
+            return None
+        before, rows, factors = self._whole
+        is_new = states != before
+        removed = np.flatnonzero(is_new[rows])
+        added = np.flatnonzero(is_new[self._rows])
+        if (len(removed) + len(added)) * CHANGED > len(rows):
+            return None
+        # Equations that stay are the same under both states, and others are dropped.
+        direction = np.where(np.abs(states[rows]) == 1, states[rows], 0)
+        drag = direction * self.friction[rows]
+        new = self._rows[added]
+        updated = UpdatedFactors(
+            factors,
+            removed,
+            added,
+            columns=self._less_friction(rows, drag, new),
+            rows=self._less_friction(new, self._drag[added], rows),
+            corner=self._less_friction(new, self._drag[added], new),
+        )
+        if updated.is_doubtful:
+            return None
+        return updated
 
     def _choose_rows(self, states: States) -> None:
         """Choose unknowns and rows of the system by states (n,), and their friction."""
@@ -286,6 +373,7 @@ class LinearSystem:
         # it, and which jump carries it.
         of_rows = states[rows]
         self._sprung: Indices = np.flatnonzero(of_rows == HELD)
+        self._held = np.concatenate([self._base[self._kept], rows[self._sprung]])
         self._direction = np.where(np.abs(of_rows) == 1, of_rows, 0).astype(float)
         self._drag = self._direction * self.friction[rows]
         self._carriers: Indices = self._partner[rows]
@@ -296,62 +384,30 @@ class LinearSystem:
 
     def _with_friction(self) -> Array:
         """Force of each row less its friction by all unknowns, (n_rows, n_rows)."""
-        unknowns = self._unknowns
-        # Each row is f + s mu f_n = -s r: the force of a jump less its friction.
-        matrix = self._of_unknowns[np.ix_(self._rows, unknowns)]
-        if self._grows:
-            matrix *= self._lengthening[:, None]
-        # Few rows drag, and each reads a further row of S.
-        tied = np.flatnonzero(self._drag)
-        if len(tied):
-            normal = self._of_unknowns[np.ix_(self._carriers[tied], unknowns)]
-            matrix[tied] += self._drag[tied, None] * normal
+        matrix = self._less_friction(self._rows, self._drag, self._unknowns)
         if self._grows:
             self._jumps_of_rows = self._jumps_of(self._rows)
             slips = self._jumps_of_rows[:, self._free]
             matrix[:, : len(self._free)] += self._growth_of_rows[:, None] * slips
-        return np.asarray(matrix)
-
-    def _with_motions(self, forces: Array) -> Array:
-        """The whole system: with rigid motions, and springs in series that are held.
-
-        Of the forces of the rows by all unknowns, (n_rows, n_rows).
-        """
-        free = self._free
-        gauge = self._gauge
-        n_rows = len(forces)
-        self._gauge_kept = gauge[self._kept]
-        self._held = np.concatenate([self._base[self._kept], self._rows[self._sprung]])
-        matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
-        matrix[:n_rows, :n_rows] = forces
-        if gauge.size:
-            matrix[:n_rows, n_rows:] = self._pulls_with_friction()
-        if len(self._sprung):
-            matrix[self._sprung] = self._rows_of_sprung(matrix[self._sprung])
-        # Of all y with the same forces the one with Q' y = 0.
-        matrix[n_rows:, : len(free)] = -gauge[free].T
-        matrix[n_rows:, n_rows:] = self._square_of_kept()
         return matrix
 
-    def _square_of_kept(self) -> Array:
-        """Q' Q of the held jumps of the base, (n_motions, n_motions)."""
-        if len(self._kept) <= len(self._free):
-            return np.asarray(self._gauge_kept.T @ self._gauge_kept)
-        # Few jumps are free: what is held is all but these.
-        gauge_free = self._gauge[self._free]
-        return np.asarray(self._gauge_square - gauge_free.T @ gauge_free)
+    def _less_friction(self, rows: Indices, drag: Array, unknowns: Indices) -> Array:
+        """Forces of rows less what their normal forces carry, by some unknowns.
 
-    def _pulls_with_friction(self) -> Array:
-        """Force of each row less its friction by each motion, (n_rows, n_motions)."""
-        free = self._free
-        pulls = self._lengthening[:, None] * self._pulls_of_motions(self._rows)
-        tied = np.flatnonzero(self._drag)
-        normal = self._pulls_of_motions(self._carriers[tied])
-        pulls[tied] += self._drag[tied, None] * normal
+        Shape (n_rows, n_unknowns); `drag` is mu with the direction of friction,
+        (n_rows,). Where friction grows with slip, the rows are all of the system.
+        """
+        # Each row is f + s mu f_n = -s r: the force of a jump less its friction.
+        matrix = self._of_unknowns[np.ix_(rows, unknowns)]
         if self._grows:
-            slips = self._jumps_of_rows[:, free] @ self._gauge[free]
-            pulls += self._growth_of_rows[:, None] * slips
-        return np.asarray(pulls)
+            matrix *= self._lengthening[:, None]
+        # Few rows drag, and each reads a further row of S.
+        tied = np.flatnonzero(drag)
+        if len(tied):
+            carriers = self._partner[rows[tied]]
+            normal = self._of_unknowns[np.ix_(carriers, unknowns)]
+            matrix[tied] += drag[tied, None] * normal
+        return np.asarray(matrix)
 
     def _rows_of_sprung(self, forces: Array) -> Array:
         """Equations of held jumps with something in series: both end at a given length.
@@ -359,30 +415,22 @@ class LinearSystem:
         Parameters
         ----------
         forces
-            Rows of the forces of these jumps, shape (n_sprung, n_rows + n_motions).
+            Rows of the forces of these jumps, shape (n_sprung, n_unknowns).
 
         Returns
         -------
         The equations, same shape, scaled to the size of the jumps or of the forces,
         whichever is larger.
         """
-        free = self._free
         springs = self._rows[self._sprung]
         self._jumps_of_sprung = self._jumps_of(springs)
-        jumps = self._jumps_of_sprung[:, free]
         compliance = self._compliance[springs, None]
-        none = np.zeros((len(springs), len(self._others)))
-        moved = np.hstack([jumps, none, jumps @ self._gauge[free]])
         # A soft spring makes an equation of forces, a stiff one an equation of lengths.
         scale = 1.0 / (1.0 + compliance)
         self._sprung_scale = scale[:, 0]
-        return np.asarray(scale * (compliance * forces + moved))
-
-    def _pulls_of_motions(self, rows: Indices) -> Array:
-        """Forces at jumps by each motion with the base held, (n_rows, n_motions)."""
-        free = self._free
-        moved = self._of_unknowns[np.ix_(rows, free)] @ self._gauge[free]
-        return np.asarray(moved - self._pulls_of_gauge[rows])
+        equations = compliance * forces
+        equations[:, : len(self._free)] += self._jumps_of_sprung[:, self._free]
+        return np.asarray(scale * equations)
 
     def _jumps_of(self, numbers: Indices) -> Array:
         """Jumps as a matrix on those of the base, (n_numbers, n_base)."""
@@ -391,69 +439,3 @@ class LinearSystem:
         jumps = np.zeros((len(numbers), len(self._base)))
         jumps[np.arange(len(numbers)), numbers] = 1.0
         return jumps
-
-
-class Factors:
-    """A square matrix, factored.
-
-    If `scaled`, rows and columns are brought to one size first, by powers of two, and
-    the solution is refined once: then every row holds up to the rounding of its own
-    terms (Skeel, Math. Comp. 35, 1980).
-
-    Attributes
-    ----------
-    has_negative_determinant
-        Sign of the determinant.
-    singular
-        A pivot is too small, or not above the `smallest` one.
-    """
-
-    def __init__(self, matrix: Array, smallest: float, *, scaled: bool) -> None:
-        self._scaled = scaled
-        if scaled:
-            self._rows = _sizes(matrix, 1)
-            matrix = self._rows[:, None] * matrix
-            self._columns = _sizes(matrix, 0)
-            matrix = matrix * self._columns
-        self._matrix = matrix
-        self._factors = matrix
-        self._pivots = np.zeros(0, dtype=np.intp)
-        if len(matrix):
-            self._factors, self._pivots, _ = lapack.dgetrf(matrix)
-        diagonal = np.diagonal(self._factors)
-        # Every exchange of rows changes the sign of the determinant.
-        swaps = np.count_nonzero(self._pivots != np.arange(len(matrix)))
-        changes_of_sign = np.count_nonzero(diagonal < 0.0) + swaps
-        self.has_negative_determinant = bool(changes_of_sign % 2)
-        sizes = np.abs(diagonal)
-        smallest = max(SINGULAR * float(sizes.max(initial=0.0)), smallest)
-        self.singular = bool(sizes.min(initial=np.inf) <= smallest)
-
-    def solve(self, right: Array) -> Array:
-        """Solve A x = b with b and x of shape (n,).
-
-        Where A is singular, x is the smallest of those that fit best.
-        """
-        if not len(right):
-            return right
-        if not self._scaled:
-            return self._solve(right)
-        right = self._rows * right
-        solution = self._solve(right)
-        if not self.singular:
-            # One refinement is enough once rows and columns have one size.
-            solution += self._solve(right - self._matrix @ solution)
-        return np.asarray(self._columns * solution)
-
-    def _solve(self, right: Array) -> Array:
-        """Solve with the matrix as it is factored, (n,)."""
-        if self.singular:
-            return np.asarray(np.linalg.lstsq(self._matrix, right, rcond=SINGULAR)[0])
-        solved, _ = lapack.dgetrs(self._factors, self._pivots, right)
-        return np.asarray(solved).reshape(right.shape)
-
-
-def _sizes(matrix: Array, axis: int) -> Array:
-    """Powers of two that bring the largest entries along an axis near 1, (n,)."""
-    _, exponent = np.frexp(np.abs(matrix).max(axis=axis, initial=0.0))
-    return np.asarray(np.ldexp(1.0, -exponent))

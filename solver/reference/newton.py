@@ -192,7 +192,7 @@ class Newton:
     def _with_springs(self, springs: Array) -> LinearSystem:
         """The linear system with springs at the jumps of the base, (n_base,)."""
         condensed = self._condensed
-        stiffness = condensed.elastic + np.diagflat(springs)
+        stiffness = condensed.stiffness + np.diagflat(springs)
         no_motions = condensed.gauge[:, :0]
         return LinearSystem(condensed, stiffness, no_motions, self.system.stop)
 
@@ -263,8 +263,10 @@ class Newton:
             if rules.is_nonlinear:
                 slip = _slip_of_states(states, slip)
                 tangent, is_capped = self._linearised(system, slip, force, sides)
-                segments = rules.slip_factor.segment(self.accumulated_slip + slip)
-                piece += segments.tobytes() + is_capped.tobytes()
+                piece += rules.slip_factor.segment(
+                    self.accumulated_slip + slip
+                ).tobytes()
+                piece += is_capped.tobytes()
             # On one piece of the laws a linear problem comes to rest in one step, and a
             # nonlinear one may take several.
             stays = rules.is_nonlinear and pieces[-1:] == [piece]
@@ -279,13 +281,16 @@ class Newton:
             n_singular += system.is_singular
             if n_singular > SINGULAR_STEPS:
                 return None
-            corrected = self._corrected(states, step, tangent, system.friction)
+            rounding = self._rounding(states, step)
+            corrected = self._corrected(
+                states, step, tangent, system.friction, rounding
+            )
             if rules.is_nonlinear:
                 slip = np.where(rules.normal, 0.0, step.jump - sides.held)
             force = step.force
             reached = InstantSolution(states, step, slip)
             if np.array_equal(corrected, states):
-                if self._obeys(system, reached, sides):
+                if self._obeys(system, reached, sides, rounding[0]):
                     return reached
             states = corrected
         return None
@@ -310,13 +315,15 @@ class Newton:
         constant = np.where(is_capped, rules.cap, sides.bound) * factor - growth * slip
         return replace(sides, bound=constant), is_capped
 
-    def _obeys(self, system: LinearSystem, at: InstantSolution, sides: Sides) -> bool:
+    def _obeys(
+        self, system: LinearSystem, at: InstantSolution, sides: Sides, slack: float
+    ) -> bool:
         """Check that forces balance and friction obeys its law, not only the tangent.
 
         Sticking points may not carry more than the cap either, as the cap that the
-        states were corrected by was that of the step before.
+        states were corrected by was that of the step before. The slack is a force that
+        rounding may make, scaled.
         """
-        slack, _ = self._rounding(at.states, at.step)
         if system.unbalanced > max(CONVERGED * self.largest_load, slack):
             return False
         rules = self._rules
@@ -408,7 +415,7 @@ class Newton:
         the places, shape (n_free,).
         """
         tied = self._condensed.ties[:, free]
-        softened = self._condensed.elastic[np.ix_(free, free)]
+        softened = self._condensed.stiffness[np.ix_(free, free)]
         softened += tied.T @ sparse.diags_array(growth) @ tied
         return np.asarray(softened)
 
@@ -429,15 +436,21 @@ class Newton:
         return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
 
     def _corrected(
-        self, states: States, step: Increment, sides: Sides, friction: Array
+        self,
+        states: States,
+        step: Increment,
+        sides: Sides,
+        friction: Array,
+        rounding: tuple[float, Array],
     ) -> States:
         """States that follow from jumps and forces; rounding changes none of them.
 
-        `friction` is the coefficient mu of every jump, shape (n,).
+        `friction` is the coefficient mu of every jump, shape (n,), and `rounding` what
+        `_rounding` returns.
         """
         held = states == HELD
         force = step.force
-        slack, blur = self._rounding(states, step)
+        slack, blur = rounding
         # Distance from where the jump would be held, times a stiffness: a force.
         moved = self.system.unit * (step.jump - sides.held)
         limit = self._slip_limit(held, force, moved, friction, sides.bound)

@@ -104,7 +104,10 @@ def _forces_of_slips(
     n_stresses).
     """
     rules = condensed.rules
-    stiffness = condensed.stiffness
+    gauge = condensed.gauge
+    # A motion that nothing holds has a stiffness of its own, so that S is definite.
+    size = float(np.diagonal(condensed.stiffness).mean())
+    stiffness = condensed.stiffness + size * gauge @ gauge.T
     elastic = -condensed.load[:, cycle]
     if not rules.compliance.any():
         return stiffness, elastic, condensed.stresses
@@ -215,7 +218,7 @@ def slip_space(problem: Problem) -> SlipSpace:
             "slips."
         )
     rules = condensed.rules
-    stiffness = condensed.elastic
+    stiffness = condensed.stiffness
     rubs = np.flatnonzero(~rules.normal)
     pressing = rules.partner[rubs]
     # Forces where nothing slips.

@@ -240,14 +240,25 @@ class MethodSettings(param.Parameterized):
             If a name is unknown, a value has a wrong type or is out of range, or values
             do not fit together.
         """
+        return cls._of(cls._clean(values))
+
+    @classmethod
+    def _clean(cls, values: Mapping[str, object]) -> dict[str, Any]:
+        """Plain values by name, each checked by itself."""
         definitions = cls.definitions()
         clean = {}
         for name, value in values.items():
             if name not in definitions:
                 raise unknown(name, value, cls.scene, definitions)
             clean[name] = checked_value(definitions[name], name, value)
-        method = clean.get("method", definitions["method"].default)
-        complete = cls.of_method(method) | clean
+        return clean
+
+    @classmethod
+    def _of(cls, values: dict[str, Any]) -> Self:
+        """Settings of plain values that are checked each by itself."""
+        definitions = cls.definitions()
+        method = values.get("method", definitions["method"].default)
+        complete = cls.of_method(method) | values
         # To set a value takes param some time, even where it is the default.
         changed = {}
         for name, value in complete.items():
@@ -319,7 +330,8 @@ class MethodSettings(param.Parameterized):
             # Values that the old method brought would count as chosen.
             for name in self.METHODS[self.method]:
                 del values[name]
-        return self.checked(values | changes)
+        # Values that stay have been checked before.
+        return self._of(values | self._clean(changes))
 
     def refusal(self, name: str, allowed: str, remedy: str) -> SettingError:
         """Refusal of the value of a setting, with what is allowed and a remedy."""

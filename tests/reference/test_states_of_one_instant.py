@@ -4,6 +4,7 @@ Newton finds them; time is play.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise, product
 
 import numpy as np
@@ -25,13 +26,17 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.laws import OPEN, Component, Contact
 from solver.laws.play import Play, play
+from solver.reference import linear_system
 from solver.reference.assembly import Interrupted
 from solver.reference.condensation import Condensation
+from solver.reference.factors import UpdatedFactors
 from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.instants import Instants
 from solver.reference.linear_system import LinearSystem
 from solver.reference.newton import Newton
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
+from solver.scenes import discretise
+from solver.scenes.wall import WallSettings
 
 SEEDS = range(6)
 
@@ -149,6 +154,61 @@ def test_a_step_balances_and_obeys_the_laws_of_its_states(make, seed: int) -> No
         assert laws_missed(condensed, states, sides, step) <= 1e-10 * size
         assert system.unbalanced <= 1e-10 * size
     assert system.solutions == 5
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("make", [on_a_support, two_bodies])
+def test_states_that_change_a_little_are_solved_as_from_the_start(
+    make, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(linear_system, "MANY", 1)
+    monkeypatch.setattr(linear_system, "CHANGED", 1)
+    random = np.random.default_rng(seed)
+    condensed = Condensation(make(random, 12, 0.3))
+    system = system_of(condensed)
+    states = random_states(condensed.rules, random)
+    updates = 0
+    for _ in range(20):
+        sides = sides_of(condensed, random)
+        step = system(states, sides)
+        wanted = system_of(condensed)
+        for found, exact in zip(step, wanted(states, sides), strict=True):
+            size = np.abs(exact).max(initial=0.0)
+            assert found == pytest.approx(exact, abs=1e-9 * size)
+        assert system.has_negative_determinant == wanted.has_negative_determinant
+        assert system.is_singular == wanted.is_singular
+        updates += isinstance(system._factors, UpdatedFactors)
+        # Two jumps take other states: they open, close, stick or turn back.
+        changed = random.choice(len(states), 2, replace=False)
+        states = states.copy()
+        states[changed] = random_states(condensed.rules, random)[changed]
+    assert updates >= 10
+
+
+@pytest.mark.parametrize("far", [1.0, 1e3, 1e6])
+def test_forces_are_in_balance_to_the_last_digit_beside_a_far_larger_motion(
+    far: float,
+) -> None:
+    random = np.random.default_rng(4)
+    condensed = Condensation(discretise(WallSettings.checked(WallSettings.SMALL)))
+    gauge = condensed.gauge
+    assert gauge.size
+    system = system_of(condensed)
+    slips = np.flatnonzero(~condensed.rules.normal)[::7]
+    states = np.zeros(len(condensed.rules.gap), dtype=np.int8)
+    states[slips] = 1
+    sides = sides_of(condensed, random)
+    step = system(states, sides)
+    assert gauge.T @ step.strained == pytest.approx(0.0, abs=1e-13)
+    # Held jumps are moved along with a rigid motion of the bodies.
+    moved = far * gauge[:, 0]
+    away = system(states, replace(sides, held=sides.held + moved))
+    size = np.abs(condensed.stiffness).max()
+    assert away.force == pytest.approx(step.force, abs=1e-14 * far * size)
+    # Of the motion itself nothing is left in the forces.
+    needed = condensed.stiffness @ away.strained
+    carried = system.on_base(away.force) + sides.load
+    assert needed == pytest.approx(carried, abs=1e-13 * np.abs(needed).max())
 
 
 def test_friction_that_grows_with_slip_is_its_tangent_at_the_slip_it_comes_to() -> None:

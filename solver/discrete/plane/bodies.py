@@ -22,7 +22,7 @@ from solver.checks import (
 )
 from solver.discrete.plane.bodies_refused import (
     check_held,
-    check_joint,
+    check_joints,
     check_load,
     check_names,
     check_weight,
@@ -99,8 +99,7 @@ class Bodies:
         instants = len(self.instants)
         for body in self.bodies:
             check_weight(body, instants)
-        for joint in self.joints:
-            check_joint(self.bodies, joint)
+        check_joints(self.bodies, self.joints)
         for held in self.held:
             check_held(self.bodies, held, instants)
         for load in self.loads:
