@@ -151,6 +151,13 @@ class LinearSystem:
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)
         self.solutions += 1
+        solved = self._solved(sides)
+        self._set_carried(solved, sides)
+        end = self._ends(solved, sides.held)
+        return Increment(end, solved.force, solved.strained, solved.motion)
+
+    def _solved(self, sides: Sides) -> Solved:
+        """Solve the factored system."""
         # Jumps of the base, then forces of the jumps beyond it.
         unknown = np.zeros(len(self._of_unknowns))
         unknown[self._kept] = sides.held[self._base[self._kept]]
@@ -160,11 +167,9 @@ class LinearSystem:
         unknown[self._unknowns] = self._factors.solve(missing)
         force += self._forces(unknown, self._unknowns, self._stiffness_rows)
         solved = Solved(unknown, unknown[: len(self._base)], unknown[:0], force)
-        if not self._is_plain:
-            solved = self._apart(solved, sides)
-        self._set_carried(solved, sides)
-        end = self._ends(solved, sides.held)
-        return Increment(end, solved.force, solved.strained, solved.motion)
+        if self._is_plain:
+            return solved
+        return self._apart(solved, sides)
 
     def _apart(self, solved: Solved, sides: Sides) -> Solved:
         """Set rigid motions apart, and refine the solution where that is needed."""

@@ -31,6 +31,7 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.linear_system import LinearSystem
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
+from solver.reference.soft_system import system_of
 
 FEWEST_STEPS = 30
 """Newton steps that every guess of the states may take; a guess of more jumps may take
@@ -80,9 +81,7 @@ class Newton:
     def __init__(
         self, condensed: Condensation, stop: Callable[[], bool] | None = None
     ) -> None:
-        self.system = LinearSystem(
-            condensed, condensed.stiffness, condensed.gauge, stop
-        )
+        self.system = system_of(condensed, stop)
         self._condensed = condensed
         self._rules = condensed.rules
         rules = self._rules

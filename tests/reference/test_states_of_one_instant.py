@@ -35,7 +35,9 @@ from solver.reference.instants import Instants
 from solver.reference.linear_system import LinearSystem
 from solver.reference.newton import Newton
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
+from solver.reference.soft_system import SoftSystem
 from solver.scenes import discretise
+from solver.scenes.incline import InclineSettings
 from solver.scenes.wall import WallSettings
 
 SEEDS = range(6)
@@ -209,6 +211,25 @@ def test_forces_are_in_balance_to_the_last_digit_beside_a_far_larger_motion(
     needed = condensed.stiffness @ away.strained
     carried = system.on_base(away.force) + sides.load
     assert needed == pytest.approx(carried, abs=1e-13 * np.abs(needed).max())
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_beside_a_spring_rigid_motions_are_found_with_the_deformation(
+    seed: int,
+) -> None:
+    random = np.random.default_rng(seed)
+    settings = InclineSettings.checked(InclineSettings.SMALL | {"spring": 1e5})
+    condensed = Condensation(discretise(settings))
+    assert condensed.gauge.size
+    states = random_states(condensed.rules, random)
+    states[condensed.rules.compliance > 0.0] = HELD
+    sides = sides_of(condensed, random)
+    soft = SoftSystem(condensed, condensed.stiffness, condensed.gauge)
+    plain = system_of(condensed)
+    for found, exact in zip(soft(states, sides), plain(states, sides), strict=True):
+        size = np.abs(exact).max()
+        assert found == pytest.approx(exact, abs=1e-9 * size)
+    assert soft.has_negative_determinant == plain.has_negative_determinant
 
 
 def test_friction_that_grows_with_slip_is_its_tangent_at_the_slip_it_comes_to() -> None:
