@@ -41,7 +41,7 @@ NAME = "lap-joint"
 
 
 def panel_of(state: PageState) -> Guide:
-    player: Any = SimpleNamespace(play=lambda until: None, stop=lambda: None)
+    player: Any = SimpleNamespace(play=lambda until, **_: None, stop=lambda: None)
     panel = Guide(state, player, lambda: None, lambda: None)
     panel.show()
     return panel
