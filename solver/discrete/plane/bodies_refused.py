@@ -9,12 +9,14 @@ import numpy as np
 
 from solver.arrays import Array, Flags, Indices
 from solver.checks import Count, Numbers, check_value
-from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.body import Body, Held, Joint, Load, along_joints
 from solver.discrete.plane.meshes import Mesh
 from solver.refusal import RefusedError, Words
 
 RESERVED = "contacts", "supports"
 """Names of the laws of all joints between bodies, and of all on supports."""
+UNIT = 1e-9
+"""Largest difference of the length of a normal from 1."""
 APART = 0.05
 """Largest distance of the nodes of a pair beyond their gap, over the distance to the
 next node: the middles of edges lie inside a round body."""
@@ -68,15 +70,20 @@ def check_load(bodies: Sequence[Body], load: Load, instants: int) -> None:
 
 def check_joints(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
     """Refuse chains that follow no edges or do not face each other."""
+    any_body = Count(0, len(bodies) - 1)
     # Equal chains of one shape are checked once: voussoirs are alike.
     known = set[tuple[int, bytes]]()
     for joint in joints:
         for number, nodes in joint.sides:
-            check_value(f"{joint} on body", number, Count(0, len(bodies) - 1))
+            if any_body.flaw(number) is not None:
+                check_value(f"{joint} on body", number, any_body)
             body = bodies[number]
-            if _key(body, nodes) not in known:
+            key = _key(body, nodes)
+            if key not in known:
                 _check_chain(body, joint, nodes)
-                known.add(_key(body, nodes))
+                known.add(key)
+    if joints:
+        _check_lengths(joints)
     _check_normals(bodies, joints)
     _check_opposite(bodies, joints)
 
@@ -109,6 +116,21 @@ def _check_nodes(body: Body, owner: str, nodes: Indices) -> None:
             Words(f"{len(nodes)} of them"),
             "one or more nodes, each once",
             "leave out those that come again",
+        )
+
+
+def _check_lengths(joints: Sequence[Joint]) -> None:
+    """Refuse normals of another length than 1."""
+    lengths = np.hypot(*np.concatenate([joint.normals for joint in joints]).T)
+    is_wrong = np.abs(lengths - 1.0) > UNIT
+    if is_wrong.any():
+        joint, number, _ = _first(np.abs(lengths - 1.0), is_wrong, joints)
+        length = float(np.hypot(*joint.normals[number]))
+        raise RefusedError(
+            f"{joint}.normals",
+            Words(f"normal {number} of length {length:g}"),
+            "vectors of length 1",
+            "divide each by its length",
         )
 
 
@@ -152,8 +174,8 @@ def _check_opposite(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
     steps = np.linalg.norm(np.diff(above, axis=0, prepend=np.inf), axis=1)
     steps[starts] = np.inf
     shortest = np.repeat(np.minimum.reduceat(steps, starts), sizes)
-    gaps = [np.broadcast_to(joint.gap, len(joint.nodes)) for joint in of_two]
-    apart = np.linalg.norm(above - below, axis=1) - np.abs(np.concatenate(gaps))
+    gaps = along_joints([joint.gap for joint in of_two], sizes)
+    apart = np.linalg.norm(above - below, axis=1) - np.abs(gaps)
     if np.any(apart > APART * shortest):
         joint, number, distance = _first(apart, apart > APART * shortest, of_two)
         raise RefusedError(
