@@ -11,6 +11,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
+from solver.discrete.plane.body import Load
 from solver.discrete.plane.voussoirs import FILL, LIVE, RIGHT, Arch, Ring
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
@@ -236,7 +237,7 @@ class ArchSettings(PlaneSettings):
     def structure(self) -> Arch:
         """Make the arch; one metre thick."""
         ring = self.ring
-        loads = []
+        loads = list[Load]()
         if self.fill:
             loads += ring.loads(FILL, self._filled)
         if self.has_live:
