@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -165,15 +164,6 @@ class Joint:
         if self.below is not None and self.nodes_below is not None:
             sides.append((self.below, self.nodes_below))
         return sides
-
-
-def along_joints(values: Sequence[Array | float], sizes: Sequence[int]) -> Array:
-    """Values of joints of these sizes, node by node: (n_nodes,)."""
-    constants = [value for value in values if isinstance(value, float)]
-    if len(constants) == len(values):
-        return np.repeat(constants, sizes)
-    along = zip(values, sizes, strict=True)
-    return np.concatenate([np.broadcast_to(value, size) for value, size in along])
 
 
 @dataclass(frozen=True, eq=False)

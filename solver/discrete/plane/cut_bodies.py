@@ -69,7 +69,7 @@ class CutBodies:
                 shapes[key] = CutShape(body.shape, body.substructures)
         self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
         self.frames = NodeFrames(
-            bodies, structure.first_nodes, structure.joints, structure.held
+            bodies, structure.first_nodes, structure.pairs, structure.held
         )
         self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)

@@ -8,9 +8,9 @@ import numpy as np
 
 from solver.arrays import Array, Flags
 from solver.discrete.elements import legendre_basis
-from solver.discrete.plane.body import along_joints
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
+from solver.discrete.plane.node_pairs import along_joints
 from solver.laws import Contact, NodalStiffness
 from solver.laws.stiffness import of_whole_mesh
 
