@@ -13,8 +13,10 @@ from solver.discrete.condensed_part import (
     CondensedPart,
     Operator,
     Trace,
+    kept_by,
     numbered,
 )
+from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
 from solver.discrete.plane.body_parts import ShapePart
@@ -82,6 +84,7 @@ class CutBodies:
         self._trace_seams()
         self._trace_held()
         self._operators = dict[Hashable, Operator]()
+        self._stiffnesses = dict[Hashable, SchurComplement]()
         self.parts = list(self._parts())
 
     def is_mesh(self, number: int) -> bool:
@@ -315,13 +318,36 @@ class CutBodies:
         )
         if alike not in self._operators:
             frames = self._own_frames[nodes]
-            # No load and no friction changes the operator of the first of them.
-            key = "part", part.content, content_of(frames, dofs, direction), alike[-2:]
-            self._operators[alike] = KEPT.of(
-                key, lambda: Operator(part.stiffness_in(frames), traces)
-            )
+            condensed = self._condensed(part, frames, kept_by(traces))
+            self._operators[alike] = Operator(condensed, traces)
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
+
+    def _condensed(
+        self, part: ShapePart, frames: Array, kept: Indices
+    ) -> SchurComplement:
+        """Stiffness of a part condensed onto degrees of freedom that are kept, (n,).
+
+        `frames` are the directions at its nodes in its axes, (n_nodes, 2, 2). What lies
+        below a joint has directions that are turned round from those above: both are
+        condensed in those that have a positive first component.
+        """
+        nodes, axes = np.divmod(kept, part.n_axes)
+        signs = np.ones(len(kept))
+        moves = np.flatnonzero(axes < 2)
+        rows = nodes[moves], axes[moves]
+        along_x, along_y = frames[rows].T
+        signs[moves] = np.sign(np.where(along_x == 0.0, along_y, along_x))
+        towards = frames.copy()
+        towards[rows] *= signs[moves, None]
+        alike = id(part), kept.tobytes(), _rounded(towards).tobytes()
+        if alike not in self._stiffnesses:
+            # No load and no friction changes the stiffness of the first of them.
+            key = "part", part.content, content_of(towards, kept)
+            self._stiffnesses[alike] = KEPT.of(
+                key, lambda: SchurComplement(part.stiffness_in(towards), kept)
+            )
+        return self._stiffnesses[alike].turned_round(signs)
 
     def _loads(self) -> Mapping[int, Array]:
         """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.
