@@ -131,7 +131,7 @@ class Count:
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
-        is_whole = isinstance(value, Integral) and not isinstance(value, bool)
+        is_whole = isinstance(value, int | Integral) and not isinstance(value, bool)
         if is_whole and self.low <= int(value) <= self.high:
             return None
         return Flaw(value, self.allowed, "give a whole number in this range")
