@@ -42,6 +42,8 @@ class Kind(Protocol):
 def check(part: object, **kinds: Kind) -> None:
     """Refuse attributes of a part that are not of their kind; a default None is fine.
 
+    Messages name the part by its own words, where it has some, or by its type.
+
     Raises
     ------
     RefusedError
@@ -55,7 +57,10 @@ def check(part: object, **kinds: Kind) -> None:
         flaw = kind.flaw(value)
         # The name is written where it is needed: most parts have no flaw.
         if flaw is not None:
-            raise _refusal(f"{owner.__name__}.{name}", value, flaw)
+            words = owner.__name__
+            if owner.__str__ is not object.__str__:
+                words = str(part)
+            raise _refusal(f"{words}.{name}", value, flaw)
 
 
 def check_value(name: str, value: object, kind: Kind) -> None:
@@ -126,7 +131,7 @@ class Count:
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
-        is_whole = isinstance(value, Integral) and not isinstance(value, bool)
+        is_whole = isinstance(value, int | Integral) and not isinstance(value, bool)
         if is_whole and self.low <= int(value) <= self.high:
             return None
         return Flaw(value, self.allowed, "give a whole number in this range")

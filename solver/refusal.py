@@ -53,4 +53,5 @@ def plain(value: float) -> str:
 
 def is_number(value: object) -> TypeGuard[float]:
     """Check whether a value is a number, and no truth value."""
-    return isinstance(value, Real) and not isinstance(value, bool)
+    # Floats first: an abstract class is slow to ask.
+    return isinstance(value, float | Real) and not isinstance(value, bool)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy import sparse
 
 from solver.arrays import Array, Indices, read_only
 from solver.discrete.elements import SchurComplement
@@ -35,31 +34,34 @@ class Trace(NamedTuple):
     has_macro: bool
 
 
+def kept_by(traces: Sequence[Trace]) -> Indices:
+    """Degrees of freedom of a part at boundary rows, ascending, shape (n,)."""
+    return np.unique(np.concatenate([trace.dofs.ravel() for trace in traces]))
+
+
 class Operator:
     """Stiffness of a part, condensed onto its boundary rows; equal parts share it.
 
     Parameters
     ----------
-    whole
-        Stiffness of the part, sparse, or condensed before.
+    condensed
+        Stiffness of the part, condensed onto what `kept_by` the traces.
     traces
         Boundary rows of the part.
 
     Attributes
     ----------
-    condensed, elasticity
-        Condensed stiffness, and the operator of a substructure.
+    elasticity
+        The operator of a substructure.
     """
 
-    def __init__(
-        self, whole: sparse.csc_array | SchurComplement, traces: Sequence[Trace]
-    ) -> None:
+    def __init__(self, condensed: SchurComplement, traces: Sequence[Trace]) -> None:
         dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
         direction = np.concatenate([trace.direction.ravel() for trace in traces])
-        self.condensed = SchurComplement(whole, np.unique(dofs))
+        self.condensed = condensed
         self.elasticity = Elasticity(
-            stiffness=read_only(self.condensed.stiffness),
-            trace=np.searchsorted(self.condensed.kept, dofs),
+            stiffness=read_only(condensed.stiffness),
+            trace=np.searchsorted(condensed.kept, dofs),
             direction=direction,
         )
 

@@ -6,6 +6,7 @@ freedom are x and y of every corner, or node, in turn.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import product
@@ -254,6 +255,7 @@ class SchurComplement:
         self, whole: sparse.csc_array | SchurComplement, kept: Indices
     ) -> None:
         self.kept = kept
+        self._signs = np.ones(len(kept))
         self._before = None
         # Positions of what is kept, and of the rest, in the whole stiffness.
         positions = kept
@@ -285,6 +287,18 @@ class SchurComplement:
             condensed -= coupling.T @ self._response
         self.stiffness: Array = 0.5 * (condensed + condensed.T)
 
+    def turned_round(self, signs: Array) -> SchurComplement:
+        """Make the same stiffness with some directions turned round.
+
+        `signs` are -1 for these and 1 for others, (n_kept,). All but the condensed
+        stiffness is shared. Not for a stiffness that was condensed before.
+        """
+        assert self._before is None
+        turned = copy(self)
+        turned._signs = self._signs * signs
+        turned.stiffness = signs[:, None] * self.stiffness * signs
+        return turned
+
     @property
     def nbytes(self) -> int:
         """Memory of matrices and factors, also of the condensation before, B."""
@@ -301,7 +315,8 @@ class SchurComplement:
             force = self._before.condense(force)
         if not len(self._rest):
             return np.asarray(force[self._positions])
-        return np.asarray(force[self._positions] - self._response.T @ force[self._rest])
+        carried = self._signs[:, None] * (self._response.T @ force[self._rest])
+        return np.asarray(force[self._positions] - carried)
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all degrees of freedom, shape (n, n_columns).
@@ -315,7 +330,7 @@ class SchurComplement:
         whole = np.empty((self._size, kept.shape[1]))
         whole[self._positions] = kept
         if len(self._rest):
-            rest = -(self._response @ kept)
+            rest = -(self._response @ (self._signs[:, None] * kept))
             if condensed is not None:
                 rest += self._solve(np.ascontiguousarray(condensed[self._rest]))
             whole[self._rest] = rest

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -49,12 +50,16 @@ class Inside:
         length = scales.displacement
         kept = [part.dofs[part.condensed.kept] for part in parts]
         along = [part.directions[part.condensed.kept] for part in parts]
-        skeleton, first = np.unique(np.concatenate(kept), return_index=True)
+        skeleton, first, places = np.unique(
+            np.concatenate(kept), return_index=True, return_inverse=True
+        )
+        counts = [len(dofs) for dofs in kept]
+        ends = pairwise(np.cumsum([0, *counts]).tolist())
         self._parts = parts
         self._length = length
         self._young = scales.force / length
         self._size = len(skeleton), n_instants
-        self.dofs = [np.searchsorted(skeleton, dofs) for dofs in kept]
+        self.dofs: list[Indices] = [places[start:end] for start, end in ends]
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
         self.positions = positions[skeleton // N_AXES]

@@ -11,6 +11,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
+from solver.discrete.plane.body import Load
 from solver.discrete.plane.voussoirs import FILL, LIVE, RIGHT, Arch, Ring
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
@@ -236,7 +237,11 @@ class ArchSettings(PlaneSettings):
     def structure(self) -> Arch:
         """Make the arch; one metre thick."""
         ring = self.ring
-        loads = [*ring.loads(FILL, self._filled), *ring.loads(LIVE, self._passing)]
+        loads = list[Load]()
+        if self.fill:
+            loads += ring.loads(FILL, self._filled)
+        if self.has_live:
+            loads += ring.loads(LIVE, self._passing)
         weight = np.stack([np.zeros_like(self._hold), -self.unit_weight * self._hold])
         path = self.path("abutment_load")
         settles = self.abutment == "down"
@@ -272,14 +277,14 @@ class ArchSettings(PlaneSettings):
 
     @property
     def _passing(self) -> Array:
-        """Load on the back, (voussoirs, n_nodes, n_instants), N; or zeros."""
+        """Load on the back, (voussoirs, n_nodes, n_instants), N."""
         shares = self.ring.under_load(self.path("place_load"))
         return np.asarray(self.path("live_load") * shares)
 
     def _above(self) -> Iterator[Act]:
         """Fill and load on the back, as drawings show them, at positions in m."""
         ring = self.ring
-        backs = ring.backs().reshape(-1, 2)
+        backs = ring.backs.reshape(-1, 2)
         shown = np.linspace(0, len(backs) - 1, SHOWN).round().astype(np.intp)
         heights = ring.crown + self.cover - backs[shown, 1]
         pressures = np.multiply.outer(self.fill * heights, self._hold)

@@ -81,7 +81,7 @@ WRONG = {
         joints=(replace(JOINT, nodes=np.array([0, 1, 2])),)
     ),
     "too far apart": lambda: bodies(joints=(replace(JOINT, nodes_below=SIDE),)),
-    "normal 0 of length 2": lambda: replace(JOINT, normals=2.0 * UP),
+    "normal 0 of length 2": lambda: bodies(joints=(replace(JOINT, normals=2.0 * UP),)),
     "normal 0 out of Body 'upper'": lambda: bodies(
         joints=(replace(JOINT, normals=-UP),)
     ),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from contact_problems import block
+from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete import discretise
@@ -192,6 +193,22 @@ def test_what_the_cuts_add_condenses_to_the_uncut_stiffness_and_load(
     assert close(condensed.stiffness[np.ix_(at, at)], wanted, 1e-10)
     load = condensed.condense(external_force(cut))[at]
     assert close(load, external_force(whole), 1e-10)
+
+
+def test_a_stiffness_turned_round_is_that_of_the_turned_directions() -> None:
+    random = np.random.default_rng(5)
+    factor = random.normal(size=(9, 9))
+    whole = factor @ factor.T
+    kept = np.array([1, 4, 5, 8])
+    signs = np.ones(9)
+    signs[[1, 5]] = -1.0
+    turned = SchurComplement(sparse.csc_array(whole), kept).turned_round(signs[kept])
+    wanted = SchurComplement(sparse.csc_array(signs[:, None] * whole * signs), kept)
+    force = random.normal(size=(9, 3))
+    moved = random.normal(size=(4, 3))
+    assert np.array_equal(turned.stiffness, wanted.stiffness)
+    assert close(turned.condense(force), wanted.condense(force))
+    assert close(turned.recover(moved, force), wanted.recover(moved, force))
 
 
 def test_tractions_and_weight_add_up_to_their_resultants() -> None:

@@ -9,6 +9,7 @@ from counting import calls_of
 from shaped import arch, courses_of_blocks
 
 from solver.discrete import Bodies, discretise
+from solver.scenes import CATALOGUE
 
 
 # Each body is a substructure; its joints and what it shares are arrays. With its own
@@ -17,8 +18,8 @@ from solver.discrete import Bodies, discretise
 @pytest.mark.parametrize(
     ("structure", "sizes", "calls"),
     [
-        (arch, (31, 121), 90),
-        (lambda columns: courses_of_blocks(columns, 4), (5, 15), 150),
+        (arch, (31, 121), 65),
+        (lambda columns: courses_of_blocks(columns, 4), (5, 15), 130),
     ],
 )
 def test_a_further_body_takes_few_calls(
@@ -33,3 +34,13 @@ def test_a_further_body_takes_few_calls(
         bodies.append(len(few_or_many.bodies))
         made.append(calls_of(lambda each=few_or_many: discretise(each)))
     assert made[1] - made[0] <= calls * (bodies[1] - bodies[0])
+
+
+def test_a_further_voussoir_is_data_in_few_calls() -> None:
+    made = []
+    for voussoirs in (31, 121):
+        settings = CATALOGUE["arch"](voussoirs=voussoirs)
+        # Its mesh and its times are kept.
+        settings.structure()
+        made.append(calls_of(settings.structure))
+    assert made[1] - made[0] <= 65 * (121 - 31)

@@ -209,7 +209,7 @@ def test_a_load_acts_at_its_place_whatever_the_mesh():
     settings = settings_of(voussoirs=4, elements=3, live=100.0, displacement=0.0)
     shares = settings.ring.under_load(settings.path("place_load"))
     np.testing.assert_allclose(shares.sum(axis=(0, 1)), 1.0)
-    x = np.einsum("vnt,vn->t", shares, settings.ring.backs()[:, :, 0])
+    x = np.einsum("vnt,vn->t", shares, settings.ring.backs[:, :, 0])
     assert x[0] == pytest.approx(-1.075)
     assert x[-1] == pytest.approx(1.075)
     assert np.all(np.diff(x) >= 0.0)

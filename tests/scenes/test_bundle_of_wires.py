@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from solver.arrays import sparse_factor
+from solver.discrete.plane.bodies_problem import problem_of
 from solver.discrete.plane.wires import DOWN, UP, Packing
+from solver.kept import KEPT
 from solver.latin import Latin, iterations
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
@@ -69,6 +72,21 @@ def test_wires_in_alike_places_share_operators():
     assert len(operators) <= 14
     owners = [id(part.elasticity) for part in problem.substructures]
     assert max(owners.count(owner) for owner in operators) == 7
+
+
+def test_wires_of_one_shape_are_condensed_once(monkeypatch):
+    structure = settings_of(elements=4, instants=3).structure()
+    condensed = []
+
+    def factor(matrix):
+        condensed.append(matrix.shape)
+        return sparse_factor(matrix)
+
+    monkeypatch.setattr("solver.discrete.elements.sparse_factor", factor)
+    KEPT.clear()
+    problem_of(structure)
+    # Above one wire and below another the same wire has its directions turned round.
+    assert len(condensed) == len({id(body.shape) for body in structure.bodies})
 
 
 @pytest.mark.parametrize(("elements", "error"), [(8, 0.06), (16, 0.02)])

@@ -212,7 +212,7 @@ def test_the_limit_of_a_load_is_that_of_rigid_stones(voussoirs, place):
     bare = settings.structure().without(LIVE)
     factors = load_factors(discretise(settings), discrete.discretise(bare))
     shares = settings.ring.under_load(np.array([place]))[:, :, 0]
-    along = np.sum(shares * settings.ring.backs()[:, :, 0])
+    along = np.sum(shares * settings.ring.backs[:, :, 0])
     stone = int(shares.any(axis=1).argmax())
     limit = rigid_load(bare, stone, along, settings.unit_weight)
     assert factors[-1] * 100.0 == pytest.approx(limit, rel=0.01)

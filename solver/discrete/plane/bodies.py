@@ -21,14 +21,16 @@ from solver.checks import (
     check_value,
 )
 from solver.discrete.plane.bodies_refused import (
+    check_chains,
     check_held,
-    check_joints,
     check_load,
     check_names,
+    check_pairs,
     check_weight,
 )
 from solver.discrete.plane.body import Body, Held, Joint, Load
 from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.node_pairs import NodePairs
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Description, Direction, Footing, Loop
@@ -97,9 +99,13 @@ class Bodies:
             shown = [each.name for each in self._given]
             check_value("Bodies.shown", self.shown, Choice(tuple(shown)))
         instants = len(self.instants)
-        for body in self.bodies:
+        # Most bodies have the very same weight.
+        by_weight = {id(body.weight): body for body in reversed(self.bodies)}
+        for body in by_weight.values():
             check_weight(body, instants)
-        check_joints(self.bodies, self.joints)
+        check_chains(self.bodies, self.joints)
+        if self.joints:
+            check_pairs(self.bodies, self.joints, self.pairs, self.nodes)
         for held in self.held:
             check_held(self.bodies, held, instants)
         for load in self.loads:
@@ -115,10 +121,19 @@ class Bodies:
         return np.cumsum([0, *sizes])
 
     @cached_property
+    def nodes(self) -> Array:
+        """Coordinates of the nodes of all bodies, shape (n_nodes, 2), m."""
+        return np.concatenate([body.nodes for body in self.bodies])
+
+    @cached_property
+    def pairs(self) -> NodePairs:
+        """Pairs of nodes of all joints."""
+        return NodePairs.of(self.joints, self.first_nodes)
+
+    @cached_property
     def box(self) -> tuple[Array, Array]:
         """Lower left corner of all bodies, and their size, shape (2,) both, m."""
-        nodes = np.concatenate([body.nodes for body in self.bodies])
-        return nodes.min(axis=0), np.ptp(nodes, axis=0)
+        return self.nodes.min(axis=0), np.ptp(self.nodes, axis=0)
 
     @property
     def _given(self) -> list[Held | Load]:

@@ -36,7 +36,7 @@ def problem_of(structure: Bodies) -> Problem:
     """
     cut = CutBodies(structure)
     scales = cut.scales
-    nodes = np.concatenate([body.nodes for body in structure.bodies]) / cut.length
+    nodes = structure.nodes / cut.length
     inside = Inside(cut.parts, nodes, scales, len(structure.instants))
     problem = Problem(
         substructures=inside.substructures(),

@@ -11,10 +11,13 @@ from solver.arrays import Array, Flags, Indices
 from solver.checks import Count, Numbers, check_value
 from solver.discrete.plane.body import Body, Held, Joint, Load
 from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.node_pairs import NodePairs, along_joints
 from solver.refusal import RefusedError, Words
 
 RESERVED = "contacts", "supports"
 """Names of the laws of all joints between bodies, and of all on supports."""
+UNIT = 1e-9
+"""Largest difference of the length of a normal from 1."""
 APART = 0.05
 """Largest distance of the nodes of a pair beyond their gap, over the distance to the
 next node: the middles of edges lie inside a round body."""
@@ -66,19 +69,20 @@ def check_load(bodies: Sequence[Body], load: Load, instants: int) -> None:
     check_value(f"{load}.force", load.force, Numbers((shape,)))
 
 
-def check_joints(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
-    """Refuse chains that follow no edges or do not face each other."""
+def check_chains(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
+    """Refuse bodies that do not exist, and chains of nodes that follow no edges."""
+    any_body = Count(0, len(bodies) - 1)
     # Equal chains of one shape are checked once: voussoirs are alike.
     known = set[tuple[int, bytes]]()
     for joint in joints:
         for number, nodes in joint.sides:
-            check_value(f"{joint} on body", number, Count(0, len(bodies) - 1))
+            if any_body.flaw(number) is not None:
+                check_value(f"{joint} on body", number, any_body)
             body = bodies[number]
-            if _key(body, nodes) not in known:
+            key = _key(body, nodes)
+            if key not in known:
                 _check_chain(body, joint, nodes)
-                known.add(_key(body, nodes))
-    _check_normals(bodies, joints)
-    _check_opposite(bodies, joints)
+                known.add(key)
 
 
 def _key(body: Body, nodes: Indices) -> tuple[int, bytes]:
@@ -112,26 +116,57 @@ def _check_nodes(body: Body, owner: str, nodes: Indices) -> None:
         )
 
 
-def _check_normals(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
-    """Refuse normals that point out of the body above."""
-    on_meshes = [each for each in joints if isinstance(bodies[each.above].shape, Mesh)]
-    if not on_meshes:
-        return
+def check_pairs(
+    bodies: Sequence[Body], joints: Sequence[Joint], pairs: NodePairs, nodes: Array
+) -> None:
+    """Refuse normals of other lengths or out of bodies, and pairs that are far apart.
+
+    `nodes` are the positions of the nodes of all bodies, (n_nodes, 2), m.
+    """
+    _check_lengths(joints, pairs)
+    _check_directions(bodies, joints, pairs)
+    _check_opposite(joints, pairs, nodes)
+
+
+def _check_lengths(joints: Sequence[Joint], pairs: NodePairs) -> None:
+    """Refuse normals of another length than 1."""
+    differences = np.abs(np.hypot(*pairs.normals.T) - 1.0)
+    if np.any(differences > UNIT):
+        joint, number, _ = _first(differences, differences > UNIT, joints, pairs)
+        length = float(np.hypot(*joint.normals[number]))
+        raise RefusedError(
+            f"{joint}.normals",
+            Words(f"normal {number} of length {length:g}"),
+            "vectors of length 1",
+            "divide each by its length",
+        )
+
+
+def _check_directions(
+    bodies: Sequence[Body], joints: Sequence[Joint], pairs: NodePairs
+) -> None:
+    """Refuse normals that point out of the body above, if it is a mesh."""
     # Normals in the axes of a shape are the same at equal chains of nodes.
     known = dict[tuple[int, bytes], Array]()
     outward = []
-    for joint in on_meshes:
-        key = _key(bodies[joint.above], joint.nodes)
+    for joint in joints:
+        body = bodies[joint.above]
+        key = _key(body, joint.nodes)
         if key not in known:
-            normals = bodies[joint.above].shape.outward(joint.nodes)
-            known[key] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+            # The line of beams has a body on both of its sides.
+            known[key] = np.zeros((len(joint.nodes), 2))
+            if isinstance(body.shape, Mesh):
+                normals = body.shape.outward(joint.nodes)
+                sizes = np.linalg.norm(normals, axis=1, keepdims=True)
+                known[key] = normals / sizes
         outward.append(known[key])
-    rotations = np.array([bodies[joint.above].rotation for joint in on_meshes])
-    turned = np.repeat(rotations, [len(joint.nodes) for joint in on_meshes], axis=0)
-    normals = np.concatenate([joint.normals for joint in on_meshes])
-    along = np.einsum("nab,nb,na->n", turned, np.concatenate(outward), normals)
-    if np.any(along >= 0.0):
-        joint, number, _ = _first(along, along >= 0.0, on_meshes)
+    rotations = np.array([bodies[joint.above].rotation for joint in joints])
+    turned = rotations[pairs.joints]
+    along = np.einsum("nab,nb,na->n", turned, np.concatenate(outward), pairs.normals)
+    is_mesh = np.array([isinstance(bodies[each.above].shape, Mesh) for each in joints])
+    is_refused = (along >= 0.0) & is_mesh[pairs.joints]
+    if is_refused.any():
+        joint, number, _ = _first(along, is_refused, joints, pairs)
         raise RefusedError(
             f"{joint}.normals",
             Words(f"normal {number} out of {bodies[joint.above]}"),
@@ -140,22 +175,19 @@ def _check_normals(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
         )
 
 
-def _check_opposite(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
-    """Refuse nodes of a pair that are farther apart than their gap."""
-    of_two = [joint for joint in joints if joint.below is not None]
-    if not of_two:
-        return
-    sizes = [len(joint.nodes) for joint in of_two]
-    above, below = _positions(bodies, of_two)
+def _check_opposite(joints: Sequence[Joint], pairs: NodePairs, nodes: Array) -> None:
+    """Refuse nodes of a pair, at positions in m, that are apart beyond their gap."""
+    sizes = np.diff(pairs.first)
+    above = nodes[pairs.above]
     # Steps from a joint to the next are none.
-    starts = np.cumsum([0, *sizes[:-1]])
     steps = np.linalg.norm(np.diff(above, axis=0, prepend=np.inf), axis=1)
-    steps[starts] = np.inf
-    shortest = np.repeat(np.minimum.reduceat(steps, starts), sizes)
-    gaps = [np.broadcast_to(joint.gap, len(joint.nodes)) for joint in of_two]
-    apart = np.linalg.norm(above - below, axis=1) - np.abs(np.concatenate(gaps))
-    if np.any(apart > APART * shortest):
-        joint, number, distance = _first(apart, apart > APART * shortest, of_two)
+    steps[pairs.first[:-1]] = np.inf
+    shortest = np.repeat(np.minimum.reduceat(steps, pairs.first[:-1]), sizes)
+    gaps = along_joints([joint.gap for joint in joints], sizes.tolist())
+    apart = np.linalg.norm(above - nodes[pairs.below], axis=1) - np.abs(gaps)
+    is_refused = (pairs.below >= 0) & (apart > APART * shortest)
+    if is_refused.any():
+        joint, number, distance = _first(apart, is_refused, joints, pairs)
         raise RefusedError(
             f"{joint}.nodes_below",
             Words(f"nodes {number} of both chains {distance:g} m too far apart"),
@@ -164,25 +196,14 @@ def _check_opposite(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
         )
 
 
-def _positions(bodies: Sequence[Body], joints: Sequence[Joint]) -> tuple[Array, Array]:
-    """Positions of all nodes above and below of joints of bodies, (n, 2) both, m."""
-    positions: tuple[list[Array], list[Array]] = [], []
-    for joint in joints:
-        for side, (number, nodes) in zip(positions, joint.sides, strict=True):
-            side.append(bodies[number].nodes[nodes])
-    above, below = positions
-    return np.concatenate(above), np.concatenate(below)
-
-
 def _first(
-    values: Array, is_refused: Flags, joints: Sequence[Joint]
+    values: Array, is_refused: Flags, joints: Sequence[Joint], pairs: NodePairs
 ) -> tuple[Joint, int, float]:
     """First joint with a pair that is refused, its worst pair, and the value of that.
 
     Values, large where they are bad, and flags are those of the pairs of all joints,
     shape (n,).
     """
-    of_joint = np.repeat(np.arange(len(joints)), [len(each.nodes) for each in joints])
-    first = of_joint[is_refused.argmax()]
-    of_first = values[of_joint == first]
+    first = int(pairs.joints[is_refused.argmax()])
+    of_first = values[pairs.first[first] : pairs.first[first + 1]]
     return joints[first], int(of_first.argmax()), float(of_first.max())

@@ -12,22 +12,23 @@ from solver.checks import (
     ANY_NUMBER,
     NON_NEGATIVE,
     POSITIVE,
+    ROWS,
     Count,
     Either,
-    Kind,
     Number,
     Numbers,
     Part,
-    check_value,
+    check,
 )
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.plane.stack import MOST_POISSON
 from solver.refusal import RefusedError, Words
 
-UNIT = 1e-9
-"""Largest difference of the length of a normal from 1."""
 Shape = Mesh | Beam
+SHAPE = Part(Mesh, Beam)
+POISSON = Number(-1.0, MOST_POISSON, above=True)
+POINT = Numbers(((2,),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,15 +72,14 @@ class Body:
     substructures: int = 1
 
     def __post_init__(self) -> None:
-        kinds: dict[str, Kind] = {
-            "shape": Part(Mesh, Beam),
-            "young": POSITIVE,
-            "poisson": Number(-1.0, MOST_POISSON, above=True),
-            "origin": Numbers(((2,),)),
-            "angle": ANY_NUMBER,
-        }
-        for name, kind in kinds.items():
-            check_value(f"{self}.{name}", getattr(self, name), kind)
+        check(
+            self,
+            shape=SHAPE,
+            young=POSITIVE,
+            poisson=POISSON,
+            origin=POINT,
+            angle=ANY_NUMBER,
+        )
         if self.shape.flaw:
             raise RefusedError(
                 f"{self}.shape",
@@ -87,8 +87,7 @@ class Body:
                 "one piece of elements whose corners run counter-clockwise round them",
                 "mend the mesh there",
             )
-        parts = Count(1, len(self.shape.centres))
-        check_value(f"{self}.substructures", self.substructures, parts)
+        check(self, substructures=Count(1, len(self.shape.centres)))
 
     def __str__(self) -> str:
         return f"Body {self.name!r}"
@@ -145,23 +144,15 @@ class Joint:
     def __post_init__(self) -> None:
         size = len(self.nodes)
         chain = Numbers(((size,),), low=0, whole=True)
-        check_value(f"{self}.nodes", self.nodes, chain)
+        check(
+            self,
+            nodes=chain,
+            normals=Numbers(((size, 2),)),
+            gap=Either(ANY_NUMBER, Numbers(((size,),))),
+            friction=Either(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
+        )
         if self.below is not None:
-            check_value(f"{self}.nodes_below", self.nodes_below, chain)
-        check_value(f"{self}.normals", self.normals, Numbers(((size, 2),)))
-        along = Numbers(((size,),))
-        check_value(f"{self}.gap", self.gap, Either(ANY_NUMBER, along))
-        along = Numbers(((size,),), low=0.0)
-        check_value(f"{self}.friction", self.friction, Either(NON_NEGATIVE, along))
-        lengths = np.linalg.norm(self.normals, axis=1)
-        number = int(np.abs(lengths - 1.0).argmax())
-        if abs(lengths[number] - 1.0) > UNIT:
-            raise RefusedError(
-                f"{self}.normals",
-                Words(f"normal {number} of length {lengths[number]:g}"),
-                "vectors of length 1",
-                "divide each by its length",
-            )
+            check(self, nodes_below=chain)
 
     def __str__(self) -> str:
         return f"Joint {self.name!r}"
@@ -197,10 +188,12 @@ class Held:
     displacement: Array
 
     def __post_init__(self) -> None:
-        check_value(f"{self}.nodes", self.nodes, Numbers(((None,),), low=0, whole=True))
-        check_value(f"{self}.axis", self.axis, Count(0, 2))
-        kind = Numbers(((None,), (len(self.nodes), None)))
-        check_value(f"{self}.displacement", self.displacement, kind)
+        check(
+            self,
+            nodes=ROWS,
+            axis=Count(0, 2),
+            displacement=Numbers(((None,), (len(self.nodes), None))),
+        )
 
     def __str__(self) -> str:
         return f"Held {self.name!r}"
@@ -221,9 +214,7 @@ class Load:
     force: Array
 
     def __post_init__(self) -> None:
-        check_value(f"{self}.nodes", self.nodes, Numbers(((None,),), low=0, whole=True))
-        kind = Numbers(((len(self.nodes), 2, None),))
-        check_value(f"{self}.force", self.force, kind)
+        check(self, nodes=ROWS, force=Numbers(((len(self.nodes), 2, None),)))
 
     def __str__(self) -> str:
         return f"Load {self.name!r}"

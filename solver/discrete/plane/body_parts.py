@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import skfem
 from scipy import sparse
 
 from solver.arrays import Array, Indices
@@ -20,6 +21,7 @@ from solver.discrete.plane.mesh_elasticity import (
     mesh_stiffness,
     mesh_strains,
     mesh_volumes,
+    quadratic_basis,
 )
 from solver.discrete.plane.meshes import Mesh
 from solver.kept import content_of
@@ -100,11 +102,16 @@ class ShapePart:
         """Stiffness, shape (n_nodes n_axes, n_nodes n_axes), scaled."""
         shape = self.body.shape
         if isinstance(shape, Mesh):
-            whole = mesh_stiffness(shape, self.chosen, self._elastic)
-        else:
-            whole = shape.stiffness(self.body.young / self.young, self.chosen)
+            return mesh_stiffness(self._basis, self.nodes, self._elastic)
+        whole = shape.stiffness(self.body.young / self.young, self.chosen)
         dofs = np.add.outer(self.n_axes * self.nodes, np.arange(self.n_axes)).ravel()
         return sparse.csr_array(whole[dofs][:, dofs])
+
+    @cached_property
+    def _basis(self) -> skfem.Basis:
+        """Functions of the elements of a mesh."""
+        assert isinstance(self.body.shape, Mesh)
+        return quadratic_basis(self.body.shape, self.chosen)
 
     @cached_property
     def _elastic(self) -> Array:
@@ -117,7 +124,7 @@ class ShapePart:
         """Volume that belongs to each node, shape (n_nodes,), m^3."""
         shape = self.body.shape
         if isinstance(shape, Mesh):
-            return mesh_volumes(shape, self.chosen)[self.nodes]
+            return mesh_volumes(self._basis)[self.nodes]
         return shape.volumes(self.chosen)[self.nodes]
 
     def force(self, weight: Array | None, load: Array | None) -> Array | None:
@@ -157,15 +164,15 @@ class ShapePart:
         """
         shape = self.body.shape
         if isinstance(shape, Mesh):
-            strains = mesh_strains(shape, self.chosen)
+            strains = mesh_strains(shape, self.chosen, self.nodes)
             elastic = self._elastic
         else:
-            strains = shape.strains(self.chosen)
+            dofs = np.add.outer(2 * self.nodes, np.arange(2)).ravel()
+            strains = shape.strains(self.chosen)[:, dofs]
             # A beam has the stress of its axis, and half of 2 xy.
             elastic = np.diag([1.0, 1.0, 0.5]) * self.body.young / self.young
-        dofs = np.add.outer(2 * self.nodes, np.arange(2)).ravel()
         blocks = sparse.kron(sparse.eye_array(len(self.chosen)), elastic)
-        return sparse.csr_array(blocks @ strains[:, dofs])
+        return sparse.csr_array(blocks @ strains)
 
     def stiffness_in(self, frames: Array) -> sparse.csc_array:
         """Stiffness in the directions at each node, (n_nodes n_axes, n_nodes n_axes).

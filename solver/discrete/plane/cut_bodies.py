@@ -13,8 +13,10 @@ from solver.discrete.condensed_part import (
     CondensedPart,
     Operator,
     Trace,
+    kept_by,
     numbered,
 )
+from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
 from solver.discrete.plane.body_parts import ShapePart
@@ -69,18 +71,20 @@ class CutBodies:
                 shapes[key] = CutShape(body.shape, body.substructures)
         self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
         self.frames = NodeFrames(
-            bodies, structure.first_nodes, structure.joints, structure.held
+            bodies, structure.first_nodes, structure.pairs, structure.held
         )
         self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
+        self._body_of_parts = np.repeat(np.arange(len(bodies)), counts).tolist()
         self.shape_parts = self._of_shapes()
         self._traces: list[dict[Hashable, Trace]] = [{} for _ in self.shape_parts]
         self._trace_pieces()
         self._trace_seams()
         self._trace_held()
         self._operators = dict[Hashable, Operator]()
+        self._stiffnesses = dict[Hashable, SchurComplement]()
         self.parts = list(self._parts())
 
     def is_mesh(self, number: int) -> bool:
@@ -233,51 +237,69 @@ class CutBodies:
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
-        loads = self._loads()
-        for body, of_body in enumerate(self.structure.bodies):
-            first_node = self.structure.first_nodes[body]
-            for part in range(of_body.substructures):
-                owner = self.owner(body, part)
-                if not self._traces[owner]:
-                    raise RefusedError(
-                        f"Bodies.bodies[{body}]",
-                        Words(f"{of_body} without a joint or hold"),
-                        "bodies that something holds",
-                        "join it to another body, or hold some of its nodes",
-                    )
-                own = self.shape_parts[owner]
-                frames = self._global_frames(body, own)
-                force = own.force(of_body.weight, loads.get(owner))
-                if force is not None:
-                    turned = frames[:, :, :2] @ force / (self.young * self.length)
-                    force = turned.reshape(-1, force.shape[-1])
-                rows, n_rows = numbered(self._traces[owner], n_rows)
-                yield CondensedPart(
-                    mesh=own,
-                    operator=self._operator(body, owner, force is not None),
-                    nodes=first_node + own.nodes,
-                    body=body,
-                    rows=rows,
-                    force=force,
-                    frames=frames,
-                    rotation=of_body.rotation,
+        stacks = self._stacks()
+        for owner, (nodes, frames, force) in enumerate(stacks):
+            body = self._body_of_parts[owner]
+            of_body = self.structure.bodies[body]
+            if not self._traces[owner]:
+                raise RefusedError(
+                    f"Bodies.bodies[{body}]",
+                    Words(f"{of_body} without a joint or hold"),
+                    "bodies that something holds",
+                    "join it to another body, or hold some of its nodes",
                 )
+            rows, n_rows = numbered(self._traces[owner], n_rows)
+            yield CondensedPart(
+                mesh=self.shape_parts[owner],
+                operator=self._operator(owner, nodes, force is not None),
+                nodes=nodes,
+                body=body,
+                rows=rows,
+                force=force,
+                frames=frames,
+                rotation=of_body.rotation,
+            )
 
-    def _global_frames(self, body: int, part: ShapePart) -> Array:
-        """Motion of the degrees of freedom of a part, (n_nodes, n_axes, 3)."""
-        frames = np.zeros((len(part.nodes), part.n_axes, N_AXES))
-        frames[:, :2, :2] = self.frames.of_body(body)[part.nodes]
-        frames[:, 2:, 2] = 1.0
-        return frames
+    def _stacks(self) -> list[tuple[Indices, Array, Array | None]]:
+        """Nodes of each part, motions of its degrees of freedom, and forces on these.
 
-    def _operator(self, body: int, owner: int, has_force: bool) -> Operator:
-        """Operator of a part, the same for parts alike.
+        Shapes (n_nodes,), (n_nodes, n_axes, 3) and (n_nodes n_axes, n_instants),
+        scaled; None without forces. Parts alike in shape and weight are one stack.
+        """
+        motions = np.zeros((self.structure.first_nodes[-1], N_AXES, N_AXES))
+        motions[:, :2, :2] = self.frames.frames
+        motions[:, 2, 2] = 1.0
+        loads = self._loads()
+        alike = dict[Hashable, list[int]]()
+        for owner, own in enumerate(self.shape_parts):
+            key: Hashable = owner
+            if owner not in loads:
+                weight = self.structure.bodies[self._body_of_parts[owner]].weight
+                key = id(own), id(weight)
+            alike.setdefault(key, []).append(owner)
+        found = dict[int, tuple[Indices, Array, Array | None]]()
+        for owners in alike.values():
+            own = self.shape_parts[owners[0]]
+            bodies = [self._body_of_parts[owner] for owner in owners]
+            nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
+            frames = motions[nodes, : own.n_axes]
+            weight = self.structure.bodies[bodies[0]].weight
+            force = own.force(weight, loads.get(owners[0]))
+            turned: Array | list[None] = [None] * len(owners)
+            if force is not None:
+                on_nodes = frames[..., :2] @ force / (self.young * self.length)
+                turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
+            for place, owner in enumerate(owners):
+                found[owner] = nodes[place], frames[place], turned[place]
+        return [found[owner] for owner in range(len(self.shape_parts))]
+
+    def _operator(self, owner: int, nodes: Indices, has_force: bool) -> Operator:
+        """Operator of a part, the same for parts alike; its nodes are (n_nodes,).
 
         Members of a group of parts have forces inside all or none of them.
         """
         part = self.shape_parts[owner]
         traces = list(self._traces[owner].values())
-        nodes = self.structure.first_nodes[body] + part.nodes
         turned = self._rounded_frames[nodes].tobytes()
         # Most parts that are alike have the very same traces.
         of_traces = tuple(id(trace) for trace in traces)
@@ -295,14 +317,37 @@ class CutBodies:
             has_force,
         )
         if alike not in self._operators:
-            frames = self.local_frames(body, part.nodes)
-            # No load and no friction changes the operator of the first of them.
-            key = "part", part.content, content_of(frames, dofs, direction), alike[-2:]
-            self._operators[alike] = KEPT.of(
-                key, lambda: Operator(part.stiffness_in(frames), traces)
-            )
+            frames = self._own_frames[nodes]
+            condensed = self._condensed(part, frames, kept_by(traces))
+            self._operators[alike] = Operator(condensed, traces)
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
+
+    def _condensed(
+        self, part: ShapePart, frames: Array, kept: Indices
+    ) -> SchurComplement:
+        """Stiffness of a part condensed onto degrees of freedom that are kept, (n,).
+
+        `frames` are the directions at its nodes in its axes, (n_nodes, 2, 2). What lies
+        below a joint has directions that are turned round from those above: both are
+        condensed in those that have a positive first component.
+        """
+        nodes, axes = np.divmod(kept, part.n_axes)
+        signs = np.ones(len(kept))
+        moves = np.flatnonzero(axes < 2)
+        rows = nodes[moves], axes[moves]
+        along_x, along_y = frames[rows].T
+        signs[moves] = np.sign(np.where(along_x == 0.0, along_y, along_x))
+        towards = frames.copy()
+        towards[rows] *= signs[moves, None]
+        alike = id(part), kept.tobytes(), _rounded(towards).tobytes()
+        if alike not in self._stiffnesses:
+            # No load and no friction changes the stiffness of the first of them.
+            key = "part", part.content, content_of(towards, kept)
+            self._stiffnesses[alike] = KEPT.of(
+                key, lambda: SchurComplement(part.stiffness_in(towards), kept)
+            )
+        return self._stiffnesses[alike].turned_round(signs)
 
     def _loads(self) -> Mapping[int, Array]:
         """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.

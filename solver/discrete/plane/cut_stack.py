@@ -13,10 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices, read_only
-from solver.discrete.condensed_part import CondensedPart, Operator, Trace, numbered
+from solver.discrete.condensed_part import (
+    CondensedPart,
+    Operator,
+    Trace,
+    kept_by,
+    numbered,
+)
 from solver.discrete.elements import (
     EDGE_MASS,
     Rectangle,
+    SchurComplement,
     elastic_matrix,
     legendre_basis,
 )
@@ -178,7 +185,10 @@ class CutStack:
         key = "operator", shape, material, traces, has_force
         of_mesh = [self._trace(trace, mesh, modulus) for trace in traces]
         # No load and no friction changes it.
-        return KEPT.of(key, lambda: Operator(mesh.outline, of_mesh))
+        return KEPT.of(
+            key,
+            lambda: Operator(SchurComplement(mesh.outline, kept_by(of_mesh)), of_mesh),
+        )
 
     def macro_basis(self, number: int) -> Array:
         """Macro basis of one component on a piece by number, (n_pairs, n_macro).

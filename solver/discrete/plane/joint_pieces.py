@@ -14,6 +14,7 @@ from solver.arrays import Array, Flags, Indices
 from solver.discrete.plane.body import Body, Held, Joint
 from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_laws import JointPiece
+from solver.discrete.plane.node_pairs import NodePairs
 from solver.refusal import RefusedError, Words
 
 ALIKE = 1e-9
@@ -51,7 +52,7 @@ class NodeFrames:
         self,
         bodies: Sequence[Body],
         first_nodes: Indices,
-        joints: Sequence[Joint],
+        pairs: NodePairs,
         held: Sequence[Held],
     ) -> None:
         self.first_nodes = first_nodes
@@ -66,33 +67,14 @@ class NodeFrames:
         # Nodes with the directions of a joint, and those of which joints disagree.
         self._of_joint = np.zeros(len(self.frames), dtype=bool)
         self._unlike = np.zeros(len(self.frames), dtype=bool)
-        above, below, normals = self._pairs_of(joints)
-        has_below = below >= 0
-        nodes = np.concatenate([above, below[has_below]])
+        normals = snapped(pairs.normals)
+        has_below = pairs.below >= 0
+        nodes = np.concatenate([pairs.above, pairs.below[has_below]])
         self._turn(nodes, np.concatenate([normals, normals[has_below]]))
         self._hold()
-        has_pair = self._pairs_there(above, below, normals)
-        sizes_of_joints = [len(joint.nodes) for joint in joints]
-        ends = np.cumsum([0, *sizes_of_joints]).tolist()
-        self.has_pair = [has_pair[first:last] for first, last in pairwise(ends)]
-
-    def _pairs_of(self, joints: Sequence[Joint]) -> tuple[Indices, Indices, Array]:
-        """Nodes above and below of all pairs of joints, (n,) both, and normals, (n, 2).
-
-        The node below is -1 on a support.
-        """
-        above = [np.zeros(0, dtype=np.intp)]
-        below = [np.zeros(0, dtype=np.intp)]
-        normals = [np.zeros((0, 2))]
-        for joint in joints:
-            above.append(self.first_nodes[joint.above] + joint.nodes)
-            if joint.below is not None and joint.nodes_below is not None:
-                below.append(self.first_nodes[joint.below] + joint.nodes_below)
-            else:
-                below.append(np.full(len(joint.nodes), -1))
-            normals.append(joint.normals)
-        whole = snapped(np.concatenate(normals))
-        return np.concatenate(above), np.concatenate(below), whole
+        has_pair = self._pairs_there(pairs.above, pairs.below, normals)
+        ends = pairwise(pairs.first.tolist())
+        self.has_pair = [has_pair[first:last] for first, last in ends]
 
     def _turn(self, nodes: Indices, normals: Array) -> None:
         """Give nodes, (n,), the directions of their first joint; normals are (n, 2)."""
@@ -113,7 +95,10 @@ class NodeFrames:
         self.frames[turned_back] = np.eye(2)
 
     def _pairs_there(self, above: Indices, below: Indices, normals: Array) -> Flags:
-        """Check which pairs of joints there are, (n,); parameters as of `_pairs_of`."""
+        """Check which pairs there are, (n,), of nodes above and below, (n,) both.
+
+        Normals are (n, 2); the node below is -1 on a support.
+        """
         has_below = below >= 0
         across = np.abs(normals) > 0.0
         held_above = (self._held[above] & across).any(axis=1)

@@ -10,6 +10,7 @@ from solver.arrays import Array, Flags
 from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
+from solver.discrete.plane.node_pairs import along_joints
 from solver.laws import Contact, NodalStiffness
 from solver.laws.stiffness import of_whole_mesh
 
@@ -21,8 +22,8 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
     sizes = [len(joint.nodes) for joint in joints]
     # Numbers among the nodes of all these joints.
     nodes = (np.cumsum(sizes) - sizes)[pairs.joints] + pairs.places
-    gap = _along_joints([joint.gap for joint in joints], sizes)
-    mu = _along_joints([joint.friction for joint in joints], sizes)
+    gap = along_joints([joint.gap for joint in joints], sizes)
+    mu = along_joints([joint.friction for joint in joints], sizes)
     surface = Surface(
         positions=_positions(cut, numbers)[nodes],
         law=cut.structure.friction_law,
@@ -31,15 +32,6 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
     )
     beside = _stiffness_beside(cut, numbers, pairs)
     return contact_of(pairs, surface, cut.scales, beside, _macro_bases(cut, pairs))
-
-
-def _along_joints(values: Sequence[Array | float], sizes: Sequence[int]) -> Array:
-    """Values of joints of these sizes, node by node: (n_nodes,)."""
-    constants = [value for value in values if isinstance(value, float)]
-    if len(constants) == len(values):
-        return np.repeat(constants, sizes)
-    along = zip(values, sizes, strict=True)
-    return np.concatenate([np.broadcast_to(value, size) for value, size in along])
 
 
 def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:

@@ -7,6 +7,7 @@ import skfem
 from scipy import sparse
 
 from solver.arrays import Array, Indices
+from solver.discrete.elements import dofs_of
 from solver.discrete.plane.meshes import Mesh
 
 EXACT = {
@@ -17,36 +18,41 @@ EXACT = {
 by their number of corners."""
 
 
-def mesh_stiffness(mesh: Mesh, elements: Indices, elastic: Array) -> sparse.csr_array:
-    """Stiffness of some elements of a mesh, (2 n_nodes, 2 n_nodes), in N/m per m.
-
-    `elastic` is an `elastic_matrix`, (3, 3), Pa.
-    """
-    element = skfem.ElementVector(_element(mesh))
+def quadratic_basis(mesh: Mesh, elements: Indices) -> skfem.Basis:
+    """Quadratic functions of some elements of a mesh, at points of integration."""
     order = EXACT[mesh.elements.shape[1]]
-    basis = skfem.Basis(mesh.grid, element, elements=elements, intorder=order)
+    return skfem.Basis(mesh.grid, _element(mesh), elements=elements, intorder=order)
+
+
+def mesh_stiffness(
+    basis: skfem.Basis, nodes: Indices, elastic: Array
+) -> sparse.csr_array:
+    """Stiffness of the elements of a basis, (2 n_nodes, 2 n_nodes), in N/m per m.
+
+    `nodes` are numbers of their nodes in the mesh, ascending, (n_nodes,), `elastic` is
+    an `elastic_matrix`, (3, 3), Pa.
+    """
     strains = _strains(basis)
     stresses = np.einsum("ab,bieq,eq->aieq", elastic, strains, basis.dx)
     blocks = np.einsum("aieq,ajeq->ije", strains, stresses, optimize=True)
-    dofs = basis.element_dofs
+    dofs = dofs_of(np.searchsorted(nodes, basis.element_dofs.T)).T
     rows = np.broadcast_to(dofs[:, None], blocks.shape)
     columns = np.broadcast_to(dofs, blocks.shape)
     places = rows.ravel(), columns.ravel()
-    size = 2 * len(mesh.nodes)
+    size = 2 * len(nodes)
     return sparse.csr_array(sparse.coo_array((blocks.ravel(), places), (size, size)))
 
 
-def mesh_volumes(mesh: Mesh, elements: Indices) -> Array:
-    """Area that belongs to each node, of some elements of a mesh, (n_nodes,), m^2."""
-    order = EXACT[mesh.elements.shape[1]]
-    basis = skfem.Basis(mesh.grid, _element(mesh), elements=elements, intorder=order)
+def mesh_volumes(basis: skfem.Basis) -> Array:
+    """Area that belongs to each node of a mesh, of a basis of it, (n_nodes,), m^2."""
     return np.asarray(skfem.asm(skfem.LinearForm(lambda v, _: 1.0 * v), basis))
 
 
-def mesh_strains(mesh: Mesh, elements: Indices) -> sparse.csr_array:
+def mesh_strains(mesh: Mesh, elements: Indices, nodes: Indices) -> sparse.csr_array:
     """Matrix from nodal displacements to strains at the centres of some elements.
 
     Strains xx, yy, 2 xy of each element in turn, shape (3 n_elements, 2 n_nodes), 1/m.
+    `nodes` are numbers of their nodes in the mesh, ascending, (n_nodes,).
     """
     # The middle of the triangle, or the square, from which elements are mapped.
     middle = np.full((2, 1), 1.0 / 3.0)
@@ -54,27 +60,32 @@ def mesh_strains(mesh: Mesh, elements: Indices) -> sparse.csr_array:
         middle[:] = 0.5
     basis = skfem.Basis(
         mesh.grid,
-        skfem.ElementVector(_element(mesh)),
+        _element(mesh),
         elements=elements,
         quadrature=(middle, np.ones(1)),
     )
     strains = _strains(basis)[..., 0].swapaxes(1, 2)
     size = len(elements)
     rows = np.arange(3 * size).reshape(size, 3).T[:, :, None]
-    both = np.broadcast_arrays(rows, basis.element_dofs.T)
+    dofs = dofs_of(np.searchsorted(nodes, basis.element_dofs.T)).T
+    both = np.broadcast_arrays(rows, dofs.T)
     places = both[0].ravel(), both[1].ravel()
-    shape = 3 * size, 2 * len(mesh.nodes)
+    shape = 3 * size, 2 * len(nodes)
     return sparse.csr_array(sparse.coo_array((strains.ravel(), places), shape))
 
 
 def _strains(basis: skfem.Basis) -> Array:
-    """Strains xx, yy, 2 xy of the functions of a basis at its points.
+    """Strains xx, yy, 2 xy by motions of the functions of a basis along x and y.
 
-    Shape (3, n_functions, n_elements, n_points).
+    Shape (3, 2 n_functions, n_elements, n_points): along x and y of each function.
     """
-    gradients = np.stack([each[0].grad for each in basis.basis], axis=2)
-    (xx, xy), (yx, yy) = gradients
-    return np.stack([xx, yy, xy + yx])
+    along_x, along_y = np.stack([each[0].grad for each in basis.basis], axis=1)
+    strains = np.zeros((3, len(along_x), 2, *along_x.shape[1:]))
+    strains[0, :, 0] = along_x
+    strains[1, :, 1] = along_y
+    strains[2, :, 0] = along_y
+    strains[2, :, 1] = along_x
+    return strains.reshape(3, -1, *along_x.shape[1:])
 
 
 def _element(mesh: Mesh) -> skfem.Element:

@@ -238,6 +238,8 @@ class Ring:
         """Joints between neighbours, from left to right."""
         left, right = self.sides
         _, face = self.faces
+        directions = np.stack([np.cos(self.angles), -np.sin(self.angles)], axis=1)
+        normals = np.repeat(directions[:, None], len(left), axis=1)
         joints = []
         for number, name in enumerate(self.joint_names):
             nodes = left
@@ -247,10 +249,14 @@ class Ring:
                 below = face[::-1]
             if number == self.voussoirs:
                 nodes = face
-            angle = self.angles[number]
-            normals = np.tile([np.cos(angle), -np.sin(angle)], (len(nodes), 1))
             joint = Joint(
-                name, number + 1, nodes, number, below, normals, friction=friction
+                name,
+                number + 1,
+                nodes,
+                number,
+                below,
+                normals[number],
+                friction=friction,
             )
             joints.append(joint)
         return joints
@@ -271,6 +277,7 @@ class Ring:
                 held.append(Held(where, body, feet, axis, displacement))
         return held
 
+    @cached_property
     def backs(self) -> Array:
         """Positions of the nodes on the outer side, (voussoirs, n_nodes, 2), m."""
         shapes = np.stack([shape.nodes[self.back] for shape in self.shapes])
@@ -286,7 +293,7 @@ class Ring:
         Their shares of each node, (voussoirs, n_nodes), m^3 for a metre of thickness.
         The height is above the centres, m.
         """
-        points = self.backs()
+        points = self.backs
         widths = np.diff(points[:, ::2, 0], axis=1)
         shares = on_nodes(widths.T, SIMPSON).T
         return np.asarray(shares * (top - points[:, :, 1]))
@@ -306,10 +313,11 @@ class Ring:
 
     def loads(self, name: str, downwards: Array) -> Iterator[Load]:
         """Loads of forces on the outer side, (voussoirs, n_nodes, n_instants), N."""
-        for number, force in enumerate(downwards, start=1):
-            if np.any(force):
-                both = np.stack([np.zeros_like(force), -force], axis=1)
-                yield Load(f"{name} {number}", number, self.back, both)
+        for loaded in np.flatnonzero(downwards.any(axis=(1, 2))).tolist():
+            force = downwards[loaded]
+            both = np.stack([np.zeros_like(force), -force], axis=1)
+            number = loaded + 1
+            yield Load(f"{name} {number}", number, self.back, both)
 
 
 def _mapped(corners: Array) -> Mesh:
