@@ -50,6 +50,8 @@ COLOURS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
 def violations(page: Page, rules: dict[str, Any]) -> list[str]:
     """Violations of some rules."""
     options = {
+        # No rule here asks for style sheets, which would be fetched again.
+        "preload": False,
         # What passes would come with all its elements, half a megabyte.
         "resultTypes": ["violations"],
         "runOnly": rules,
