@@ -43,22 +43,14 @@ COLOURS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
 """Those of them that ask for colours, which are all that differs between themes."""
 
 
-NEW = {"exclude": [["header"], [".sidebar"]]}
-"""Part of the page that another tab or a lesson changes."""
-
-
-def violations(
-    page: Page, rules: dict[str, Any], part: dict[str, Any] | None = None
-) -> list[str]:
-    """Violations of some rules on the page or a part of it."""
+def violations(page: Page, rules: dict[str, Any]) -> list[str]:
+    """Violations of some rules."""
     options = {
-        # No rule here asks for style sheets, which would be fetched again.
-        "preload": False,
         # What passes would come with all its elements, half a megabyte.
         "resultTypes": ["violations"],
         "runOnly": rules,
     }
-    response = Axe().run(page, context=part, options=options).response
+    response = Axe().run(page, options=options).response
     found = []
     for rule in response["violations"]:
         if rule["id"] not in OF_THE_WIDGETS:
@@ -67,13 +59,11 @@ def violations(
 
 
 def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(page: Page) -> None:
-    def is_clean(
-        rules: dict[str, Any] = RULES, part: dict[str, Any] | None = None
-    ) -> None:
+    def is_clean(rules: dict[str, Any] = RULES) -> None:
         # No tooltip is on its way.
         page.mouse.move(640.0, 5.0)
         expect(page.get_by_role("tooltip")).to_have_count(0)
-        assert not (found := violations(page, rules, part)), "\n".join(found)
+        assert not (found := violations(page, rules)), "\n".join(found)
 
     is_solved(page)
     is_clean()
@@ -87,12 +77,12 @@ def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(page: Page) ->
     is_clean(COLOURS)
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
-    is_clean(part=NEW)
+    is_clean()
     button(page, "Live").click()
     button(page, "Lessons").click()
     page.get_by_role("button", name="Is a small indicator a small error?").click()
     expect(button(page, "Show me")).to_be_visible()
-    is_clean(part=NEW)
+    is_clean()
 
 
 def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
