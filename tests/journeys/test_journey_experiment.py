@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+from browser import Chrome, Server
 from pages import (
     ANSWER,
     button,
@@ -13,6 +16,7 @@ from pages import (
     figures,
     go,
     is_solved,
+    visits,
 )
 from playwright.sync_api import Page, expect
 
@@ -34,8 +38,14 @@ def measured() -> str:
     return "\n".join(["time [s],displacement [mm],force [kN]", *lines])
 
 
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page that is opened once: that takes longer than what is done with it."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{ANSWER}")
+
+
 def test_a_case_is_opened_by_its_picture_and_meets_its_number(page: Page) -> None:
-    go(page, f"?{ANSWER}")
     is_solved(page)
     button(page, "Cases").click()
     page.get_by_role("button", name="Bolted lap joint").click()
@@ -72,6 +82,3 @@ def test_a_measured_loop_is_compared_and_fitted_and_the_fit_is_run(
     is_solved(page)
     expect(field(page, "Friction coefficient")).to_have_value("0.25")
     expect(figures(page)).to_contain_text("Distance to rig.csv")
-    button(page, "Files").click()
-    button(page, "Remove rig.csv").click()
-    expect(figures(page)).not_to_contain_text("Distance to")
