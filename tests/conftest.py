@@ -129,7 +129,7 @@ def chrome() -> Iterator[Chrome]:
 def page(chrome: Chrome, server: Server) -> Iterator[Page]:
     """A page that several journeys go on with: an opening takes longer than most do.
 
-    Each test begins with an address of its own, and leaves no file behind.
+    Each test begins with an address of its own.
     """
     with visits(server, chrome) as opened:
         yield opened(f"?{ANSWER}&theme=dark")
