@@ -86,14 +86,15 @@ class PlainText(pn.viewable.Viewer):
     """
 
     object = param.String(doc="The text.")
+    visible = param.Boolean(True, doc="Whether the text is shown.")
 
     def __init__(self, **look: Any) -> None:
         super().__init__()
         self._pane = pn.pane.HTML("", **(looks("line") | look))
 
-    @param.depends("object", watch=True)
+    @param.depends("object", "visible", watch=True)
     def _show(self) -> None:
-        self._pane.object = escape(self.object)
+        self._pane.param.update(object=escape(self.object), visible=self.visible)
 
     def __panel__(self) -> pn.pane.HTML:
         return self._pane

@@ -9,7 +9,7 @@ import pytest
 from app.status import TERMS
 from app.views.catalogue import CARDS
 from app.views.view import View
-from app.widgets import GLOSSARY, MEANINGS, ROW, explained
+from app.widgets import GLOSSARY, MEANINGS, ROW, PlainText, explained
 
 
 @pytest.mark.parametrize("term", TERMS)
@@ -36,3 +36,13 @@ def test_markup_in_a_text_is_text_and_a_term_within_a_word_is_none() -> None:
     written = explained("<b>wrongly</b> researched", *TERMS)
     assert "<" not in written
     assert written.unescape() == "<b>wrongly</b> researched"
+
+
+def test_a_text_is_hidden_and_shown_again_with_what_it_says() -> None:
+    text = PlainText()
+    text.object = "<b>3</b>"
+    text.visible = False
+    assert not text.__panel__().visible
+    text.visible = True
+    assert text.__panel__().visible
+    assert text.__panel__().object == "&lt;b&gt;3&lt;/b&gt;"
