@@ -10,6 +10,7 @@ import pytest
 from small_scenes import SMALL
 
 from solver.arrays import Array
+from solver.discrete.elements import SchurComplement
 from solver.kept import KEPT, Kept, content_of
 from solver.reference.condensation import Condensation
 from solver.reference.incremental import reference_of
@@ -107,13 +108,27 @@ def test_another_structure_has_another_stiffness(changes: dict[str, Any]) -> Non
     assert after.stiffness.tobytes() == alone.stiffness.tobytes()
 
 
-@pytest.mark.parametrize("scene", ["wall", *OF_ANY_SHAPE])
-def test_substructures_of_the_next_run_share_the_operators(scene: str) -> None:
-    settings = small(scene)
+def test_bricks_of_the_next_run_share_the_operators() -> None:
+    settings = small("wall")
     before = discretise(settings).substructures
     after = discretise(with_more_friction(settings)).substructures
     for first, second in zip(before, after, strict=True):
         assert first.elasticity is second.elasticity
+
+
+@pytest.mark.parametrize("scene", ["wall", *OF_ANY_SHAPE])
+def test_the_next_run_condenses_no_substructure(
+    scene: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = small(scene)
+    discretise(settings)
+    with monkeypatch.context() as patched:
+        patched.setattr(SchurComplement, "__init__", None)
+        discretise(with_more_friction(settings))
+    KEPT.clear()
+    monkeypatch.setattr(SchurComplement, "__init__", None)
+    with pytest.raises(TypeError):
+        discretise(settings)
 
 
 @pytest.mark.parametrize(
