@@ -20,8 +20,8 @@ import pytest
 from browser import NO_BROWSER, Chrome, Server, free_port, serving
 from hypothesis import settings
 from hypothesis.internal.constants_ast import Constants
-from pages import ANSWER, Visit, visits
-from playwright.sync_api import Page, sync_playwright
+from pages import Visit, visits
+from playwright.sync_api import sync_playwright
 from proxy import Proxy
 from xdist.scheduler import LoadFileScheduling
 
@@ -123,16 +123,6 @@ def chrome() -> Iterator[Chrome]:
     """The browser."""
     with sync_playwright() as playwright, closing(Chrome(playwright)) as opened:
         yield opened
-
-
-@pytest.fixture(scope="session")
-def page(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page that several journeys go on with: an opening takes longer than most do.
-
-    Each test begins with an address of its own.
-    """
-    with visits(server, chrome) as opened:
-        yield opened(f"?{ANSWER}&theme=dark")
 
 
 @pytest.fixture

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
+import pytest
 from axe_playwright_python.sync_playwright import Axe
+from browser import Chrome, Server
 from pages import (
     ANSWER,
     Visit,
@@ -17,6 +20,7 @@ from pages import (
     go,
     is_solved,
     status,
+    visits,
 )
 from playwright.sync_api import Page, expect
 
@@ -56,6 +60,13 @@ def violations(page: Page, rules: dict[str, Any]) -> list[str]:
         if rule["id"] not in OF_THE_WIDGETS:
             found += [f"{rule['id']}: {node['html'][:160]}" for node in rule["nodes"]]
     return found
+
+
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page in the dark that is opened once for those with mouse or keys."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{ANSWER}&theme=dark")
 
 
 def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(page: Page) -> None:

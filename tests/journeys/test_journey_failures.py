@@ -15,6 +15,7 @@ from browser import Chrome, Server
 from pages import (
     ANSWER,
     ENDLESS,
+    Visit,
     button,
     enter,
     field,
@@ -35,11 +36,6 @@ FOOLISH = (
     "?tab=%00&view=&plots=,,,&pace=never&load=[[0,0],[0,1]]&instant=7",
     "?peak=" + "9" * 4000 + "&%3Cscript%3Ealert(1)%3C/script%3E=1",
 )
-BLOWS = {
-    signal.SIGKILL: "process ended",
-    signal.SIGSTOP: "no sign of life for some seconds",
-}
-"""Signals to a worker, and how the page tells what they do."""
 QUIET = 1.0
 """Seconds without a message after which none is on its way."""
 SPEAK = """async (address) => {
@@ -123,20 +119,30 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
 ) -> None:
     before = server.processes()
 
-    with visits(server, chrome) as visit:
+    def strike(visit: Visit, blow: signal.Signals) -> tuple[Page, int]:
+        """A page, and its worker, which has taken a blow."""
+        known = server.processes()
         page = visit(f"?{ENDLESS}&pace=5 a second")
-        known = before
-        for blow, words in BLOWS.items():
-            expect(status(page)).to_contain_text(re.compile(r"iteration \d"))
-            worker = newest_worker(server, known)
-            known = server.processes()
-            os.kill(worker, blow)
-            expect(page.locator(".status")).to_contain_text(
-                f"{words}; the run was started anew"
-            )
-            painted(page, 3)
-            wait_for(lambda worker=worker: not is_alive(worker))
-    wait_for(lambda: set(server.processes()) <= set(before))
+        expect(status(page)).to_contain_text(re.compile(r"iteration \d"))
+        worker = newest_worker(server, known)
+        os.kill(worker, blow)
+        return page, worker
+
+    def goes_on(page: Page, worker: int, words: str) -> None:
+        expect(page.locator(".status")).to_contain_text(
+            f"{words}; the run was started anew"
+        )
+        painted(page, 3)
+        wait_for(lambda: not is_alive(worker))
+
+    with visits(server, chrome) as visit:
+        stopped = strike(visit, signal.SIGSTOP)
+        # Both waits at once: for the sign of life, and for the end of a page that is
+        # closed.
+        with visits(server, chrome) as visit_too:
+            goes_on(*strike(visit_too, signal.SIGKILL), "process ended")
+        goes_on(*stopped, "no sign of life for some seconds")
+        wait_for(lambda: len(set(server.processes()) - set(before)) == 1)
 
 
 @pytest.mark.parametrize("query", FOOLISH, ids=range(len(FOOLISH)))

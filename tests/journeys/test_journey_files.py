@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+import pytest
 from browser import ROOT, Chrome, Server
 from pages import (
     ANSWER,
@@ -25,6 +26,7 @@ from pages import (
     figures,
     go,
     is_solved,
+    visits,
 )
 from playwright.sync_api import Browser, Dialog, Page, Request, expect
 
@@ -107,6 +109,13 @@ def lie_apart(boxes: Sequence[Any]) -> None:
         assert is_beside or is_below, (one, other)
 
 
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page that is opened once: that takes longer than what is done with it."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{SMALL}")
+
+
 def open_files(page: Page) -> None:
     """Show the run of the address anew, with the place where files are opened."""
     go(page, f"?{SMALL}")
@@ -120,7 +129,7 @@ def open_files(page: Page) -> None:
 def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_and_program(
     page: Page, tmp_path: Path
 ) -> None:
-    open_files(page)
+    is_solved(page)
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
     expect(

@@ -79,10 +79,16 @@ def follow(visit: Visit, code: str) -> Page:
     return page
 
 
+@pytest.fixture(scope="module")
+def page(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page that takes a lesson, and later leads a class."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{ANSWER}")
+
+
 def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     page: Page,
 ) -> None:
-    go(page, f"?{ANSWER}")
     choose(page, QUESTION)
     expect(page.get_by_role("heading", name=QUESTION)).to_be_visible()
     expect(page).to_have_url(re.compile("lesson=small-indicator"))
