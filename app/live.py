@@ -123,12 +123,10 @@ class Live:
         self._sentence.visible = not (is_presented and is_told)
         self.transport.present(is_presented)
         self._fit()
-        size = TEXT
         self._timeline.height = LOW
         if is_presented:
-            size = f"{LARGE * state.height:.0f}px"
             self._timeline.height = int(HIGH * state.height)
-        self._magnify(size)
+        self._magnify(type_size(state))
         self._reshape()
 
     def _choose_cards(self, kinds: Kinds | None) -> None:
@@ -329,6 +327,13 @@ def on_top(offered: Sequence[View] | Sequence[type[View]], state: PageState) -> 
     names = [view.name for view in offered]
     named = [names.index(name) for name in state.plots if name in names]
     return next(iter(named), 0)
+
+
+def type_size(state: PageState) -> str:
+    """Type size of plots, and of the text beside them on a projector, as CSS has it."""
+    if state.view == "present":
+        return f"{LARGE * state.height:.0f}px"
+    return TEXT
 
 
 def column(role: str, *parts: Any) -> pn.Column:

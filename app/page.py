@@ -19,13 +19,12 @@ from app.experiments.whatif import WhatIf
 from app.files.export import LOOK, offers
 from app.lessons.guide import Guide, kinds_beside
 from app.link import Link, read, show
-from app.live import LARGE, STYLE, Live, column, first_needs
+from app.live import STYLE, Live, column, first_needs, type_size
 from app.server import PAGES
 from app.state import TABS, PageState
 from app.status import spoken_status
 from app.supervisor import Supervisor
 from app.transport import TOUCHED
-from app.views.view import TEXT
 from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
 
 COMPACT = {
@@ -227,11 +226,9 @@ class Page:
     def _read(self) -> None:
         """Have the text beside the plots as large as they are."""
         styles = {}
-        size = TEXT
+        size = type_size(self.state)
         if self.state.view == "present":
-            large = LARGE * self.state.height
-            size = f"{large:.0f}px"
-            zoom = f"{large / READ:.2f}"
+            zoom = f"{float(size.removesuffix('px')) / READ:.2f}"
             styles = {
                 "zoom": zoom,
                 "--zoom": zoom,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 
@@ -43,6 +43,9 @@ ROW = 1.3
 """Height of a line of words over its type size."""
 FOOTING = 18.0
 """Depth of the hatching of a footing, px."""
+BESIDE = "left", "right"
+SIDES = *BESIDE, "bottom", "top"
+"""Sides of bodies, those beside them first."""
 EACH = " each"
 """Words behind the value of several equal loads."""
 NARROW = 560.0
@@ -149,15 +152,7 @@ class Layout:
 
         All are along and across the bodies, px; the corner is the lower one.
         """
-        left, right, below, above = _margins(
-            self.description,
-            self.equals,
-            self.arrow,
-            self.letter,
-            self.deepest,
-            self.surroundings,
-            in_rows=self.in_rows,
-        )
+        left, right, below, above = self._margins()
         figure = np.array([self.width, self.height])
         if not self.key_rows:
             left += self.column
@@ -170,6 +165,80 @@ class Layout:
             below += self.row * self.key_rows
         room = np.maximum(figure - [left + right, below + above], 24.0)
         return np.array([left, below]), room, figure
+
+    def _margins(self) -> tuple[float, float, float, float]:
+        """Margins on the left, on the right, below and above, px."""
+        room = {
+            "left": 10.0,
+            "right": 10.0,
+            "bottom": 6.0,
+            "top": 8.0,
+        }
+        for side, size in chain(self._room_of_supports(), self._room_of_loads()):
+            room[side] = max(room[side], size)
+        acts = self.description.acts
+        if any(act.where.startswith("body") for act in acts):
+            # Their words stand above the arrows on top.
+            room["top"] = max(room["top"], self.arrow + 10.0) + 2.2 * self.letter
+        for act, count in zip(acts, self.equals, strict=True):
+            room["top"] += self.row * self.is_told_above(act, count)
+        return room["left"], room["right"], room["bottom"], room["top"]
+
+    def _room_of_supports(self) -> Iterator[tuple[str, float]]:
+        """Sides of the bodies, and the room that supports and ground take there, px."""
+        supports = {"spring": WALL + 16.0, "image": IMAGE, "support": 16.0}
+        for hold in self.description.holds:
+            size = supports.get(hold.kind, 18.0)
+            if hold.gap is not None and np.any(hold.gap > 0.0):
+                # An open gap is drawn, too.
+                size += self.deepest
+            yield hold.side, size
+        for footing in self.description.footings or ():
+            for side, outward in OUTWARD.items():
+                if np.max(footing.outward @ outward) > 0.5:
+                    yield side, FOOTING
+        if self.surroundings is not None:
+            yield "bottom", GROUND + 16.0
+            if self.surroundings.place == "around":
+                yield "top", GROUND + 16.0
+
+    def _room_of_loads(self) -> Iterator[tuple[str, float]]:
+        """Sides of the bodies, and the room that loads and words take there, px."""
+        is_upright = self.surroundings is not None and self.surroundings.is_upright
+        for act, count in zip(self.description.acts, self.equals, strict=True):
+            if act.side not in SIDES:
+                continue
+            if is_upright:
+                yield act.side, self.arrow + 10.0
+            elif act.side in BESIDE:
+                yield from self._room_beside(act, count)
+            elif is_aside(act):
+                yield act.side, beside(self.description, act.side) + 11.0
+                if act.outward is not None:
+                    # It may stand at an end of the side.
+                    for end in BESIDE:
+                        yield end, self.arrow + 6.0
+            else:
+                yield act.side, self.arrow + 10.0
+
+    def _room_beside(self, act: Act, count: int) -> Iterator[tuple[str, float]]:
+        """Room of a load on the left or right, px, and of its words."""
+        size = 20.0
+        if count != 1:
+            # The words of equal loads stand below all bodies.
+            yield "bottom", FOOTING + 1.2 * self.row
+        elif not self.is_told_above(act, count):
+            size += self.letter * (len(act.symbol) + len(act.unit) + 9)
+        if act.outward is not None:
+            size += self.arrow
+        yield act.side, size
+
+    def is_told_above(self, act: Act, count: int) -> bool:
+        """Check whether words of a load stand in a row above all else.
+
+        `count` is the number of loads equal to it, itself included.
+        """
+        return self.in_rows and count == 1 and act.side in BESIDE
 
     def local(self, positions: Array) -> Array:
         """Positions, px, from the middle of the foot, for positions, m, (..., 2)."""
@@ -294,75 +363,6 @@ def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array
         angles = np.linspace(tilt.min(), tilt.max(), 9)
     all_corners = np.concatenate([turned(corners, float(angle)) for angle in angles])
     return all_corners.min(axis=0), all_corners.max(axis=0)
-
-
-def _margins(
-    description: Description,
-    counts: Sequence[int],
-    arrow: float,
-    letter: float,
-    deepest: float,
-    surroundings: Surroundings | None,
-    *,
-    in_rows: bool,
-) -> tuple[float, float, float, float]:
-    """Margins for supports and loads on the left, on the right, below and above, px."""
-    room = {
-        "left": 10.0,
-        "right": 10.0,
-        "bottom": 6.0,
-        "top": 8.0,
-    }
-    supports = {"spring": WALL + 16.0, "image": IMAGE, "support": 16.0}
-    for hold in description.holds:
-        size = supports.get(hold.kind, 18.0)
-        if hold.gap is not None and np.any(hold.gap > 0.0):
-            # An open gap is drawn, too.
-            size += deepest
-        room[hold.side] = max(room[hold.side], size)
-    for footing in description.footings or ():
-        for side, outward in OUTWARD.items():
-            if np.max(footing.outward @ outward) > 0.5:
-                room[side] = max(room[side], FOOTING)
-    is_upright = False
-    if surroundings is not None:
-        is_upright = surroundings.is_upright
-        room["bottom"] = max(room["bottom"], GROUND + 16.0)
-        if surroundings.place == "around":
-            room["top"] = max(room["top"], GROUND + 16.0)
-    rows = 0
-    for act, count in zip(description.acts, counts, strict=True):
-        side = act.side
-        if is_upright:
-            size = arrow + 10.0
-        elif side in ("left", "right"):
-            size = 20.0
-            if count != 1:
-                # The words of equal loads stand below all bodies.
-                row = ROW * letter / LETTER
-                room["bottom"] = max(room["bottom"], FOOTING + 1.2 * row)
-            elif in_rows:
-                rows += 1
-            else:
-                size += letter * (len(act.symbol) + len(act.unit) + 9)
-            if act.outward is not None:
-                size += arrow
-        elif side not in ("top", "bottom"):
-            continue
-        elif is_aside(act):
-            size = beside(description, side) + 11.0
-            if act.outward is not None:
-                # It may stand at an end of the side.
-                for end in ("left", "right"):
-                    room[end] = max(room[end], arrow + 6.0)
-        else:
-            size = arrow + 10.0
-        room[side] = max(room.get(side, 0.0), size)
-    if any(act.where.startswith("body") for act in description.acts):
-        # Their words stand above the arrows on top.
-        room["top"] = max(room["top"], arrow + 10.0) + 2.2 * letter
-    above = room["top"] + rows * ROW * letter / LETTER
-    return room["left"], room["right"], room["bottom"], above
 
 
 def beside(description: Description, side: str) -> float:

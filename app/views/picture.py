@@ -387,8 +387,7 @@ class Picture:
                 anchor = np.array([0.0, -FOOTING - 0.6 * layout.row])
                 align = "center"
             word = Word(text, self.page(anchor), align, color_of(act))
-            is_beside = count == 1 and act.side in ("left", "right")
-            if layout.angle or (layout.in_rows and is_beside):
+            if layout.angle or layout.is_told_above(act, count):
                 above = layout.height - (rows + 0.5) * layout.row
                 anchor = np.array([layout.origin[0], above])
                 word = word._replace(anchor=anchor, align="center")

@@ -20,9 +20,6 @@ BENT = 0.05
 """Largest distance of a straight side from its chord, over half of that."""
 ASIDE = 0.1
 """Angle between a chord and the direction that tells components apart, rad."""
-ABOVE = 0
-BELOW = 1
-"""Sides of a joint: of the piece above or to the right, and of the other one."""
 
 
 class SidePairs(NamedTuple):

@@ -102,6 +102,17 @@ def test_the_answer_comes_after_the_choice(lesson: Lesson) -> None:
     assert sorted(shown) == sorted(lesson.controls)
 
 
+@each
+def test_a_search_is_watched_anew_after_the_choice_and_a_solution_stays(
+    lesson: Lesson,
+) -> None:
+    state = PageState(settings_of(lesson), lesson=lesson.name)
+    panel, _ = panel_of(state)
+    number = state.number
+    panel.predict(lesson.right)
+    assert (state.number != number) is (lesson.subject == "method")
+
+
 def test_a_lesson_brings_its_scene_and_asks_anew_each_time() -> None:
     state = PageState(default_settings("bar"))
     panel, _ = panel_of(state)

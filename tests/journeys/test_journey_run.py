@@ -11,6 +11,7 @@ from browser import Chrome, Server
 from pages import (
     ANSWER,
     ENDLESS,
+    MODEL,
     Visit,
     button,
     comes,
@@ -125,6 +126,15 @@ def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
     figure(page, 1).click()
     expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
     expect(figures(page)).to_contain_text(re.compile(r"Force −?\d\d? N"))
+
+
+def test_what_is_of_a_run_before_fades_until_a_picture_of_the_new_one_is_there(
+    page: Page,
+) -> None:
+    for is_stale, opacity in (("true", "0.3"), ("false", "1")):
+        page.evaluate(f"({MODEL})('browser').is_stale = {is_stale}")
+        for part in (".scene", ".plots", ".words"):
+            expect(page.locator(part).first).to_have_css("opacity", opacity)
 
 
 def heights_of_plots(page: Page) -> list[float]:
