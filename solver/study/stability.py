@@ -17,8 +17,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.latin import Ending, Iterate, Solution
+from solver.latin.end.status_step import states_of, status_step
+from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental_solver
 from solver.reference.laws_obeyed import LawResiduals, RowFields, law_residuals
+from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import (
@@ -75,7 +79,10 @@ JUDGES: dict[str, str] = {
         "does not; a certified answer is what the reference's own solver finds, so its "
         "distance to the reference says nothing"
     ),
-    Judge.REFERENCE: "by the distance to a reference that obeys them",
+    Judge.REFERENCE: (
+        "by the distance to a reference that obeys them: the incremental solver's, or "
+        "where several solutions exist the one that the run came to"
+    ),
     Judge.NOTHING: (
         "no judge is needed, or there is none: not solved, refused, broken off, unclear"
     ),
@@ -256,16 +263,46 @@ def _beside_reference(outcome: Outcome, iterate: Iterate) -> Outcome:
     reference, doubt, _ = known_reference(iterate.problem, _alarm())
     if reference is None:
         return replace(outcome, doubt=doubt)
-    distance = distance_to(reference, iterate.problem)
-    of_reference = law_residuals(reference, iterate.problem)
+    beside = _compared(outcome, iterate, reference)
+    if beside.reference_laws > AT_ROUNDING or beside.error_force <= APART:
+        return replace(beside, doubt=doubt or beside.doubt)
+    # Friction may leave several solutions, of which an iterate may come to another.
+    other = _solution_near(iterate)
+    if other is not None:
+        near = _compared(outcome, iterate, other)
+        obeys = near.reference_laws <= AT_ROUNDING
+        if obeys and near.error_force < beside.error_force:
+            return replace(near, doubt=doubt)
+    return replace(beside, doubt=doubt or beside.doubt)
+
+
+def _compared(outcome: Outcome, iterate: Iterate, solution: Reference) -> Outcome:
+    """Outcome with the errors of an iterate, beside a solution that judges it."""
+    distance = distance_to(solution, iterate.problem)
+    of_solution = law_residuals(solution, iterate.problem)
     error = distance.of_friction_force(iterate)
     return replace(
         outcome,
         error_displacement=distance.of_displacement(iterate),
         error_force=error,
-        reference_laws=of_reference.largest,
-        doubt=doubt or _doubt(outcome.laws, of_reference, error),
+        reference_laws=of_solution.largest,
+        doubt=_doubt(outcome.laws, of_solution, error),
     )
+
+
+def _solution_near(iterate: Iterate) -> Reference | None:
+    """Solution that a status step finds from the states of an iterate, if any."""
+    stop = _alarm()
+    try:
+        solver = incremental_solver(iterate.problem, stop)
+        found, certificate = status_step(
+            solver, iterate.problem, states_of(iterate), stop=stop
+        )
+    except (NoReferenceError, Interrupted):
+        return None
+    if certificate is None:
+        return None
+    return found
 
 
 def _doubt(laws: float, of_reference: LawResiduals, error: float) -> str:

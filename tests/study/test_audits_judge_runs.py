@@ -16,6 +16,7 @@ from small_scenes import SMALL
 from solver.commands import reports as report_commands
 from solver.commands.cli import main
 from solver.latin import Ending
+from solver.latin.end.status import Status
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
@@ -195,6 +196,30 @@ def test_a_certified_answer_that_was_spoiled_is_wrong(monkeypatch, factor):
             (row,) = judged_runs([case])
         assert row["verdict"] == Verdict.WRONG
         assert row["judged_by"] == Judge.LAWS
+
+
+def test_an_iterate_is_judged_by_the_solution_that_it_came_to():
+    """A block of four elements that is dragged has two solutions, 40 % apart."""
+    case = random_case(draw("block", 99796577, 25), 99796577, 25)
+    (row,) = judged_runs([case])
+    assert row["error_force"] < case.error_force
+    assert row["judged_by"] == Judge.REFERENCE
+    assert row["verdict"] == Verdict.RIGHT
+
+
+def test_an_iterate_far_from_every_solution_is_wrong(monkeypatch):
+    def hasty_run(settings, **wanted):
+        made = finished_run(settings, **wanted)
+        status = Status(Ending.CONVERGED, "Both indicators are low.")
+        solution = dataclasses.replace(made.solution, status=status)
+        return dataclasses.replace(made, solution=solution)
+
+    monkeypatch.setattr("solver.study.stability.finished_run", hasty_run)
+    settings = draw("block", 99796577, 25)
+    early = CATALOGUE["block"].checked({**settings.changed(), "max_iterations": 20})
+    (row,) = judged_runs([random_case(early, 99796577, 25)])
+    assert row["judged_by"] == Judge.REFERENCE
+    assert row["verdict"] == Verdict.WRONG
 
 
 def test_a_reference_that_breaks_a_law_judges_nobody(monkeypatch):
