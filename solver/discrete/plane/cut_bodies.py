@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,24 @@ from solver.refusal import RefusedError, Words
 
 DIGITS = 9
 """Decimal digits to which parts agree that share an operator."""
+
+
+class _PartNodes(NamedTuple):
+    """Nodes of a part, and the forces there.
+
+    Attributes
+    ----------
+    nodes
+        Numbers of its nodes among those of all bodies, (n_nodes,).
+    frames
+        Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3).
+    force
+        Forces on these, (n_nodes n_axes, n_instants), scaled, or None.
+    """
+
+    nodes: Indices
+    frames: Array
+    force: Array | None
 
 
 class CutBodies:
@@ -237,8 +256,7 @@ class CutBodies:
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
-        stacks = self._stacks()
-        for owner, (nodes, frames, force) in enumerate(stacks):
+        for owner, (nodes, frames, force) in enumerate(self._nodes_of_parts()):
             body = self._body_of_parts[owner]
             of_body = self.structure.bodies[body]
             if not self._traces[owner]:
@@ -260,16 +278,25 @@ class CutBodies:
                 rotation=of_body.rotation,
             )
 
-    def _stacks(self) -> list[tuple[Indices, Array, Array | None]]:
-        """Nodes of each part, motions of its degrees of freedom, and forces on these.
+    def _nodes_of_parts(self) -> list[_PartNodes]:
+        """Nodes, motions and forces of every part; parts alike are made together."""
+        loads = self._loads()
+        motions = self._motions()
+        found = dict[int, _PartNodes]()
+        for owners in self._alike_in_force(loads):
+            of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0]))
+            found.update(zip(owners, of_parts, strict=True))
+        return [found[owner] for owner in range(len(self.shape_parts))]
 
-        Shapes (n_nodes,), (n_nodes, n_axes, 3) and (n_nodes n_axes, n_instants),
-        scaled; None without forces. Parts alike in shape and weight are one stack.
-        """
+    def _motions(self) -> Array:
+        """Motions of the degrees of freedom of all nodes, (n_nodes, N_AXES, 3)."""
         motions = np.zeros((self.structure.first_nodes[-1], N_AXES, N_AXES))
         motions[:, :2, :2] = self.frames.frames
         motions[:, 2, 2] = 1.0
-        loads = self._loads()
+        return motions
+
+    def _alike_in_force(self, loads: Mapping[int, Array]) -> list[list[int]]:
+        """Numbers of parts alike in shape and weight; loaded ones are like no other."""
         alike = dict[Hashable, list[int]]()
         for owner, own in enumerate(self.shape_parts):
             key: Hashable = owner
@@ -277,21 +304,27 @@ class CutBodies:
                 weight = self.structure.bodies[self._body_of_parts[owner]].weight
                 key = id(own), id(weight)
             alike.setdefault(key, []).append(owner)
-        found = dict[int, tuple[Indices, Array, Array | None]]()
-        for owners in alike.values():
-            own = self.shape_parts[owners[0]]
-            bodies = [self._body_of_parts[owner] for owner in owners]
-            nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
-            frames = motions[nodes, : own.n_axes]
-            weight = self.structure.bodies[bodies[0]].weight
-            force = own.force(weight, loads.get(owners[0]))
-            turned: Array | list[None] = [None] * len(owners)
-            if force is not None:
-                on_nodes = frames[..., :2] @ force / (self.young * self.length)
-                turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
-            for place, owner in enumerate(owners):
-                found[owner] = nodes[place], frames[place], turned[place]
-        return [found[owner] for owner in range(len(self.shape_parts))]
+        return list(alike.values())
+
+    def _nodes_of_alike(
+        self, owners: Sequence[int], motions: Array, load: Array | None
+    ) -> list[_PartNodes]:
+        """Nodes, motions and forces of parts alike, by their numbers.
+
+        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `load` the forces on the
+        nodes of the parts, (n_nodes_of_part, 2, n_instants), N, or None.
+        """
+        own = self.shape_parts[owners[0]]
+        bodies = [self._body_of_parts[owner] for owner in owners]
+        nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
+        frames = motions[nodes, : own.n_axes]
+        force = own.force(self.structure.bodies[bodies[0]].weight, load)
+        turned: Array | list[None] = [None] * len(owners)
+        if force is not None:
+            on_nodes = frames[..., :2] @ force / (self.young * self.length)
+            turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
+        of_parts = zip(nodes, frames, turned, strict=True)
+        return [_PartNodes(*of_part) for of_part in of_parts]
 
     def _operator(self, owner: int, nodes: Indices, has_force: bool) -> Operator:
         """Operator of a part, the same for parts alike; its nodes are (n_nodes,).

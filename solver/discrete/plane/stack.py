@@ -288,11 +288,10 @@ class Stack:
         if self.support is not None:
             return self._shear
         bent = self.sides["right"]
-        end = self.longest * self.height
         if not bent.y.prescribed and not np.any(bent.y.mean):
-            moment = -end * self.height / 6.0 * bent.x.slope
+            moment = -self.longest * self.height**2 / 6.0 * bent.x.slope
             return MomentLoop(np.broadcast_to(moment, self.instants.shape))
-        return DeflectionLoop(bent.y, end)
+        return DeflectionLoop(bent.y, self.longest * self.height)
 
     @property
     def _shear(self) -> ShearLoop:
