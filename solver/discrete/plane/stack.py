@@ -34,12 +34,11 @@ from solver.discrete.plane.stack_drawn import (
     holds_of,
 )
 from solver.discrete.plane.stack_loops import (
-    DeflectionLoop,
-    MomentLoop,
     SettlementLoop,
-    ShearLoop,
     SlopeLoop,
     StackLoop,
+    loop_of_end,
+    loop_on_ground,
 )
 from solver.discrete.plane.stack_refused import (
     check_bricks,
@@ -51,8 +50,6 @@ from solver.discrete.structure import Axes, Description, Loop
 from solver.laws import FrictionLaw
 
 SIDES = "left", "right", "top", "bottom"
-DRIVEN = "top", "left", "right"
-"""Sides of a body on a support; the first that is loaded or moved drives the body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -286,27 +283,9 @@ class Stack:
         if self.tilt is not None and self.spring is not None:
             return SlopeLoop(self.tilt)
         if self.support is not None:
-            return self._shear
-        bent = self.sides["right"]
-        if not bent.y.prescribed and not np.any(bent.y.mean):
-            moment = -self.longest * self.height**2 / 6.0 * bent.x.slope
-            return MomentLoop(np.broadcast_to(moment, self.instants.shape))
-        return DeflectionLoop(bent.y, self.longest * self.height)
-
-    @property
-    def _shear(self) -> ShearLoop:
-        """Loop of bodies on the ground: of a single body of the side that drives it."""
-        side = "top"
-        is_single = len(self.rectangles) == 1
-        if is_single:
-            driven = [name for name in DRIVEN if not self.sides[name].is_zero]
-            side = next(iter(driven), side)
-        given: Given | None = self.sides[side].x
-        holding = [each for each in self.sides.values() if each.x.prescribed]
-        # Sides that share a corner share its force, too: the ground tells the sum.
-        if is_single or len(holding) > 1 + bool(self.strips):
-            given = None
-        return ShearLoop(side, given, self.size[0])
+            bodies = len(self.rectangles)
+            return loop_on_ground(self.sides, self.size[0], bodies, self.strips)
+        return loop_of_end(self.sides["right"], self.longest, self.height)
 
     def description(self) -> Description:
         """Description of the bodies for drawings."""

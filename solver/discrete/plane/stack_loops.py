@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from solver.arrays import Array, without_residue
-from solver.discrete.plane.sides import SETTLED, Given
+from solver.discrete.plane.sides import SETTLED, Given, Side
 from solver.discrete.probes import (
     LoopFields,
     constant,
@@ -20,6 +20,9 @@ from solver.discrete.probes import (
 )
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Axes, Loop
+
+DRIVEN = "top", "left", "right"
+"""Sides of a body on a support; the first that is loaded or moved drives the body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +136,36 @@ class ShearLoop:
 
 
 StackLoop = SettlementLoop | SlopeLoop | MomentLoop | DeflectionLoop | ShearLoop
+
+
+def loop_on_ground(
+    sides: Mapping[str, Side], length: float, bodies: int, strips: int
+) -> ShearLoop:
+    """Loop of bodies on the ground: of a single one of the side that drives it.
+
+    `length` is that of all bodies together, m; `bodies` and `strips` are the numbers of
+    all bodies and of the strips of ground among them.
+    """
+    side = "top"
+    if bodies == 1:
+        driven = [name for name in DRIVEN if not sides[name].is_zero]
+        side = next(iter(driven), side)
+    holding = [each for each in sides.values() if each.x.prescribed]
+    # Sides that share a corner share its force, too: the ground tells the sum.
+    if bodies == 1 or len(holding) > 1 + bool(strips):
+        return ShearLoop(side, None, length)
+    return ShearLoop(side, sides[side].x, length)
+
+
+def loop_of_end(end: Side, count: int, height: float) -> MomentLoop | DeflectionLoop:
+    """Loop of what bends the right end, which the `count` longest bodies share.
+
+    `height` is that of one body, m.
+    """
+    if end.y.prescribed or np.any(end.y.mean):
+        return DeflectionLoop(end.y, count * height)
+    moment = -count * height**2 / 6.0 * end.x.slope
+    return MomentLoop(np.broadcast_to(moment, end.x.mean.shape))
 
 
 def _force_on(
