@@ -194,7 +194,7 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
     [
         (BAR, {"friction": 0.37}, {"friction": 2.0}),
         # Nothing slips at the start.
-        (SPRUNG, {"friction": 0.37}, {"friction": 50.0}),
+        (SPRUNG | FEW, {"friction": 0.37}, {"friction": 50.0}),
         (
             SPRUNG | FEW,
             {"friction": 0.37, "contact_stiffness": 8.0},
@@ -212,13 +212,13 @@ def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> N
 
 
 def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
-    """At least three in four seeds are; 95 % are expected."""
+    """At least three in four values are; 95 % are expected."""
     true = {"friction": 0.37, "contact_stiffness": 8.0}
     settings = scene_settings("bar").checked(
         SPRUNG | FEW | {"friction": 0.3, "contact_stiffness": 6.0}
     )
     within = []
-    for seed in range(4):
+    for seed in range(3):
         found = fit(settings, made(true, settings, 0.01, seed), list(true))
         off = np.abs(found.nearest.values - list(true.values())) / found.errors
         within.extend(off < 2.0)
@@ -250,7 +250,7 @@ def test_what_is_known_as_a_product_alone_stays_near_its_start(
 
 def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
     stuck = scene_settings("bar").checked(
-        {**SPRUNG, "friction": 1e5, "contact_stiffness": 20.0}
+        SPRUNG | FEW | {"friction": 1e5, "contact_stiffness": 20.0}
     )
     found = fit(
         stuck,
@@ -307,8 +307,8 @@ def test_a_fit_leaves_a_valley_that_is_not_the_deepest() -> None:
     start = scene_settings("bar").checked({**sizes, "friction": 0.162, "young": 2.5e11})
     measured = made(true, start, 0.01, seed=16)
     found = fit(start, measured, list(true))
-    from_truth = fit(start.replace(**true), measured, ["friction"]).first.distance
-    assert found.nearest.distance < 1.1 * from_truth
+    truth = finished_run(start.replace(**true), errors=False, indicators=False)
+    assert found.nearest.distance < 1.1 * beside(truth, measured).of(truth.iterate)
 
 
 def test_a_loop_straight_in_a_setting_has_a_profile_by_the_error_of_the_slope() -> None:
