@@ -227,24 +227,21 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
     assert np.mean(within) >= 0.75
 
 
-@pytest.mark.parametrize(("name", "value"), [("pressure", 6000.0), ("young", 2e11)])
-def test_what_is_known_as_a_product_alone_stays_near_its_start(
-    name: str, value: float
-) -> None:
-    """Displacement under a given force knows mu p, and of E S the product E S mu p."""
-    true = {"friction": 0.37, name: value}
+def test_what_is_known_as_a_product_alone_stays_near_its_start() -> None:
+    """Displacement under a given force knows mu p alone."""
+    true = {"friction": 0.37, "pressure": 6000.0}
     settings = scene_settings("bar").checked(
-        {**BAR, "friction": 0.3, name: 0.8 * value}
+        {**BAR, "friction": 0.3, "pressure": 4800.0}
     )
     found = fit(settings, made(true, settings, 0.01), list(true))
     assert np.isinf(found.errors).all()
-    assert np.prod(found.nearest.values) == pytest.approx(0.37 * value, rel=0.02)
+    assert np.prod(found.nearest.values) == pytest.approx(0.37 * 6000.0, rel=0.02)
     # Along what is not determined nothing moves: both change by the same factor.
     assert np.divide(*(found.nearest.values / found.first.values)) == pytest.approx(
         1.0, rel=0.05
     )
     only, apart, *_ = messages(found)
-    assert only.startswith(f"Only friction * {name} is known: ")
+    assert only.startswith("Only friction * pressure is known: ")
     assert "does not tell friction and" in apart
 
 
