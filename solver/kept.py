@@ -33,11 +33,18 @@ class Kept:
     ----------
     largest
         Largest memory of all results together, B; a larger result is not kept.
+
+    Attributes
+    ----------
+    nbytes
+        Memory of all results, B, as each was when it was made.
     """
 
     def __init__(self, largest: int) -> None:
         self._largest = largest
+        self.nbytes = 0
         self._results: OrderedDict[Hashable, Any] = OrderedDict()
+        self._sizes: dict[Hashable, int] = {}
         self._lock = Lock()
 
     def of(self, key: Hashable, make: Callable[[], Result]) -> Result:
@@ -56,26 +63,28 @@ class Kept:
                 known: Result = self._results[key]
                 return known
         result = make()
-        if _size_of(result) <= self._largest:
-            self._keep(key, result)
+        size = _size_of(result)
+        if size <= self._largest:
+            self._keep(key, result, size)
         return result
 
-    def _keep(self, key: Hashable, result: object) -> None:
-        """Keep a result, and drop the oldest ones that no longer fit."""
+    def _keep(self, key: Hashable, result: object, size: int) -> None:
+        """Keep a result of a size in B, and drop the oldest ones that no longer fit."""
         with self._lock:
+            # Another thread may have kept the same result meanwhile.
+            self.nbytes += size - self._sizes.get(key, 0)
             self._results[key] = result
+            self._sizes[key] = size
             while self.nbytes > self._largest:
-                self._results.popitem(last=False)
+                oldest, _ = self._results.popitem(last=False)
+                self.nbytes -= self._sizes.pop(oldest)
 
     def clear(self) -> None:
         """Drop all results."""
         with self._lock:
             self._results.clear()
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of all results, B."""
-        return sum(_size_of(result) for result in self._results.values())
+            self._sizes.clear()
+            self.nbytes = 0
 
 
 def _size_of(result: object) -> int:

@@ -124,19 +124,36 @@ def test_neither_the_solver_nor_a_worker_of_the_page_imports_graphics():
     assert graphics_in(worker, GRAPHICS - {"app"}) == []
 
 
-def test_the_engine_runs_where_graphics_cannot_be_imported():
+@pytest.fixture(scope="module")
+def ran():
+    """A command in a process in which graphics cannot be imported."""
     program = (
         "import sys\n"
         f"sys.modules.update(dict.fromkeys({sorted(GRAPHICS)!r}))\n"
         "from solver.commands.cli import main\n"
-        "sys.exit(main(['run', 'bar', '--set', 'peak=0']))\n"
+        "code = main(['run', 'bar', '--set', 'peak=0'])\n"
+        "print(*sys.modules)\n"
+        "sys.exit(code)\n"
     )
-    assert (
-        subprocess.run(
-            [sys.executable, "-c", program], cwd=ROOT, check=False
-        ).returncode
-        == 0
+    return subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
     )
+
+
+def test_the_engine_runs_where_graphics_cannot_be_imported(ran):
+    assert ran.returncode == 0, ran.stderr
+
+
+def test_a_command_imports_what_few_runs_need_only_when_it_is_needed(ran):
+    """Some modules would take a quarter of the time in which a command begins."""
+    imported = set(ran.stdout.splitlines()[-1].split())
+    assert "scipy.sparse" in imported
+    seldom = {"scipy.optimize", "scipy.ndimage", "pebble", "meshio", "openpyxl"}
+    assert not seldom & imported
 
 
 def test_imports_inside_the_solver_go_one_way():

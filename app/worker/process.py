@@ -15,9 +15,9 @@ from app.worker.loop import main
 from solver.study.sweep.executors import start_fork_server
 
 PROCESSES = get_context("forkserver")
-# Workers share the memory of these modules. The script that serves imports the last
-# one, so each worker would import it, too.
-PROCESSES.set_forkserver_preload(["app.worker.loop", "panel.command"])
+# Workers share the memory of these modules. The script that serves imports the second
+# one, so each worker would import it, too; closed forms need the last.
+PROCESSES.set_forkserver_preload(["app.worker.loop", "panel.command", "scipy.optimize"])
 # A worker has one thread for linear algebra, as pages share the processors. The fork
 # server inherits the variable.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -14,9 +14,9 @@ times = np.linspace(0.0, 1.0, 41)
 bar = Rods(
     length=1.0,
     stiffness=STIFFNESS,
-    elements=100,
+    elements=50,
     substructures=10,
-    strength=np.full(101, STRENGTH),
+    strength=np.full(51, STRENGTH),
     left=End(displacement=0.0 * times),
     right=End(force=PEAK * times),
     instants=times,

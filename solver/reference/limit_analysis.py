@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 import numpy as np
+import scipy
 from scipy import sparse
-from scipy.optimize import OptimizeResult, linprog
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
@@ -131,7 +131,7 @@ class _Program:
 
     def solve(
         self, instant: int, before: Array, step: sparse.csr_array
-    ) -> OptimizeResult:
+    ) -> scipy.optimize.OptimizeResult:
         """Largest share of a step of the loads, (n_motions, 1), that contact balances.
 
         With the loads before the step, shape (n_motions,).
@@ -142,7 +142,7 @@ class _Program:
             If HiGHS finds no answer.
         """
         known = self._strongest * self._rules.bound_at(instant)[self._rubs] / self._unit
-        program = linprog(
+        program = scipy.optimize.linprog(
             self._aim,
             A_ub=self._limits,
             b_ub=np.concatenate([known, known, self._caps]),
@@ -227,7 +227,10 @@ def load_factors(problem: Problem, without: Problem) -> Array:
 
 
 def _collapse_at(
-    problem: Problem, instant: int, share: float, balanced: OptimizeResult
+    problem: Problem,
+    instant: int,
+    share: float,
+    balanced: scipy.optimize.OptimizeResult,
 ) -> Collapse:
     """Collapse at a share of the step to an instant; its mechanism is the dual."""
     times = problem.instants

@@ -27,8 +27,8 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+import scipy
 from scipy import sparse
-from scipy.optimize import OptimizeResult, linprog
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
@@ -165,7 +165,7 @@ def _limit_in_rings(elastic: Array, bound: Array, rings: Array) -> float:
 
 def _largest(
     place: int, matrix: Array | sparse.sparray, limit: Array
-) -> OptimizeResult:
+) -> scipy.optimize.OptimizeResult:
     """Largest value, at least zero, of the unknown at a place, with matrix x <= limit.
 
     With a matrix of shape (n_rows, n_unknowns), and limits of shape (n_rows,).
@@ -174,7 +174,9 @@ def _largest(
     bounds[place, 0] = 0.0
     aim = np.zeros(matrix.shape[1])
     aim[place] = -1.0
-    solution = linprog(aim, A_ub=matrix, b_ub=limit, bounds=bounds, method="highs")
+    solution = scipy.optimize.linprog(
+        aim, A_ub=matrix, b_ub=limit, bounds=bounds, method="highs"
+    )
     if not solution.success and solution.status != UNBOUNDED:
         raise NoReferenceError(f"No slip could stay: {solution.message}")
     return solution

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import param
-from scipy.optimize import least_squares
+import scipy
 
 from solver.arrays import Array
 from solver.latin import Ending
@@ -345,7 +345,7 @@ class ComparedRuns:
         pull
             Matrix whose product with z is added to the differences, shape (n, p).
         """
-        found = least_squares(
+        found = scipy.optimize.least_squares(
             lambda at: np.concatenate([self.differences(at), pull @ at]),
             z,
             jac=lambda at: np.concatenate([self.jacobian(at), pull]),
@@ -392,7 +392,7 @@ class ComparedRuns:
         # Least squares cannot begin where there is no run.
         if not np.isfinite(differences(np.zeros(len(free)))).all():
             return z
-        found = least_squares(
+        found = scipy.optimize.least_squares(
             differences,
             np.zeros(len(free)),
             jac=lambda moves: self.jacobian(place(moves), directions=directions),

@@ -25,8 +25,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.problem import Problem
@@ -347,7 +347,7 @@ def _covers(grid: Array, places: Array) -> Flags:
 
 def _interpolated(field: Array, at: Array) -> Array:
     """Field, (n_points, n_instants), at fractional numbers of both, (2, n): (n,)."""
-    return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
+    return np.asarray(scipy.ndimage.map_coordinates(field, at, order=1, mode="nearest"))
 
 
 def _halves(places: Array, joined: Flags | bool = True) -> Array:

@@ -36,7 +36,7 @@ def by_name(output: str) -> dict[str, str]:
 
 
 def printed_by_itself(name: str, folder: Path) -> dict[str, str]:
-    """Lines that a script prints as a program, where it has processes or a page."""
+    """Lines that a script prints as a program, where it has processes."""
     done = subprocess.run(
         [sys.executable, SCRIPTS / f"{name}.py"],
         cwd=folder,
@@ -109,7 +109,7 @@ def test_a_fit_finds_the_friction_of_the_rig(tmp_path: Path) -> None:
 
 
 def test_a_page_comes_to_the_closed_form(tmp_path: Path) -> None:
-    lines = printed_by_itself("page", tmp_path)
+    lines = printed("page", tmp_path)
     assert float(lines["ratio to exact"]) == pytest.approx(1.0, abs=1e-3)
 
 

@@ -27,7 +27,7 @@ MOST = {
     "elements_up": 3,
     "instants": 10,
     "cycles": 2,
-    "max_iterations": 100,
+    "max_iterations": 50,
     "wires": 5,
     "layers": 3,
     "bricks": 3,

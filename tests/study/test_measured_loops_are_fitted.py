@@ -194,7 +194,7 @@ def test_tables_without_a_loop_are_refused_in_words(text: str, why: str) -> None
     [
         (BAR, {"friction": 0.37}, {"friction": 2.0}),
         # Nothing slips at the start.
-        (SPRUNG, {"friction": 0.37}, {"friction": 50.0}),
+        (SPRUNG | FEW, {"friction": 0.37}, {"friction": 50.0}),
         (
             SPRUNG | FEW,
             {"friction": 0.37, "contact_stiffness": 8.0},
@@ -212,13 +212,13 @@ def test_a_fit_finds_what_made_the_loop(law: dict, true: dict, start: dict) -> N
 
 
 def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
-    """At least three in four seeds are; 95 % are expected."""
+    """At least three in four values are; 95 % are expected."""
     true = {"friction": 0.37, "contact_stiffness": 8.0}
     settings = scene_settings("bar").checked(
         SPRUNG | FEW | {"friction": 0.3, "contact_stiffness": 6.0}
     )
     within = []
-    for seed in range(4):
+    for seed in range(3):
         found = fit(settings, made(true, settings, 0.01, seed), list(true))
         off = np.abs(found.nearest.values - list(true.values())) / found.errors
         within.extend(off < 2.0)
@@ -227,30 +227,27 @@ def test_with_noise_what_made_the_loop_is_within_two_standard_errors() -> None:
     assert np.mean(within) >= 0.75
 
 
-@pytest.mark.parametrize(("name", "value"), [("pressure", 6000.0), ("young", 2e11)])
-def test_what_is_known_as_a_product_alone_stays_near_its_start(
-    name: str, value: float
-) -> None:
-    """Displacement under a given force knows mu p, and of E S the product E S mu p."""
-    true = {"friction": 0.37, name: value}
+def test_what_is_known_as_a_product_alone_stays_near_its_start() -> None:
+    """Displacement under a given force knows mu p alone."""
+    true = {"friction": 0.37, "pressure": 6000.0}
     settings = scene_settings("bar").checked(
-        {**BAR, "friction": 0.3, name: 0.8 * value}
+        {**BAR, "friction": 0.3, "pressure": 4800.0}
     )
     found = fit(settings, made(true, settings, 0.01), list(true))
     assert np.isinf(found.errors).all()
-    assert np.prod(found.nearest.values) == pytest.approx(0.37 * value, rel=0.02)
+    assert np.prod(found.nearest.values) == pytest.approx(0.37 * 6000.0, rel=0.02)
     # Along what is not determined nothing moves: both change by the same factor.
     assert np.divide(*(found.nearest.values / found.first.values)) == pytest.approx(
         1.0, rel=0.05
     )
     only, apart, *_ = messages(found)
-    assert only.startswith(f"Only friction * {name} is known: ")
+    assert only.startswith("Only friction * pressure is known: ")
     assert "does not tell friction and" in apart
 
 
 def test_what_the_loop_says_nothing_of_stays_where_it_began() -> None:
     stuck = scene_settings("bar").checked(
-        {**SPRUNG, "friction": 1e5, "contact_stiffness": 20.0}
+        SPRUNG | FEW | {"friction": 1e5, "contact_stiffness": 20.0}
     )
     found = fit(
         stuck,
@@ -307,8 +304,8 @@ def test_a_fit_leaves_a_valley_that_is_not_the_deepest() -> None:
     start = scene_settings("bar").checked({**sizes, "friction": 0.162, "young": 2.5e11})
     measured = made(true, start, 0.01, seed=16)
     found = fit(start, measured, list(true))
-    from_truth = fit(start.replace(**true), measured, ["friction"]).first.distance
-    assert found.nearest.distance < 1.1 * from_truth
+    truth = finished_run(start.replace(**true), errors=False, indicators=False)
+    assert found.nearest.distance < 1.1 * beside(truth, measured).of(truth.iterate)
 
 
 def test_a_loop_straight_in_a_setting_has_a_profile_by_the_error_of_the_slope() -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from scipy.spatial import Delaunay
@@ -224,7 +224,9 @@ class Packing:
 
     rows: tuple[int, ...]
 
+    # The few packings there are keep their neighbours for all settings.
     @classmethod
+    @cache
     def hexagon(cls, rings: int) -> Packing:
         """Rings of wires round one in the middle."""
         upper = range(2 * rings, rings, -1)
@@ -232,6 +234,7 @@ class Packing:
         return cls(tuple(rows))
 
     @classmethod
+    @cache
     def heap(cls, rows: int) -> Packing:
         """Rows of wires on the ground, the highest of a single one."""
         return cls(tuple(range(rows, 0, -1)))

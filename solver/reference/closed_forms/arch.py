@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq, linprog
+import scipy
 
 from solver.arrays import Array
 
@@ -162,7 +162,9 @@ class VoussoirArch:
         # The distance is a third unknown.
         with_distance = np.column_stack([matrix, np.ones(len(bounds))])
         limits = [(0.0, None), (0.0, None), (None, 1.0)]
-        best = linprog([0.0, 0.0, -1.0], with_distance, bounds, bounds=limits)
+        best = scipy.optimize.linprog(
+            [0.0, 0.0, -1.0], with_distance, bounds, bounds=limits
+        )
         return float(-best.fun)
 
     @property
@@ -180,7 +182,7 @@ class VoussoirArch:
         limits = [(0.0, None), (0.0, None)]
         found = []
         for sign in (1.0, -1.0):
-            best = linprog([sign, 0.0], matrix, bounds, bounds=limits)
+            best = scipy.optimize.linprog([sign, 0.0], matrix, bounds, bounds=limits)
             if best.status == UNBOUNDED:
                 found.append(np.inf)
             elif best.status:
@@ -220,4 +222,4 @@ def _onset(reserve: Callable[[float], float], largest: float) -> float | None:
         return None
     if reserve(LEAST) >= 0.0:
         return LEAST
-    return float(brentq(reserve, LEAST, largest))
+    return float(scipy.optimize.brentq(reserve, LEAST, largest))

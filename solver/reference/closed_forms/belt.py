@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from solver.arrays import Array
 
@@ -205,7 +205,9 @@ class Capstan:
             end = 0.0
             # The other side of the bracket: the free spans alone are stretched.
             if self._beyond(0.0, *given) < 0.0 < self._beyond(largest, *given):
-                end = brentq(self._beyond, 0.0, largest, given, rtol=PRECISE)
+                end = scipy.optimize.brentq(
+                    self._beyond, 0.0, largest, given, rtol=PRECISE
+                )
             tension = self._after(end, tension, both_ends)
             found.append(end)
         return np.array(found)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from solver.arrays import Array
 from solver.discrete.rope.cross_section import CrossSection, WireLayer
@@ -74,7 +74,11 @@ class BentWire:
         phi = 0.5 * np.pi
         # Zero solves the equation of phi, too, so the bracket leaves it out.
         if ratio < phi:
-            phi = float(brentq(_beyond_slip, 1e-9, phi, args=(ratio,), xtol=1e-14))
+            phi = float(
+                scipy.optimize.brentq(
+                    _beyond_slip, 1e-9, phi, args=(ratio,), xtol=1e-14
+                )
+            )
         spread = 0.5 * phi * (0.5 * np.pi - phi) / np.sin(phi)
         return float(2.0 / np.pi * (spread + np.sin(phi) - 0.5 * phi * np.cos(phi)))
 

@@ -16,8 +16,8 @@ Press 1968; R. C. Viesca, J. Fluid Mech. 928, A29, 2021).
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from scipy.linalg import matmul_toeplitz
-from scipy.optimize import brentq
 from scipy.special import erfc
 
 from solver.arrays import Array
@@ -105,7 +105,7 @@ def fronts(positions: Array, lack: Array) -> Array:
         if _mean_lack(last, positions, lacking) < 0.0:
             half_lengths[instant] = np.inf
         else:
-            half_lengths[instant] = brentq(
+            half_lengths[instant] = scipy.optimize.brentq(
                 _mean_lack, 0.0, last, args=(positions, lacking)
             )
     return half_lengths

@@ -22,7 +22,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from solver.arrays import ROUNDING, Array
 from solver.discrete.rods.rods import End, Rods
@@ -164,7 +164,9 @@ def pulled_compliant_bar(
     if force <= carried(0.0):
         return float(force * np.tanh(beta * length) / (stiffness * beta)), 0.0
     # A zone as long as the bar would carry an infinite force.
-    zone = float(brentq(lambda s: carried(s) - force, 0.0, length * (1.0 - 1e-12)))
+    zone = float(
+        scipy.optimize.brentq(lambda s: carried(s) - force, 0.0, length * (1.0 - 1e-12))
+    )
     elongation = (force * zone - 0.5 * strength * zone**2) / stiffness
     return float(strength / density + elongation), zone
 

@@ -24,7 +24,6 @@ from typing import Any
 
 import numpy as np
 import scipy
-from pebble import ProcessPool
 from threadpoolctl import threadpool_limits
 
 from solver.settings.definitions import SettingError
@@ -41,8 +40,8 @@ NICENESS = 10
 """Niceness of processes: below all that people wait for, such as a page's own runs."""
 PATIENCE = 10.0
 """Seconds that a Dask scheduler has to answer."""
-PRELOADED = "solver.study.sweep.run"
-"""Module that a fork server imports once for all processes."""
+PRELOADED = ("solver.study.sweep.run", "pebble")
+"""Modules that a fork server imports once for all processes."""
 
 left_alone = ExitStack()
 """Callbacks of a process of `Processes` that ends because its parent is gone."""
@@ -88,6 +87,9 @@ class Processes(Executor):
     def __init__(
         self, count: int, limit: float | None = None, n_calls: int = 0
     ) -> None:
+        # Here and not above: commands without processes do without asyncio.
+        from pebble import ProcessPool
+
         self._limit = limit
         self._is_shut_down = False
         self._context = _LastingLocks(_context())
@@ -155,7 +157,7 @@ def _context() -> BaseContext:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([PRELOADED])
+    context.set_forkserver_preload([*PRELOADED])
     start_fork_server()
     return context
 
