@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import tomllib
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -273,8 +274,13 @@ class SettingRange:
         self._is_updating = True
         name, _, values = text.partition("=")
         options = dict(self._nothing)
+        # Of settings with the same title each is named with its group.
+        titles = Counter(map(title_of, settings.definitions().values()))
         for key, known in variable(settings).items():
-            options[_titled(known, settings)] = key
+            title = title_of(known)
+            if titles[title] > 1:
+                title = f"{title} ({about(known).group})"
+            options[title] = key
         self.name.param.update(options=options, value=name)
         definition = settings.definitions().get(name)
         label = "Values"
@@ -333,12 +339,3 @@ def _converted(values: str, convert: Callable[[str], str]) -> str:
         low, high, *rest = values.split(":")
         return ":".join([convert(low), convert(high), *rest])
     return ",".join([convert(part) for part in values.split(",")])
-
-
-def _titled(definition: Parameter, settings: Settings) -> str:
-    """Title of a setting, with its group where another setting has the same title."""
-    titles = [title_of(other) for other in settings.definitions().values()]
-    title = title_of(definition)
-    if titles.count(title) > 1:
-        return f"{title} ({about(definition).group})"
-    return title
