@@ -59,6 +59,7 @@ def ended(scene: str) -> tuple[Runner, Frame]:
     return runner, runner.frame(Needs(extras=NEEDS | {TABLE}))
 
 
+@cache
 def page(scene: str) -> tuple[PageState, list[View]]:
     """The state of a page that shows that run, and every view that applies."""
     _, frame = ended(scene)
