@@ -107,9 +107,9 @@ def question_of(text: str, settings: Settings) -> Question:
     question = Question(tuple(vary), of)
     # The text may come from an address, or from a scene that has other settings.
     names = {setting.partition("=")[0] for setting in vary}
-    quantity = of.partition("@")[0]
-    if names <= variable(settings).keys() and quantity in quantities(settings):
-        if not question.refusal(settings):
+    quantity = QUANTITIES.get(of.partition("@")[0])
+    if quantity is not None and can_be_read(quantity, settings):
+        if names <= variable(settings).keys() and not question.refusal(settings):
             return question
     ready = [make(settings) for make in READY.values()]
     return next(question for question in ready if question is not None)
@@ -128,13 +128,18 @@ def variable(settings: Settings) -> dict[str, Parameter]:
 
 def quantities(settings: Settings) -> dict[str, Quantity]:
     """Quantities that runs of these settings may have."""
-    has_errors = has_reference(settings)
     known = {}
     for name, quantity in QUANTITIES.items():
-        can_be_read = has_errors or quantity.reads != "errors"
-        if can_be_read and quantity.applies(settings):
+        if can_be_read(quantity, settings):
             known[name] = quantity
     return known
+
+
+def can_be_read(quantity: Quantity, settings: Settings) -> bool:
+    """Check whether runs of these settings may have a quantity."""
+    if quantity.reads == "errors" and not has_reference(settings):
+        return False
+    return quantity.applies(settings)
 
 
 def names_of(definition: Parameter) -> list[str]:

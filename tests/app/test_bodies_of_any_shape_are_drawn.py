@@ -283,7 +283,7 @@ def meet(box: np.ndarray, low: np.ndarray, high: np.ndarray) -> bool:
 
 CROWDED = {
     "arch": arch(live=2000.0, fill=20e3),
-    "bundle": default_settings("bundle").replace(instants=9),
+    "bundle": default_settings("bundle").replace(elements=4, instants=9),
     "wall": CASES["settling-ground"].settings,
 }
 
@@ -361,7 +361,9 @@ def test_an_end_that_is_moved_at_an_angle_has_one_arrow_along_its_way() -> None:
 
 
 def test_a_figure_is_zero_where_an_iterate_leaves_next_to_nothing() -> None:
-    frame = ran(default_settings("bundle").replace(rings=1, instants=9), ends=False)
+    frame = ran(
+        default_settings("bundle").replace(rings=1, elements=4, instants=9), ends=False
+    )
     loop = frame.loop.copy()
     loop[1, 0] = 1e-6 * np.abs(loop[1]).max()
     line = figures_line(replace(frame, loop=loop), Selection(0.0))
@@ -369,7 +371,9 @@ def test_a_figure_is_zero_where_an_iterate_leaves_next_to_nothing() -> None:
 
 
 def test_a_plate_that_is_held_at_both_ends_has_rollers_at_each() -> None:
-    frame = ran(default_settings("bundle").replace(rings=1, instants=9), ends=False)
+    frame = ran(
+        default_settings("bundle").replace(rings=1, elements=4, instants=9), ends=False
+    )
     description = frame.run.geometry.description
     rollers = [each for each in description.footings if each.kind == "rollers"]
     assert [np.ptp(each.points[:, 0]) for each in rollers] == pytest.approx([0, 0])

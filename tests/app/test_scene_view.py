@@ -60,6 +60,9 @@ def small(scene: str) -> Settings:
         for name, most in SMALL.items()
         if name in settings.definitions()
     }
+    if scene == "bundle":
+        # Those of a wire, not of a body.
+        fewer["elements"] = 4
     return settings.checked(fewer)
 
 

@@ -60,13 +60,19 @@ def ended(scene: str) -> tuple[Runner, Frame]:
 
 
 @cache
+def page_of_all() -> tuple[PageState, list[View]]:
+    """The state of a page, and each of its views."""
+    state = PageState(default_settings("bar"))
+    return state, [kind(state) for kind in (Scene, Timeline, *KINDS)]
+
+
 def page(scene: str) -> tuple[PageState, list[View]]:
     """The state of a page that shows that run, and every view that applies."""
     _, frame = ended(scene)
-    state = PageState(frame.run.settings)
+    state, each = page_of_all()
+    state.settings = frame.run.settings
     state.newest = state.frame = frame
-    kinds = [kind for kind in KINDS if kind.applies(state.settings)]
-    views = [kind(state) for kind in (Scene, Timeline, *kinds)]
+    views = [view for view in each if view.applies(state.settings)]
     for view in views:
         assert view.figure is not None
         view.update(frame, state.selection, None)
