@@ -243,5 +243,7 @@ def _without_macro(along: Array) -> Array:
     modes = np.stack([np.ones_like(along), along], axis=1)
     work = modes.T @ (weights[:, None] * modes)
     macro = weights[:, None] * modes @ np.linalg.solve(work, modes.T)
-    share = weights / weights.sum()
-    return np.asarray((np.eye(len(along)) - macro) / share[:, None])
+    share = (weights / weights.sum())[:, None]
+    micro = np.eye(len(along)) - macro
+    # Points of a round side that stand at one place of its chord have no length there.
+    return np.divide(micro, share, np.zeros_like(micro), where=share > 0.0)

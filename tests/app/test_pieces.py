@@ -9,6 +9,7 @@ import pytest
 from bokeh.events import Tap
 
 from app.frame import Frame, Selection
+from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Start
 from app.state import PageState
 from app.views.pieces import PiecesView
@@ -178,6 +179,14 @@ def test_micro_forces_have_no_resultant_and_no_moment(scene: str) -> None:
         )
         assert np.abs(lengths @ values).max() < 1e-5 * largest
         assert np.abs((along * lengths) @ values).max() < 1e-5 * largest * np.ptp(along)
+
+
+def test_micro_forces_of_a_belt_that_is_wound_three_times_are_finite() -> None:
+    settings = LESSONS["turns-on-a-bollard"].settings
+    *_, (_, pieces) = taken_apart(settings, last=2)
+    micro = pieces.stages["linear"].micro
+    assert np.isfinite(micro).all()
+    assert np.abs(micro).max() > 0.0
 
 
 @pytest.mark.parametrize("scene", list(SMALL))

@@ -31,7 +31,7 @@ from solver.settings.scene import Settings
 SCENES = tuple(CATALOGUE)
 KINDS = tuple(chain.from_iterable(CARDS))
 NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
-SMALL = {"elements": 24, "instants": 21, "rings": 1}
+COARSE = {"elements": 24, "instants": 21}
 PHASES = np.linspace(0.0, 1.0, 7)
 
 
@@ -53,17 +53,26 @@ def frame_of(settings: Settings, *, ends: bool = False) -> Frame:
     return FRAMES[key]
 
 
-def small(scene: str) -> Settings:
+def coarse(scene: str) -> Settings:
+    """Settings with which a page begins a scene, on a coarse mesh."""
     settings = default_settings(scene)
     fewer = {
         name: min(most, getattr(settings, name))
-        for name, most in SMALL.items()
+        for name, most in COARSE.items()
         if name in settings.definitions()
     }
     if scene == "bundle":
-        # Those of a wire, not of a body.
+        # Those of a contact, of which a wire has several.
         fewer["elements"] = 4
     return settings.checked(fewer)
+
+
+def small(scene: str) -> Settings:
+    """Settings of a scene with few bodies."""
+    settings = coarse(scene)
+    if scene == "bundle":
+        return settings.replace(rings=1)
+    return settings
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -219,7 +228,7 @@ def test_words_leave_handles_free_in_a_picture_beside_plots(name: str) -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_what_is_seen_first_of_a_scene_slips(name: str) -> None:
     # A run that follows a slider has its answer without a reference beside it.
-    order = Start(1, answer(default_settings(name)), math.inf, is_dragged=True)
+    order = Start(1, answer(coarse(name)), math.inf, is_dragged=True)
     runner = Runner(order, ReferenceCache(), lambda: False)
     while runner.status is None:
         runner.advance()
