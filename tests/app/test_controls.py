@@ -12,6 +12,7 @@ import pytest
 
 from app.controls import OWN, POINTS, Controls, SettingControl, _groups_of
 from app.files.opener import TableOpener
+from app.files.points import CurveDialog
 from app.messages import Start
 from app.refusals import advice_in_titles
 from app.state import PageState, default_settings
@@ -314,10 +315,8 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
             continue
         taken.add(definition)
         state = of_scene(scene)
-        control = SettingControl(name, state)
-        control.field.value = POINTS
-        dialog = control._dialog
-        assert dialog is not None
+        dialog = CurveDialog(name, state)
+        dialog.update()
         dialog._take(dialog.text.value, "the text")
         assert isinstance(held(state, name), tuple), state.refusal
     assert taken

@@ -35,13 +35,13 @@ VIEWS = list(chain.from_iterable(CARDS))
 NEEDS = frozenset(chain.from_iterable(kind.needs for kind in VIEWS))
 SMALL = {
     "bar": {"elements": 60},
-    "block": {},
+    "block": {"elements": 24, "instants": 41},
     "fault": {"elements": 24, "instants": 21},
-    "incline": {},
+    "incline": {"instants": 41},
     "layers": {"elements": 24, "instants": 21},
     "rope": {"elements": 20, "instants": 9},
-    "strand": {},
-    "wall": {"bricks": 3, "courses": 3},
+    "strand": {"elements": 40, "instants": 41},
+    "wall": {"bricks": 3, "courses": 3, "instants": 21},
 }
 MORE = {
     "bases": ("bar", {"elements": 60, "linear_stage": "pgd"}),
