@@ -53,7 +53,10 @@ SMALL: dict[str, dict[str, Any]] = {
 def ended(scene: str) -> tuple[Runner, Frame]:
     """A run that has ended, and what is shown of it."""
     settings = default_settings(scene).replace(**SMALL[scene])
-    runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
+    # A view tells runs apart by their numbers.
+    number = 1 + list(SMALL).index(scene)
+    start = Start(number, settings, math.inf)
+    runner = Runner(start, ReferenceCache(), lambda: False)
     while runner.rest() is not None:
         runner.advance()
     return runner, runner.frame(Needs(extras=NEEDS | {TABLE}))
