@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import tomllib
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -106,9 +107,9 @@ def question_of(text: str, settings: Settings) -> Question:
     question = Question(tuple(vary), of)
     # The text may come from an address, or from a scene that has other settings.
     names = {setting.partition("=")[0] for setting in vary}
-    quantity = of.partition("@")[0]
-    if names <= variable(settings).keys() and quantity in quantities(settings):
-        if not question.refusal(settings):
+    quantity = QUANTITIES.get(of.partition("@")[0])
+    if quantity is not None and can_be_read(quantity, settings):
+        if names <= variable(settings).keys() and not question.refusal(settings):
             return question
     ready = [make(settings) for make in READY.values()]
     return next(question for question in ready if question is not None)
@@ -127,13 +128,18 @@ def variable(settings: Settings) -> dict[str, Parameter]:
 
 def quantities(settings: Settings) -> dict[str, Quantity]:
     """Quantities that runs of these settings may have."""
-    has_errors = has_reference(settings)
     known = {}
     for name, quantity in QUANTITIES.items():
-        can_be_read = has_errors or quantity.reads != "errors"
-        if can_be_read and quantity.applies(settings):
+        if can_be_read(quantity, settings):
             known[name] = quantity
     return known
+
+
+def can_be_read(quantity: Quantity, settings: Settings) -> bool:
+    """Check whether runs of these settings may have a quantity."""
+    if quantity.reads == "errors" and not has_reference(settings):
+        return False
+    return quantity.applies(settings)
 
 
 def names_of(definition: Parameter) -> list[str]:
@@ -273,8 +279,13 @@ class SettingRange:
         self._is_updating = True
         name, _, values = text.partition("=")
         options = dict(self._nothing)
+        # Of settings with the same title each is named with its group.
+        titles = Counter(map(title_of, settings.definitions().values()))
         for key, known in variable(settings).items():
-            options[_titled(known, settings)] = key
+            title = title_of(known)
+            if titles[title] > 1:
+                title = f"{title} ({about(known).group})"
+            options[title] = key
         self.name.param.update(options=options, value=name)
         definition = settings.definitions().get(name)
         label = "Values"
@@ -333,12 +344,3 @@ def _converted(values: str, convert: Callable[[str], str]) -> str:
         low, high, *rest = values.split(":")
         return ":".join([convert(low), convert(high), *rest])
     return ",".join([convert(part) for part in values.split(",")])
-
-
-def _titled(definition: Parameter, settings: Settings) -> str:
-    """Title of a setting, with its group where another setting has the same title."""
-    titles = [title_of(other) for other in settings.definitions().values()]
-    title = title_of(definition)
-    if titles.count(title) > 1:
-        return f"{title} ({about(definition).group})"
-    return title

@@ -19,7 +19,8 @@ interface alone."""
 BENT = 0.05
 """Largest distance of a straight side from its chord, over half of that."""
 ASIDE = 0.1
-"""Angle between a chord and the direction that tells components apart, rad."""
+"""Angle between a chord and the direction that tells components apart, rad; share by
+which a side that is called tall is taller than wide."""
 
 
 class SidePairs(NamedTuple):
@@ -144,7 +145,10 @@ class PieceJoints:
         high = np.full(shape, -np.inf)
         np.minimum.at(low, self._sides, self._positions)
         np.maximum.at(high, self._sides, self._positions)
-        longer = (high - low).argmax(axis=1)[self._sides]
+        # Where a side is as wide as tall, rounding must not order that of one piece by
+        # x and that of the other by y.
+        wide, tall = (high - low).T
+        longer = (tall > (1.0 + ASIDE) * wide).astype(np.intp)[self._sides]
         place = self._positions[np.arange(len(self._rows)), longer]
         order = np.lexsort((place, self._sides))
         firsts = np.searchsorted(self._sides[order], np.arange(shape[0]))
@@ -239,5 +243,7 @@ def _without_macro(along: Array) -> Array:
     modes = np.stack([np.ones_like(along), along], axis=1)
     work = modes.T @ (weights[:, None] * modes)
     macro = weights[:, None] * modes @ np.linalg.solve(work, modes.T)
-    share = weights / weights.sum()
-    return np.asarray((np.eye(len(along)) - macro) / share[:, None])
+    share = (weights / weights.sum())[:, None]
+    micro = np.eye(len(along)) - macro
+    # Points of a round side that stand at one place of its chord have no length there.
+    return np.divide(micro, share, np.zeros_like(micro), where=share > 0.0)

@@ -82,6 +82,9 @@ def test_a_case_brings_its_run_its_words_and_the_settings_to_change(case: Case) 
     assert case.source in words
     assert PENDING in words
     assert tuple(control.name for control in panel._controls) == case.controls
+    assert state.selection.phase == case.instant
+    (formula,) = panel.view.select(pn.pane.LaTeX)
+    assert formula.object == formula_of(case).object
 
 
 def test_the_runs_own_number_stands_beside_the_known_one(frame: Frame) -> None:
@@ -158,10 +161,7 @@ def test_the_known_number_is_a_flag_on_its_plot_until_the_case_is_changed(
 
 
 @each
-def test_a_case_opens_at_the_instant_of_its_number(case: Case) -> None:
-    state = PageState(default_settings("bar"))
-    panel_of(state).open("case", case.name)
-    assert state.selection.phase == case.instant
+def test_the_address_of_a_case_opens_at_the_instant_of_its_number(case: Case) -> None:
     shown, _ = read(f"?case={case.name}")
     assert shown["instant"] == case.instant
     assert query_of(shown) == f"?case={case.name}"
@@ -226,8 +226,7 @@ def test_a_changed_case_says_what_it_has_now() -> None:
 
 @each
 def test_the_formula_of_a_case_is_typeset_and_says_what_is_written(case: Case) -> None:
-    state = PageState(case.settings, case=case.name)
-    (pane,) = panel_of(state).view.select(pn.pane.LaTeX)
+    pane = formula_of(case)
     assert pane.renderer == "katex"
     typeset = pane.object.replace(r"\displaystyle", "").strip("$ ")
     assert typeset.count("{") == typeset.count("}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import gc
-import weakref
 from multiprocessing import active_children
 from typing import Any
 
@@ -27,7 +26,7 @@ QUICK = {
 
 
 def alive() -> list[Any]:
-    """The states and documents of pages that are in memory, garbage included."""
+    """States and documents of pages since the last freeze, garbage included."""
     return [each for each in gc.get_objects() if isinstance(each, PageState | Document)]
 
 
@@ -54,9 +53,11 @@ async def open_and_close(address: str) -> None:
 
 async def states_left() -> list[Any]:
     """Serve the page, have it visited, and find what is left of the visitors' pages."""
+    # What is there before is neither searched nor found again.
+    gc.collect()
+    gc.freeze()
     server = get_server({"app": str(ROOT / "app" / "main.py")}, **QUICK)
     server.start()
-    before = weakref.WeakSet(alive())
     workers = set(active_children())
     try:
         await open_and_close(f"http://localhost:{server.port}/app")
@@ -64,12 +65,12 @@ async def states_left() -> list[Any]:
         await until(lambda: set(active_children()) <= workers)
         for _ in range(LOOKS):
             gc.collect()
-            if not (left := [each for each in alive() if each not in before]):
+            if not (left := alive()):
                 break
             # A callback that was to come each second is forgotten when it comes.
             del left
-            await asyncio.sleep(0.1)
-        return [type(each).__name__ for each in alive() if each not in before]
+            await asyncio.sleep(0.3)
+        return [type(each).__name__ for each in alive()]
     finally:
         server.stop()
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from functools import cache
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
 from typing import Any
 
 import param
 import pytest
 
-from app.controls import OWN, POINTS, Controls, SettingControl
+from app.controls import OWN, POINTS, Controls, SettingControl, _groups_of
 from app.files.opener import TableOpener
+from app.files.points import CurveDialog
 from app.messages import Start
 from app.refusals import advice_in_titles
 from app.state import PageState, default_settings
@@ -20,6 +21,7 @@ from solver.files.saved import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, mesh_files
 from solver.settings.definitions import CurveParameter, TextParameter
+from solver.settings.scene import Settings
 
 
 @cache
@@ -39,8 +41,13 @@ def new_names(scene: str) -> list[str]:
     return [name for name, each in definitions.items() if each not in before]
 
 
+@cache
+def defaults(scene: str) -> Settings:
+    return default_settings(scene)
+
+
 def of_scene(scene: str) -> PageState:
-    return PageState(default_settings(scene))
+    return PageState(defaults(scene))
 
 
 def held(state: PageState, name: str) -> Any:
@@ -56,7 +63,7 @@ def holds(state: PageState, name: str, value: float) -> bool:
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
-def test_the_widget_of_every_setting_shows_its_value_and_takes_another(
+def test_every_setting_has_a_widget_that_shows_its_value_and_takes_others(
     scene: str,
 ) -> None:
     for name in new_names(scene):
@@ -69,8 +76,14 @@ def test_the_widget_of_every_setting_shows_its_value_and_takes_another(
             assert typed(
                 control.field.value, unit, definition.metadata["about"].unit
             ) == (pytest.approx(value, rel=1e-9))
+            slide_to_both_ends(control, state)
+            # The browser has shown all that was slid: what is typed is a person's.
+            state.shown = state.given
+            present = held(state, name)
             ends = *definition.softbounds[::-1], value
-            another = next(end for end in ends if holds(state, name, end))
+            another = next(
+                end for end in ends if end != present and holds(state, name, end)
+            )
             control.field.value = f"{another / unit.factor:.12g}"
             assert held(state, name) == pytest.approx(another, rel=1e-9), name
         elif isinstance(definition, param.Boolean):
@@ -88,27 +101,18 @@ def test_the_widget_of_every_setting_shows_its_value_and_takes_another(
             assert held(state, name) == another or state.refusal, name
 
 
-@pytest.mark.parametrize("scene", CATALOGUE)
-def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(
-    scene: str,
-) -> None:
-    for name in new_names(scene):
-        state = of_scene(scene)
-        control = SettingControl(name, state)
-        if control.slider is None:
-            continue
-        for end in ("start", "end"):
-            place = getattr(control.slider, end)
-            control.slider.value = place
-            with param.edit_constant(control.slider):
-                control.slider.value_throttled = place
-            assert (
-                control.slider.value == pytest.approx(place)
-                or control.field.error_state
-            ), name
-            assert control.field.helper_text == (
-                state.refusal if control.field.error_state else ""
-            )
+def slide_to_both_ends(control: SettingControl, state: PageState) -> None:
+    """Both ends of a slider hold, or are refused at the control."""
+    slider = control.slider
+    for end in ("start", "end"):
+        place = getattr(slider, end)
+        slider.value = place
+        with param.edit_constant(slider):
+            slider.value_throttled = place
+        is_refused = control.field.error_state
+        assert slider.value == pytest.approx(place) or is_refused, control.name
+        told = state.refusal if is_refused else ""
+        assert control.field.helper_text == told
 
 
 def test_a_field_keeps_its_unit_whatever_is_typed() -> None:
@@ -245,19 +249,26 @@ def test_controls_that_do_nothing_here_are_hidden() -> None:
     assert seed.view.visible
 
 
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_chief_settings_and_groups_are_all_that_have_several_values(scene: str) -> None:
+    chief, groups = _groups_of(type(defaults(scene)))
+    shown = [*chief, *chain.from_iterable(groups.values())]
+    assert len(shown) == len(set(shown))
+    definitions = defaults(scene).definitions()
+    assert chief
+    assert set(shown) <= set(definitions)
+    for name in set(definitions) - set(shown):
+        assert len(getattr(definitions[name], "objects", "any")) == 1, name
+
+
 def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() -> None:
-    for scene in CATALOGUE:
-        controls = Controls(of_scene(scene))
-        built = len(controls._controls)
-        groups = controls._groups
-        groups.active = list(range(len(groups)))
-        shown = {control.name for control in controls._controls}
-        definitions = default_settings(scene).definitions()
-        missing = set(definitions) - shown
-        assert built < len(shown)
-        assert all(
-            len(getattr(definitions[name], "objects", "any")) == 1 for name in missing
-        )
+    controls = Controls(of_scene("incline"))
+    chief, groups = _groups_of(type(defaults("incline")))
+    assert [control.name for control in controls._controls] == chief
+    accordion = controls._groups
+    accordion.active = list(range(len(accordion)))
+    shown = [control.name for control in controls._controls]
+    assert sorted(shown) == sorted([*chief, *chain.from_iterable(groups.values())])
 
 
 def test_each_scene_keeps_its_settings() -> None:
@@ -293,19 +304,22 @@ def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_d
     assert held(state, "load")[-1] == (2.0, 0.0)
 
 
-@pytest.mark.parametrize("scene", CATALOGUE)
-def test_points_that_stand_for_a_preset_are_taken_as_they_stand(scene: str) -> None:
-    for name in names(scene):
+def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
+    taken = set[param.Parameter]()
+    settings = [(scene, name) for scene in CATALOGUE for name in names(scene)]
+    for scene, name in settings:
+        definition = defaults(scene).definitions()[name]
+        is_new = isinstance(definition, CurveParameter) and definition not in taken
+        # A definition of several scenes is one, wherever it applies.
+        if not is_new or not defaults(scene).applies(name):
+            continue
+        taken.add(definition)
         state = of_scene(scene)
-        if isinstance(state.settings.definitions()[name], CurveParameter):
-            if not state.settings.applies(name):
-                continue
-            control = SettingControl(name, state)
-            control.field.value = POINTS
-            dialog = control._dialog
-            assert dialog is not None
-            dialog._take(dialog.text.value, "the text")
-            assert isinstance(held(state, name), tuple), state.refusal
+        dialog = CurveDialog(name, state)
+        dialog.update()
+        dialog._take(dialog.text.value, "the text")
+        assert isinstance(held(state, name), tuple), state.refusal
+    assert taken
 
 
 def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> None:

@@ -88,29 +88,33 @@ def test_a_lesson_on_the_method_shows_the_search_from_nothing(lesson: Lesson) ->
 
 
 @each
-def test_the_answer_comes_after_the_choice(lesson: Lesson) -> None:
+def test_the_answer_comes_after_the_choice_and_a_search_is_watched_anew(
+    lesson: Lesson,
+) -> None:
     state = PageState(settings_of(lesson), lesson=lesson.name)
     panel, player = panel_of(state)
+    number = state.number
     assert lesson.why not in words_of(panel)
     assert player.until == lesson.until
     assert kinds_beside(state) == kinds_of(lesson, is_answered=False)
-    panel.predict(lesson.right)
+    wrong = (lesson.right + 1) % len(lesson.choices)
+    panel.predict(wrong)
     assert kinds_beside(state) == kinds_of(lesson, is_answered=True)
     assert player.until == 0.0
     assert state.selection.phase == lesson.instant
     shown = [control.name for control in panel._controls]
     assert sorted(shown) == sorted(lesson.controls)
-
-
-@each
-def test_a_search_is_watched_anew_after_the_choice_and_a_solution_stays(
-    lesson: Lesson,
-) -> None:
-    state = PageState(settings_of(lesson), lesson=lesson.name)
-    panel, _ = panel_of(state)
-    number = state.number
-    panel.predict(lesson.right)
+    # A solution stays.
     assert (state.number != number) is (lesson.subject == "method")
+    says_what_is_right(panel, lesson, wrong)
+
+
+def says_what_is_right(panel: Guide, lesson: Lesson, choice: int) -> None:
+    """The verdict names the choice, then what is right, then why."""
+    (verdict,) = panel.view.select(pmui.Alert)
+    chosen = verdict.object.index(lesson.choices[choice])
+    right = verdict.object.index(lesson.choices[lesson.right])
+    assert chosen < right < verdict.object.index(lesson.why)
 
 
 def test_a_lesson_brings_its_scene_and_asks_anew_each_time() -> None:
@@ -173,18 +177,6 @@ def test_ones_own_choice_is_filled_and_may_be_another() -> None:
         others = len(looks) - 1
         assert looks.pop(choice) == "contained"
         assert looks == ["outlined"] * others
-
-
-@each
-def test_the_verdict_says_what_was_chosen_and_what_is_right(lesson: Lesson) -> None:
-    wrong = (lesson.right + 1) % len(lesson.choices)
-    state = PageState(settings_of(lesson), lesson=lesson.name)
-    panel, _ = panel_of(state)
-    panel.predict(wrong)
-    (verdict,) = panel.view.select(pmui.Alert)
-    chosen = verdict.object.index(lesson.choices[wrong])
-    right = verdict.object.index(lesson.choices[lesson.right])
-    assert chosen < right < verdict.object.index(lesson.why)
 
 
 def test_a_drawn_curve_stays_and_the_measured_one_comes_after_the_choice() -> None:

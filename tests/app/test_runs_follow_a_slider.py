@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,12 @@ def dragged(settings: Settings, before: States | None = None) -> Runner:
     return runner
 
 
+@cache
+def begun(scene: str) -> Runner:
+    """The run of a small scene, from nothing."""
+    return dragged(of(scene))
+
+
 def states_after(runner: Runner, settings: Settings) -> States | None:
     assert runner.answer is not None
     order = Start(2, settings, math.inf, is_dragged=True)
@@ -84,7 +91,7 @@ def test_wherever_a_slider_goes_the_answer_is_that_of_a_run_from_nothing(
     name = data.draw(st.sampled_from(MOVED[scene]))
     value = begin.values()[name]
     moved = begin.with_change(name, value * data.draw(factors))
-    before = states_after(dragged(begin), moved)
+    before = states_after(begun(scene), moved)
     assert before is not None
     assert_same(dragged(moved, before), dragged(moved))
 
@@ -93,7 +100,7 @@ def test_wherever_a_slider_goes_the_answer_is_that_of_a_run_from_nothing(
 def test_a_small_move_is_answered_without_an_iteration(scene: str) -> None:
     begin = of(scene)
     moved = begin.with_change("friction", 1.02 * begin.values()["friction"])
-    runner = dragged(moved, states_after(dragged(begin), moved))
+    runner = dragged(moved, states_after(begun(scene), moved))
     assert len(runner.history) == 1
     assert runner.history[0].iteration == 1
     assert runner.status is not None
@@ -106,7 +113,7 @@ def test_a_small_move_is_answered_without_an_iteration(scene: str) -> None:
 
 @pytest.mark.parametrize("scene", list(MOVED))
 def test_states_that_are_wrong_everywhere_do_no_harm(scene: str) -> None:
-    cold = dragged(of(scene))
+    cold = begun(scene)
     assert cold.answer is not None
     wrong = np.where(cold.answer.states == 0, 1, 0).astype(np.int8)
     assert_same(dragged(of(scene), wrong), cold)
@@ -124,9 +131,8 @@ def test_where_several_solutions_may_exist_or_states_do_not_fit_a_run_starts_ane
     changes: dict[str, Any],
 ) -> None:
     scene = changes.pop("scene")
-    begin = of(scene)
     moved = of(scene, **changes)
-    before = states_after(dragged(begin), moved)
+    before = states_after(begun(scene), moved)
     assert before is not None
     assert len(dragged(moved, before).history) > 1
 
@@ -168,7 +174,7 @@ def test_a_run_that_follows_a_slider_is_compared_with_its_own_solution(
 ) -> None:
     begin = of("block")
     moved = begin.with_change("friction", 1.02 * begin.values()["friction"])
-    found = dragged(moved, states_after(dragged(begin), moved))
+    found = dragged(moved, states_after(begun("block"), moved))
     fresh = reference_of(found.sampler.problem)
 
     def refuse(*arguments: Any) -> None:

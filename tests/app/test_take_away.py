@@ -53,19 +53,29 @@ SMALL: dict[str, dict[str, Any]] = {
 def ended(scene: str) -> tuple[Runner, Frame]:
     """A run that has ended, and what is shown of it."""
     settings = default_settings(scene).replace(**SMALL[scene])
-    runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
+    # A view tells runs apart by their numbers.
+    number = 1 + list(SMALL).index(scene)
+    start = Start(number, settings, math.inf)
+    runner = Runner(start, ReferenceCache(), lambda: False)
     while runner.rest() is not None:
         runner.advance()
     return runner, runner.frame(Needs(extras=NEEDS | {TABLE}))
 
 
+@cache
+def page_of_all() -> tuple[PageState, list[View]]:
+    """The state of a page, and each of its views."""
+    state = PageState(default_settings("bar"))
+    return state, [kind(state) for kind in (Scene, Timeline, *KINDS)]
+
+
 def page(scene: str) -> tuple[PageState, list[View]]:
     """The state of a page that shows that run, and every view that applies."""
     _, frame = ended(scene)
-    state = PageState(frame.run.settings)
+    state, each = page_of_all()
+    state.settings = frame.run.settings
     state.newest = state.frame = frame
-    kinds = [kind for kind in KINDS if kind.applies(state.settings)]
-    views = [kind(state) for kind in (Scene, Timeline, *kinds)]
+    views = [view for view in each if view.applies(state.settings)]
     for view in views:
         assert view.figure is not None
         view.update(frame, state.selection, None)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_scenes import SMALL
 
 from app.frame import LINEAR, LOCAL, Selection
 from app.messages import Needs, Start
@@ -58,7 +59,7 @@ def walked(k_scale: float) -> tuple[np.ndarray, float]:
 def test_the_local_stage_lies_on_the_graph_of_the_law_at_each_instant(
     scene: str,
 ) -> None:
-    way = way_of(scene, 6)
+    way = way_of(scene, 6, **SMALL[scene])
     slip, force = way["local"][-1]
     bound = way["bound"]
     size = max(float(bound.max()), float(np.abs(force).max()))
