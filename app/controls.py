@@ -300,10 +300,15 @@ class SettingControl:
 
 
 class Controls:
-    """All controls of the present scene: the chief ones, and groups that open."""
+    """All controls of the present scene: the chief ones, and groups that open.
 
-    def __init__(self, state: PageState) -> None:
+    Controls that are not in sight follow the state once they are opened: each widget
+    costs a browser time.
+    """
+
+    def __init__(self, state: PageState, *, is_open: bool = True) -> None:
         self._state = state
+        self._is_open = is_open
         self._controls: list[SettingControl] = []
         # Toggle buttons have no pictures of their own: rules of style give each of them
         # one.
@@ -343,11 +348,18 @@ class Controls:
     def _choose_scene(self, scene: str) -> None:
         fade_first(self._state, partial(self._state.choose_scene, scene))
 
+    def open(self, is_open: bool) -> None:
+        """Have the controls follow the state from now on, or no longer."""
+        self._is_open = is_open
+        self.update()
+
     def update(self) -> None:
-        """Show the present values.
+        """Show the present values, if the controls are open.
 
         With another scene build the controls of that scene.
         """
+        if not self._is_open:
+            return
         settings = self._state.settings
         with pn.io.hold():
             if settings.scene != self._built:
