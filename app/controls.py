@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from functools import partial
 from typing import Any
 
@@ -341,6 +342,7 @@ class Controls:
         self.view = pn.Column(
             self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12)
         )
+        self._spacers = defaultdict(partial(pn.Spacer, height=0))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
         self.update()
@@ -377,10 +379,12 @@ class Controls:
         self._chief[:] = [control.view for control in self._controls]
         # The numbers of open groups would mean groups of the scene before.
         self._groups.active = []
-        # Each group is a spacer until it is opened: it costs a page less than a column.
+        # Each group is a spacer until it is opened: it costs a page less than a column,
+        # and nothing in another scene.
         self._closed = dict(enumerate([*groups.items(), ("Files", [])]))
         self._groups[:] = [
-            (title, pn.Spacer(height=0)) for title, _ in self._closed.values()
+            (title, self._spacers[number])
+            for number, (title, _) in self._closed.items()
         ]
 
     def _open(self) -> None:

@@ -73,7 +73,11 @@ HEADINGS = {
     }
 }
 """Elements of headings in the theme: else the page would have none of first rank."""
-BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
+BARE = {
+    # It stands over the page and takes no room; what it holds need not change its size.
+    "& .header": {"visibility": "hidden"},
+    "& .main .MuiToolbar-root": {"display": "none"},
+}
 
 
 class Page:
