@@ -69,10 +69,14 @@ def explained(text: str, *terms: str) -> Markup:
     return Markup("".join(parts))
 
 
-def looks(role: str) -> dict[str, Any]:
-    """Look of a widget in a role that `widgets.css` knows."""
-    rules = [rule for rule in SHEET.split("\n\n") if f":host(.{role})" in rule]
-    return {"css_classes": [role], "stylesheets": ["\n".join(rules)]}
+def looks(*roles: str) -> dict[str, Any]:
+    """Look of a widget in roles that `widgets.css` knows."""
+    rules = [
+        rule
+        for rule in SHEET.split("\n\n")
+        if any(f":host(.{role})" in rule for role in roles)
+    ]
+    return {"css_classes": list(roles), "stylesheets": ["\n".join(rules)]}
 
 
 class PlainText(pn.viewable.Viewer):
