@@ -112,11 +112,13 @@ class Live:
     def arrange(self, kinds: Kinds | None) -> None:
         """Show the cards, or the plots of a lesson."""
         self._choose_cards(kinds)
-        self._fit()
         if self.state.view == "present":
             self.transport.present()
         self._magnify(type_size(self.state))
+        # Data at last: a layout paints at once, and until a message ends glyphs with
+        # other data than before are not whole.
         self._reshape()
+        self._fit()
 
     def _choose_cards(self, kinds: Kinds | None) -> None:
         """Have as many cards as the window has room for, of all views or a lesson's."""

@@ -140,8 +140,6 @@ class Guide:
         poll = self._state.poll
         return poll is not None and not poll.leads
 
-    # Each change of what is in sight is a layout of the page.
-    @pn.io.hold()
     def _build(self, lesson: Lesson | None, case: Case | None) -> None:
         state = self._state
         parts = list[Any]()
