@@ -115,8 +115,8 @@ class Live:
         if self.state.view == "present":
             self.transport.present()
         self._magnify(type_size(self.state))
-        # Data at last: a layout paints at once, and until a message ends glyphs with
-        # other data than before are not whole.
+        # Before new data: a layout paints at once, and glyphs whose data have changed
+        # are whole only once the message has ended.
         self._reshape()
         self._fit()
 
@@ -162,7 +162,7 @@ class Live:
 
     @property
     def _shape(self) -> list[str]:
-        """CSS classes that say what is shown, and where: as each change is a layout.
+        """CSS classes that say what is shown, and where, all in one change.
 
         Plots stand beside a high picture, and below a broad one. While the question of
         a lesson is open, texts that give the answer away are hidden. Beside a text that

@@ -285,7 +285,7 @@ class Page:
         # The text and the line of the class are appended, and put in front by the style
         # sheet: a column whose children change their order loses some of them.
         beside = [self._live.view]
-        if self._guide.is_text:
+        if self._guide.is_open:
             beside.append(self._guide.view)
         main = [self._tabs[self.state.tab]]
         roles = ["main"]
@@ -313,7 +313,7 @@ class Page:
     @property
     def _has_controls(self) -> bool:
         """Check whether controls stand at the side, where they lie over nothing."""
-        is_alone = self.state.view == "page" and not self._guide.is_text
+        is_alone = self.state.view == "page" and not self._guide.is_open
         return is_alone and not self.state.is_narrow
 
     def _show_controls(self) -> None:

@@ -90,15 +90,14 @@ class PlainText(pn.viewable.Viewer):
     """
 
     object = param.String(doc="The text.")
-    visible = param.Boolean(True, doc="Whether the text is shown.")
 
     def __init__(self, **look: Any) -> None:
         super().__init__()
         self._pane = pn.pane.HTML("", **(looks("line") | look))
 
-    @param.depends("object", "visible", watch=True)
+    @param.depends("object", watch=True)
     def _show(self) -> None:
-        self._pane.param.update(object=escape(self.object), visible=self.visible)
+        self._pane.object = escape(self.object)
 
     def __panel__(self) -> pn.pane.HTML:
         return self._pane

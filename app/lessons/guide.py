@@ -40,7 +40,7 @@ from solver.study.trade_case import Case
 class Guide:
     """The lesson or the case that a page is in, if any.
 
-    `view` stands beside the plots while there `is_text`, `dialogs` are the lists of all
+    `view` stands beside the plots while one `is_open`, `dialogs` are the lists of all
     lessons and of all cases; `changed` is called when another lesson or case is shown.
     The transport plays the picture once a question is answered; `open_counts` shows a
     class the number of predictions of each choice.
@@ -75,7 +75,7 @@ class Guide:
         state.param.watch(lambda event: self.update(), "frame")
 
     @property
-    def is_text(self) -> bool:
+    def is_open(self) -> bool:
         """Check whether the page is in a lesson or a case."""
         return self._state.lesson in LESSONS or self._state.case in CASES
 
