@@ -393,22 +393,39 @@ class Picture:
                 word = word._replace(anchor=anchor, align="center")
                 rows += 1
             elif act.side == "body" and len(arrows.lines):
-                # Below an arch, say, there is room at the arrow itself.
-                near = arrows.lines[0].mean(axis=0)
-                near = np.add(self.page(near), [12.0, 0.0])
-                beside = word._replace(anchor=near, align="left")
-                if not self._covers(beside):
-                    word = beside
+                word = self._beside(word, arrows.lines[0])
             words.append(word)
         return words
 
+    def _beside(self, word: Word, arrow: Array) -> Word:
+        """A word beside an upright arrow, (n, 2), px, or below it, if it has room.
+
+        Below an arch, say, there is room at the arrow itself. An arrow on bodies ends
+        at the ground, where there is none.
+        """
+        line = self.page(arrow)
+        middle = line.mean(axis=0)
+        if self._is_on_bodies(word._replace(text="", anchor=middle)):
+            return word
+        foot = line[line[:, 1].argmin()]
+        aside = np.array([12.0, 0.0])
+        below = np.array([0.0, -8.0 - self.layout.row])
+        places = [
+            word._replace(anchor=middle + aside, align="left"),
+            word._replace(anchor=middle - aside, align="right"),
+            word._replace(anchor=foot + below, align="center"),
+        ]
+        free = [place for place in places if not self._covers(place)]
+        return next(iter(free), word)
+
     def _covers(self, word: Word) -> bool:
         """Check whether a word lies on bodies, or on an arrow or its handle."""
+        return self._is_on_bodies(word) or self._meets_arrow(word)
+
+    def _is_on_bodies(self, word: Word) -> bool:
+        """Check whether a word lies on bodies."""
         corners = self.page(self.nodes[self._geometry.cells])
-        is_on_bodies = lies_on(
-            self.layout, word, corners.min(axis=1), corners.max(axis=1)
-        )
-        return is_on_bodies or self._meets_arrow(word)
+        return lies_on(self.layout, word, corners.min(axis=1), corners.max(axis=1))
 
     def _meets_arrow(self, word: Word) -> bool:
         """Check whether a word lies on an arrow or its handle."""

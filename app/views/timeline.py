@@ -93,7 +93,9 @@ class Timeline(View):
         titles = [title for title, _ in paths]
         for path, title in zip_longest(PATHS, titles, fillvalue=""):
             self.show(path, title)
-        self.show("time", f"t in {unit.name}")
+        # On a phone the names of more than two paths fill the line.
+        has_room = count <= 2 or not self.state.is_narrow
+        self.show("time", has_room and f"t in {unit.name}")
 
     def _select(self, event: Any) -> None:
         """Select the instant under the pointer."""

@@ -417,3 +417,20 @@ def test_a_side_that_is_held_is_not_moved_during_the_search() -> None:
     frame = replace(frame, loop=np.stack([rounding, frame.loop[1]]))
     line = figures_line(frame, Selection(0.5))
     assert "Movement of the right abutment <b>0 " in line
+
+
+@pytest.mark.parametrize("size", [(900.0, 300.0), (374.0, 300.0), (360.0, 256.0)])
+def test_the_weight_of_an_arch_is_named_at_its_arrow(
+    spread: Frame, size: tuple[float, float]
+) -> None:
+    view = shown(spread, 1.0)
+    view.lay_out(*size)
+    view.update(spread, Selection(1.0), None)
+    picture = view.picture
+    assert picture is not None
+    arrows = [each for each in picture.arrows if each.act.where == "body"]
+    shaft = picture.page(np.concatenate(arrows[0].lines)).mean(axis=0)
+    boxes = boxes_of_words(view)
+    (name,) = [text for text in boxes if text.startswith("W")]
+    apart = np.maximum(boxes[name][0] - shaft, shaft - boxes[name][1])
+    assert apart.max() < 40.0
