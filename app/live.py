@@ -133,18 +133,14 @@ class Live:
             groups = tuple([group for group in (kinds[:1], kinds[1:]) if group])
         if groups == tuple([card.kinds for card in self._cards]):
             return
-        kept = {card.kinds: card for card in self._cards if card.kinds in groups}
         # A figure stands in one place only. Cards that have left the page are emptied
         # without a layout of what is there.
-        self._plots[:] = [card.view for card in kept.values() if card.seen is not None]
+        self._plots.clear()
         for card in self._cards:
-            if card.kinds not in kept:
-                card.clear()
-        self._cards = [kept.get(group) or self._card(group) for group in groups]
-
-    def _card(self, kinds: Kinds) -> Card:
-        """A card of views of some kinds."""
-        return Card([self._view(kind) for kind in kinds], self.state)
+            card.clear()
+        self._cards = [
+            Card([self._view(kind) for kind in group], self.state) for group in groups
+        ]
 
     def _view(self, kind: type[View]) -> View:
         """The view of a kind: one, whatever card it is in."""
