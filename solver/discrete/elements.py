@@ -20,6 +20,9 @@ from scipy.linalg import cho_factor, cho_solve
 from solver.arrays import Array, Indices, sparse_factor
 from solver.discrete.substructure import tributary
 
+MOST_POISSON = 0.4999
+"""Largest Poisson's ratio; above it a body keeps its volume up to the rounding of its
+strains."""
 EDGE_MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
 """Matrix from a traction at both ends of an edge of length 1, linear between them, to
 nodal forces."""
@@ -31,8 +34,6 @@ HIGHEST_DEGREE = 10
 """Largest macro degree of a long side. With 6, layers of 200 times their
 thickness cut in two up take more than 150 iterations to 1 %; with 8 and 10, 37 and 25
 (measured)."""
-
-
 ENTRY = 12
 """Memory of an entry of a sparse factor, with its place, B."""
 

@@ -36,7 +36,9 @@ class LawResiduals:
     """Largest violation of every kind of law over all places and instants.
 
     Forces are a share of `force_size`; lengths a share of the largest jump, or of
-    `ROUNDED` of the displacement or of the softest spring's length where that is more.
+    `ROUNDED` of the displacement or of the softest spring's length where that is more,
+    or of what the largest force does to the stiffest body: to mend a length that is
+    shorter takes a force of a smaller share.
 
     Attributes
     ----------
@@ -108,6 +110,7 @@ def law_residuals(
     missing, size = _missing_force(problem, displacement, force, held)
     interfaces = _interface_fields(problem, displacement, force)
     length = ROUNDED * max(largest_size(displacement), size * _softest(problem))
+    length = max(length, size / _stiffest(problem))
     length = max([length] + [each.largest_jump for each in interfaces])
 
     balance = [np.delete(missing, held, axis=0)]
@@ -148,6 +151,13 @@ def _softest(problem: Problem) -> float:
         if law.normal is not None:
             springs.append(law.in_parallel(law.normal.compliance))
     return largest_size(*springs)
+
+
+def _stiffest(problem: Problem) -> float:
+    """Largest stiffness of bodies at a degree of freedom, scaled."""
+    parts = {id(part.elasticity): part.elasticity for part in problem.substructures}
+    diagonals = [elasticity.stiffness.diagonal() for elasticity in parts.values()]
+    return largest_size(*diagonals)
 
 
 def _check_known(problem: Problem) -> None:

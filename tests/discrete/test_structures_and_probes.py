@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from solver import discrete
+from solver import discrete, solve
 from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.elements import von_mises
 from solver.discrete.plane.bricks import Brick
@@ -172,6 +172,26 @@ def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
     still = SimpleNamespace(displacement=np.zeros((problem.n_dofs, len(T))))
     force = BEAMS.loop(problem).force(still)
     assert force == pytest.approx(-3.0 * 6e5 * T * 0.1**2 / 6.0)
+
+
+def test_two_sides_that_move_a_pile_carry_the_friction_of_its_ground() -> None:
+    """Sides that share a corner share its force, and balance friction together."""
+    moved = Given(True, 1e-6 * T)
+    pressed = Given(False, -1e5 * np.minimum(4.0 * T, 1.0))
+    pile = replace(
+        BODY,
+        bricks=[Brick(0, 4 * body, 8, 4) for body in range(2)],
+        friction=0.4,
+        sides={"top": Side(moved, pressed), "left": Side(moved, Given(False, 0.0 * T))},
+    )
+    problem = discrete.discretise(pile)
+    run = solve(problem)
+    shear = pile.loop(problem).force(run.iterate)
+    carried = sum(
+        reaction(problem, side, 0).of(run.iterate) for side in ("top", "left")
+    )
+    assert shear[-1] > 0.0
+    assert shear == pytest.approx(carried, abs=1e-9 * shear[-1])
 
 
 class Framed(NamedTuple):

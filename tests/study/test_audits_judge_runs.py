@@ -222,6 +222,22 @@ def test_an_iterate_far_from_every_solution_is_wrong(monkeypatch):
     assert row["verdict"] == Verdict.WRONG
 
 
+def test_laws_hold_where_nothing_moves_but_by_rounding():
+    """A rope whose cohesion holds each end where it is pulled."""
+    held = {
+        "friction_law": "general",
+        "cohesion": 7e6,
+        "substructures": 11,
+        "pull": 305.0,
+        "tail_force": 10.6,
+        "elements": 59,
+        "instants": 21,
+    }
+    (row,) = judged_runs([StabilityCase("cohesion", "belt", held)])
+    assert row["certified"]
+    assert row["verdict"] == Verdict.RIGHT
+
+
 def test_a_reference_that_breaks_a_law_judges_nobody(monkeypatch):
     def weaker(problem, stop=None):
         found = reference_of(problem)

@@ -20,9 +20,9 @@ from solver.checks import (
     Part,
     check,
 )
+from solver.discrete.elements import MOST_POISSON
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.plane.stack import MOST_POISSON
 from solver.refusal import RefusedError, Words
 
 Shape = Mesh | Beam

@@ -27,6 +27,13 @@ class Brick(NamedTuple):
         return along, up
 
 
+def grid_of(bricks: Sequence[Brick]) -> tuple[int, int]:
+    """Elements of all bricks together, along and up."""
+    columns = max(brick.x + brick.columns for brick in bricks)
+    rows = max(brick.y + brick.rows for brick in bricks)
+    return columns, rows
+
+
 class BrickJoint(NamedTuple):
     """Line along which two rectangles, or a rectangle and its support, touch.
 

@@ -1,22 +1,15 @@
-"""Bodies of any shape, cut into parts: boundary rows, shared operators and forces."""
+"""Bodies of any shape, cut into parts: boundary rows and forces."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.condensed_part import (
-    N_AXES,
-    CondensedPart,
-    Operator,
-    Trace,
-    kept_by,
-    numbered,
-)
-from solver.discrete.elements import SchurComplement
+from solver.discrete.condensed_part import N_AXES, CondensedPart, Trace, numbered
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
 from solver.discrete.plane.body_parts import ShapePart
@@ -24,12 +17,27 @@ from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
+from solver.discrete.plane.shared_operators import SharedOperators
 from solver.discrete.scales import Scales
-from solver.kept import KEPT, content_of
 from solver.refusal import RefusedError, Words
 
-DIGITS = 9
-"""Decimal digits to which parts agree that share an operator."""
+
+class _PartNodes(NamedTuple):
+    """Nodes of a part, and the forces there.
+
+    Attributes
+    ----------
+    nodes
+        Numbers of its nodes among those of all bodies, (n_nodes,).
+    frames
+        Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3).
+    force
+        Forces on these, (n_nodes n_axes, n_instants), scaled, or None.
+    """
+
+    nodes: Indices
+    frames: Array
+    force: Array | None
 
 
 class CutBodies:
@@ -83,8 +91,7 @@ class CutBodies:
         self._trace_pieces()
         self._trace_seams()
         self._trace_held()
-        self._operators = dict[Hashable, Operator]()
-        self._stiffnesses = dict[Hashable, SchurComplement]()
+        self._operators = SharedOperators(self._own_frames)
         self.parts = list(self._parts())
 
     def is_mesh(self, number: int) -> bool:
@@ -136,11 +143,6 @@ class CutBodies:
         sizes = np.diff(self.structure.first_nodes)
         own = self.frames.frames @ np.repeat(rotations, sizes, axis=0)
         return snapped(own.reshape(-1, 2)).reshape(-1, 2, 2)
-
-    @cached_property
-    def _rounded_frames(self) -> Array:
-        """Directions at all nodes in the axes of their bodies, up to rounding."""
-        return _rounded(self._own_frames)
 
     def _of_shapes(self) -> list[ShapePart]:
         """Parts of shapes, body by body; those of one kind are shared."""
@@ -237,8 +239,7 @@ class CutBodies:
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
-        stacks = self._stacks()
-        for owner, (nodes, frames, force) in enumerate(stacks):
+        for owner, (nodes, frames, force) in enumerate(self._nodes_of_parts()):
             body = self._body_of_parts[owner]
             of_body = self.structure.bodies[body]
             if not self._traces[owner]:
@@ -249,9 +250,11 @@ class CutBodies:
                     "join it to another body, or hold some of its nodes",
                 )
             rows, n_rows = numbered(self._traces[owner], n_rows)
+            traces = list(self._traces[owner].values())
+            mesh = self.shape_parts[owner]
             yield CondensedPart(
-                mesh=self.shape_parts[owner],
-                operator=self._operator(owner, nodes, force is not None),
+                mesh=mesh,
+                operator=self._operators.of(mesh, nodes, traces, force is not None),
                 nodes=nodes,
                 body=body,
                 rows=rows,
@@ -260,16 +263,25 @@ class CutBodies:
                 rotation=of_body.rotation,
             )
 
-    def _stacks(self) -> list[tuple[Indices, Array, Array | None]]:
-        """Nodes of each part, motions of its degrees of freedom, and forces on these.
+    def _nodes_of_parts(self) -> list[_PartNodes]:
+        """Nodes, motions and forces of every part; parts alike are made together."""
+        loads = self._loads()
+        motions = self._motions()
+        found = dict[int, _PartNodes]()
+        for owners in self._alike_in_force(loads):
+            of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0]))
+            found.update(zip(owners, of_parts, strict=True))
+        return [found[owner] for owner in range(len(self.shape_parts))]
 
-        Shapes (n_nodes,), (n_nodes, n_axes, 3) and (n_nodes n_axes, n_instants),
-        scaled; None without forces. Parts alike in shape and weight are one stack.
-        """
+    def _motions(self) -> Array:
+        """Motions of the degrees of freedom of all nodes, (n_nodes, N_AXES, 3)."""
         motions = np.zeros((self.structure.first_nodes[-1], N_AXES, N_AXES))
         motions[:, :2, :2] = self.frames.frames
         motions[:, 2, 2] = 1.0
-        loads = self._loads()
+        return motions
+
+    def _alike_in_force(self, loads: Mapping[int, Array]) -> list[list[int]]:
+        """Numbers of parts alike in shape and weight; loaded ones are like no other."""
         alike = dict[Hashable, list[int]]()
         for owner, own in enumerate(self.shape_parts):
             key: Hashable = owner
@@ -277,77 +289,27 @@ class CutBodies:
                 weight = self.structure.bodies[self._body_of_parts[owner]].weight
                 key = id(own), id(weight)
             alike.setdefault(key, []).append(owner)
-        found = dict[int, tuple[Indices, Array, Array | None]]()
-        for owners in alike.values():
-            own = self.shape_parts[owners[0]]
-            bodies = [self._body_of_parts[owner] for owner in owners]
-            nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
-            frames = motions[nodes, : own.n_axes]
-            weight = self.structure.bodies[bodies[0]].weight
-            force = own.force(weight, loads.get(owners[0]))
-            turned: Array | list[None] = [None] * len(owners)
-            if force is not None:
-                on_nodes = frames[..., :2] @ force / (self.young * self.length)
-                turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
-            for place, owner in enumerate(owners):
-                found[owner] = nodes[place], frames[place], turned[place]
-        return [found[owner] for owner in range(len(self.shape_parts))]
+        return list(alike.values())
 
-    def _operator(self, owner: int, nodes: Indices, has_force: bool) -> Operator:
-        """Operator of a part, the same for parts alike; its nodes are (n_nodes,).
+    def _nodes_of_alike(
+        self, owners: Sequence[int], motions: Array, load: Array | None
+    ) -> list[_PartNodes]:
+        """Nodes, motions and forces of parts alike, by their numbers.
 
-        Members of a group of parts have forces inside all or none of them.
+        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `load` the forces on the
+        nodes of the parts, (n_nodes_of_part, 2, n_instants), N, or None.
         """
-        part = self.shape_parts[owner]
-        traces = list(self._traces[owner].values())
-        turned = self._rounded_frames[nodes].tobytes()
-        # Most parts that are alike have the very same traces.
-        of_traces = tuple(id(trace) for trace in traces)
-        same = id(part), of_traces, turned, has_force
-        if same in self._operators:
-            return self._operators[same]
-        dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
-        direction = np.concatenate([trace.direction.ravel() for trace in traces])
-        alike = (
-            id(part),
-            dofs.tobytes(),
-            _rounded(direction / direction.max()).tobytes(),
-            turned,
-            tuple(trace.has_macro for trace in traces),
-            has_force,
-        )
-        if alike not in self._operators:
-            frames = self._own_frames[nodes]
-            condensed = self._condensed(part, frames, kept_by(traces))
-            self._operators[alike] = Operator(condensed, traces)
-        self._operators[same] = self._operators[alike]
-        return self._operators[alike]
-
-    def _condensed(
-        self, part: ShapePart, frames: Array, kept: Indices
-    ) -> SchurComplement:
-        """Stiffness of a part condensed onto degrees of freedom that are kept, (n,).
-
-        `frames` are the directions at its nodes in its axes, (n_nodes, 2, 2). What lies
-        below a joint has directions that are turned round from those above: both are
-        condensed in those that have a positive first component.
-        """
-        nodes, axes = np.divmod(kept, part.n_axes)
-        signs = np.ones(len(kept))
-        moves = np.flatnonzero(axes < 2)
-        rows = nodes[moves], axes[moves]
-        along_x, along_y = frames[rows].T
-        signs[moves] = np.sign(np.where(along_x == 0.0, along_y, along_x))
-        towards = frames.copy()
-        towards[rows] *= signs[moves, None]
-        alike = id(part), kept.tobytes(), _rounded(towards).tobytes()
-        if alike not in self._stiffnesses:
-            # No load and no friction changes the stiffness of the first of them.
-            key = "part", part.content, content_of(towards, kept)
-            self._stiffnesses[alike] = KEPT.of(
-                key, lambda: SchurComplement(part.stiffness_in(towards), kept)
-            )
-        return self._stiffnesses[alike].turned_round(signs)
+        own = self.shape_parts[owners[0]]
+        bodies = [self._body_of_parts[owner] for owner in owners]
+        nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
+        frames = motions[nodes, : own.n_axes]
+        force = own.force(self.structure.bodies[bodies[0]].weight, load)
+        turned: Array | list[None] = [None] * len(owners)
+        if force is not None:
+            on_nodes = frames[..., :2] @ force / (self.young * self.length)
+            turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
+        of_parts = zip(nodes, frames, turned, strict=True)
+        return [_PartNodes(*of_part) for of_part in of_parts]
 
     def _loads(self) -> Mapping[int, Array]:
         """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.
@@ -377,9 +339,3 @@ def _modulus(body: Body) -> float:
     if isinstance(body.shape, Mesh):
         return body.young
     return body.young * body.shape.area / body.shape.size
-
-
-def _rounded(values: Array) -> Array:
-    """Values of any shape up to rounding, for a key."""
-    # Zero is added so that -0 is 0.
-    return np.asarray(np.round(values, DIGITS) + 0.0)

@@ -12,7 +12,8 @@ import numpy as np
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
 from solver.discrete.plane.joint_laws import JointPiece
-from solver.discrete.plane.stack import SETTLED, Stack
+from solver.discrete.plane.sides import SETTLED
+from solver.discrete.plane.stack import Stack
 from solver.discrete.substructure import substructure_sizes, tributary
 
 SIDES = "left", "right", "bottom", "top"

@@ -1,4 +1,4 @@
-"""Stacks cut into substructures: meshes, operators, boundary rows and loads.
+"""Stacks cut into substructures: meshes, operators and boundary rows.
 
 Lengths are scaled by the length of a body, stresses by E. Tractions act on the
 substructures themselves, and need no interface.
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Indices, read_only
+from solver.arrays import Array, Indices
 from solver.discrete.condensed_part import (
     CondensedPart,
     Operator,
@@ -21,17 +21,16 @@ from solver.discrete.condensed_part import (
     numbered,
 )
 from solver.discrete.elements import (
-    EDGE_MASS,
     Rectangle,
     SchurComplement,
     elastic_matrix,
     legendre_basis,
 )
 from solver.discrete.plane.bricks import BrickJoint
-from solver.discrete.plane.cut_rectangles import SIDES, CutRectangles, Span
+from solver.discrete.plane.cut_rectangles import SIDES, CutRectangles
 from solver.discrete.plane.joint_laws import JOINT_SIDES
-from solver.discrete.plane.sides import Given
 from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.stack_loads import StackLoads
 from solver.discrete.scales import Scales
 from solver.kept import KEPT
 
@@ -103,12 +102,12 @@ class CutStack:
         self.positions = np.concatenate([grid.reshape(-1, 2) for grid in grids])
         self.joint_names = self.rectangles.joint_names
         self.pieces = self.rectangles.pieces
-        # Equal substructures share a mesh, an operator, and the forces of the weight.
+        # Equal substructures share a mesh and an operator.
         self._mesh = cache(self._mesh_of)
         self._trace = cache(_SideTrace.of)
         self._operator = cache(self._operator_of)
         self._basis = cache(self._basis_of)
-        self._weight = cache(self._weight_of)
+        self._loads = StackLoads(self.rectangles)
         self.parts = list(self._parts(_node_numbers(grids)))
 
     def _grids(self) -> list[Array]:
@@ -132,7 +131,7 @@ class CutStack:
             body = self.rectangles.body_of(number)
             modulus = self.stack.modulus(body)
             mesh = self.mesh(number)
-            force = self._force(number, mesh)
+            force = self._loads.of(number, mesh)
             # Members of a group have body forces on all or on none, and see the same
             # macro forces.
             kinds = tuple(traces.values())
@@ -275,78 +274,3 @@ class CutStack:
             elif span.side == "right" and stack.spring is not None and is_foot:
                 traces["spring"] = _SideTrace(span.side, (0, 1), 0, 1)
         return traces
-
-    def _force(self, number: int, mesh: Rectangle) -> Array | None:
-        """Nodal forces of tractions and weight, scaled, or None.
-
-        Shape (2 n_nodes, n_instants).
-        """
-        stack = self.stack
-        weight = None
-        if self.rectangles.body_of(number) >= stack.strips:
-            weight = self._weight(mesh)
-        tractions = list(self._tractions(number))
-        if not tractions:
-            return weight
-        total = np.zeros((mesh.n_nodes, 2, len(stack.instants)))
-        for span, component, given in tractions:
-            traction = self.values(number, span, given) / stack.young
-            _add_traction(total[:, component], mesh, span, traction)
-        force = total.reshape(-1, len(stack.instants))
-        if weight is not None:
-            force += weight
-        if force.any():
-            return force
-        return None
-
-    def _tractions(self, number: int) -> Iterator[tuple[Span, int, Given]]:
-        """Tractions on outer sides of a substructure, with their spans and axes."""
-        for span in self.rectangles.outer[number]:
-            for component, given in enumerate(self.stack.sides[span.side]):
-                if not given.prescribed and not given.is_zero:
-                    yield span, component, given
-
-    def _weight_of(self, mesh: Rectangle) -> Array | None:
-        """Nodal forces of the weight, (2 n_nodes, n_instants), scaled, or None."""
-        stack = self.stack
-        if stack.body_force is None:
-            return None
-        areas = np.outer(mesh.edge_weights("left"), mesh.edge_weights("bottom"))
-        density = stack.body_force * stack.length / stack.young
-        # Zero is added so that -0 is 0.
-        force = areas.reshape(-1, 1, 1) * density + 0.0
-        if not force.any():
-            return None
-        return read_only(force.reshape(-1, len(stack.instants)))
-
-    def values(self, number: int, span: Span, given: Given) -> Array:
-        """Given displacement or traction at the nodes of a span of an outer side.
-
-        Shape (n_nodes, n_instants), m or Pa.
-        """
-        rectangle, body, _ = self.rectangles.each[number]
-        if span.side in ("left", "right"):
-            brick = self.stack.rectangles[body]
-            corner = rectangle.y - brick.y
-            whole = brick.rows
-        else:
-            corner = rectangle.x
-            whole = self.stack.grid[0]
-        mean = given.mean
-        if mean.ndim > 1:
-            mean = mean[body]
-        nodes = corner + np.arange(span.first, span.last + 1)[:, None]
-        return np.asarray(mean + (2.0 * nodes / whole - 1.0) * given.slope)
-
-
-def _add_traction(force: Array, mesh: Rectangle, span: Span, traction: Array) -> None:
-    """Add nodal forces of a traction on a span of a side to those of all nodes.
-
-    `force` is (n_nodes, n_instants), `traction` that of the nodes of the span, (nodes
-    along, n_instants); both scaled, of one component.
-    """
-    nodes = mesh.edge(span.side)[span.first : span.last + 1]
-    size = mesh.height if span.side in ("left", "right") else mesh.width
-    ends = np.arange(len(nodes) - 1)[:, None] + np.arange(2)
-    of_edges = size * np.matmul(EDGE_MASS, traction[ends])
-    np.add.at(force, nodes[ends], of_edges)

@@ -20,6 +20,9 @@ from solver.checks import (
 )
 from solver.refusal import RefusedError
 
+SETTLED = "settled support"
+"""Beginning of the names of contacts with strips of ground that settle."""
+
 
 @dataclass(frozen=True, eq=False)
 class Given:
@@ -57,6 +60,11 @@ class Side(NamedTuple):
 
     x: Given
     y: Given
+
+    @property
+    def is_zero(self) -> bool:
+        """Check whether all that is given is zero at all instants."""
+        return self.x.is_zero and self.y.is_zero
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array, Indices, without_residue
+from solver.arrays import Array, Indices
 from solver.checks import (
-    ANY_NUMBER,
     INSTANTS,
     NON_NEGATIVE,
     POSITIVE,
@@ -25,36 +24,32 @@ from solver.checks import (
     check,
     check_value,
 )
-from solver.discrete.plane.bricks import Brick
+from solver.discrete.elements import MOST_POISSON
+from solver.discrete.plane.bricks import Brick, grid_of
 from solver.discrete.plane.sides import Given, Side, Spring, Support
-from solver.discrete.probes import (
-    LoopFields,
-    constant,
-    end_rotation,
-    reaction,
-    side_mean,
+from solver.discrete.plane.stack_drawn import (
+    act_of_ground,
+    act_of_weight,
+    acts_on_sides,
+    holds_of,
+)
+from solver.discrete.plane.stack_loops import (
+    SettlementLoop,
+    SlopeLoop,
+    StackLoop,
+    loop_of_end,
+    loop_on_ground,
+)
+from solver.discrete.plane.stack_refused import (
+    check_bricks,
+    check_sides,
+    check_support,
 )
 from solver.discrete.problem import Problem
-from solver.discrete.structure import (
-    OUTWARD,
-    Act,
-    Axes,
-    Description,
-    Hold,
-    Loop,
-    on_side,
-)
+from solver.discrete.structure import Axes, Description, Loop
 from solver.laws import FrictionLaw
-from solver.refusal import RefusedError
 
 SIDES = "left", "right", "top", "bottom"
-MOST_POISSON = 0.4999
-"""Largest Poisson's ratio; above it a body keeps its volume up to the rounding of its
-strains."""
-SETTLED = "settled support"
-"""Beginning of the names of contacts with strips of ground that settle."""
-DRIVEN = "top", "left", "right"
-"""Sides of a body on a support; the first that is loaded or moved drives the body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,27 +165,13 @@ class Stack:
         for axis, elements in enumerate(self.elements):
             parts = self.substructures[axis]
             check_value(f"Stack.substructures[{axis}]", parts, Count(1, elements))
-        for number, brick in enumerate(self.rectangles):
-            check_value(f"Stack.bricks[{number}]", brick[:2], Each(Count(0), 2))
-            check_value(f"Stack.bricks[{number}]", brick[2:], Each(Count(1), 2))
-        taken = np.zeros(self.grid, dtype=bool)
-        for number, (x, y, columns, rows) in enumerate(self.rectangles):
-            covered = taken[x : x + columns, y : y + rows]
-            if covered.any():
-                raise RefusedError(
-                    f"Stack.bricks[{number}]",
-                    [x, y, columns, rows],
-                    "bodies that lie beside each other",
-                    "it overlaps one before, move it",
-                )
-            covered[:] = True
+        check_bricks(self.rectangles)
 
     def _check_fields(self) -> None:
         """Refuse fields that do not fit the numbers of bodies, nodes and instants."""
         instants = len(self.instants)
         bodies = len(self.rectangles)
         nodes = self.grid[0] + 1
-        over_time = Numbers(((instants,),))
         joints = (bodies - 1, 1), (bodies - 1, nodes)
         check(
             self,
@@ -199,32 +180,11 @@ class Stack:
             stiffness=Numbers(((bodies,),), low=0.0, above=True),
             groups=Numbers(((bodies,),), whole=True),
             body_force=Numbers(((2, instants),)),
-            tilt=over_time,
+            tilt=Numbers(((instants,),)),
         )
-        slope = Either(ANY_NUMBER, over_time)
-        for side, components in self.sides.items():
-            mean = over_time
-            if side == "bottom" and self.strips:
-                mean = Numbers(((instants,), (self.strips, instants)))
-            for component, given in zip("xy", components, strict=True):
-                where = f"Stack.sides[{side!r}].{component}"
-                check_value(where, given, Part(Given))
-                check_value(f"{where}.mean", given.mean, mean)
-                check_value(f"{where}.slope", given.slope, slope)
+        check_sides(self.sides, instants, self.strips)
         if self.support is not None:
-            self._check_support(self.support, nodes, instants)
-
-    def _check_support(self, support: Support, nodes: int, instants: int) -> None:
-        """Refuse fields of the support that do not fit nodes and instants."""
-        along = Numbers(((nodes,),))
-        friction = Either(NON_NEGATIVE, along)
-        check_value("Stack.support.gap", support.gap, along)
-        check_value("Stack.support.friction", support.friction, friction)
-        strips = Count(0, len(self.rectangles) - 1)
-        check_value("Stack.support.strips", support.strips, strips)
-        if support.strength is not None:
-            strength = Numbers(((nodes, instants),), low=0.0)
-            check_value("Stack.support.strength", support.strength, strength)
+            check_support(self.support, bodies, nodes, instants)
 
     @cached_property
     def rectangles(self) -> Sequence[Brick]:
@@ -248,9 +208,7 @@ class Stack:
     @cached_property
     def grid(self) -> tuple[int, int]:
         """Elements of all bodies together, along and up."""
-        columns = max(brick.x + brick.columns for brick in self.rectangles)
-        rows = max(brick.y + brick.rows for brick in self.rectangles)
-        return columns, rows
+        return grid_of(self.rectangles)
 
     @property
     def size(self) -> tuple[float, float]:
@@ -292,22 +250,6 @@ class Stack:
             return 1.0
         return float(self.stiffness[body])
 
-    @property
-    def axes(self) -> Axes:
-        """Titles and units of the loop."""
-        if self._shows_settlement:
-            return ("Settlement", "m"), ("Force on the settled ground", "N")
-        if self.tilt is not None and self.spring is not None:
-            return ("Angle of the slope", "°"), ("Spring force", "N")
-        if self.support is not None:
-            return (f"Displacement of the {self._shown_side}", "m"), (
-                "Shear force",
-                "N",
-            )
-        if self._is_turned:
-            return ("Rotation of the end", "rad"), ("Moment", "N·m")
-        return ("Deflection of the end", "m"), ("Transverse force", "N")
-
     @cached_property
     def settlement(self) -> Array:
         """Settlement of each strip of ground, shape (n_strips, n_instants), m."""
@@ -321,23 +263,9 @@ class Stack:
         return bool(np.any(self.settlement)) and not is_driven
 
     @property
-    def _is_turned(self) -> bool:
-        """Check whether a moment acts on the right end, without a transverse force."""
-        bent = self.sides["right"].y
-        return self.support is None and not bent.prescribed and not np.any(bent.mean)
-
-    @property
-    def _shown_side(self) -> str:
-        """Side whose displacement the loop shows: of a single body the driven one."""
-        if self.support is None:
-            return "right"
-        if len(self.rectangles) > 1:
-            return "top"
-        for name in DRIVEN:
-            x, y = self.sides[name]
-            if not (x.is_zero and y.is_zero):
-                return name
-        return DRIVEN[0]
+    def axes(self) -> Axes:
+        """Titles and units of the loop."""
+        return self._shown.axes
 
     def loop(self, problem: Problem) -> Loop:
         """Loop of the spring force, the shear force, or the load that bends the end.
@@ -345,202 +273,34 @@ class Stack:
         Where ground settles and nothing drives the bodies along it, of the force that
         the settled ground still carries.
         """
-        if self._shows_settlement:
-            settled = np.abs(self.settlement).max(axis=1).argmax()
-            names = [name for name in problem.rubbing if is_settled(name)]
-            moved = constant(self.settlement[settled])
-            return Loop(*self.axes, moved, partial(pressing_force, names))
-        if self.tilt is not None and self.spring is not None:
-            # The spring's force lags behind on the way back.
-            angle = constant(np.degrees(self.tilt))
-            return Loop(*self.axes, angle, _spring_force)
-        if self._is_turned:
-            moment = constant(self._end_moment)
-            return Loop(*self.axes, end_rotation(problem), moment.of)
-        side = self._shown_side
-        component = 1 if self.support is None else 0
-        force = self._loop_force(problem, side, component)
-        return Loop(*self.axes, side_mean(problem, side, component), force)
+        return self._shown.of(problem)
 
     @property
-    def _end_moment(self) -> Array:
-        """Moment of the traction on the right, shape (n_instants,), N m."""
-        size = self.longest * self.height**2
-        moment = -size / 6.0 * self.sides["right"].x.slope
-        return np.broadcast_to(moment, self.instants.shape)
-
-    def _loop_force(
-        self, problem: Problem, side: str, component: int
-    ) -> Callable[[LoopFields], Array]:
-        """Force of the loop over the mean displacement of a side in a component."""
-        rests = self.support is not None
-        given = self.sides[side][component]
-        if rests and len(self.rectangles) == 1:
-            return _shear_force
-        holding = [each for each in self.sides.values() if each[component].prescribed]
-        if rests and len(holding) > 1 + bool(self.strips):
-            # Sides that share a corner share its force, too: the ground tells the sum.
-            names = [name for name in problem.rubbing if "support and" in name]
-            return partial(_rubbing_force, names)
-        if given.prescribed:
-            return reaction(problem, side, component).of
-        if rests:
-            whole = self.size[0]
-        else:
-            whole = self.longest * self.height
-        force = np.broadcast_to(given.mean * whole, self.instants.shape)
-        return constant(force).of
+    def _shown(self) -> StackLoop:
+        """Loop of what drives the bodies."""
+        if self._shows_settlement:
+            return SettlementLoop(self.settlement)
+        if self.tilt is not None and self.spring is not None:
+            return SlopeLoop(self.tilt)
+        if self.support is not None:
+            bodies = len(self.rectangles)
+            return loop_on_ground(self.sides, self.size[0], bodies, self.strips)
+        return loop_of_end(self.sides["right"], self.longest, self.height)
 
     def description(self) -> Description:
         """Description of the bodies for drawings."""
         length, height = self.size
+        acts = list(acts_on_sides(self.sides, self.support, self.rectangles))
+        if np.any(self.settlement):
+            strips = self.rectangles[: self.strips]
+            acts.append(act_of_ground(self.settlement, strips, self.grid[0]))
+        acts.append(act_of_weight(self.weight))
         return Description(
             bodies=len({brick.y for brick in self.rectangles}),
             length=length,
             height=height,
             instants=self.instants,
-            acts=tuple(self._acts()),
-            holds=tuple(self._holds()),
+            acts=tuple(acts),
+            holds=tuple(holds_of(self.sides, self.support, self.spring)),
             tilt=self.tilt,
         )
-
-    def _acts(self) -> Iterator[Act]:
-        """Loads and prescribed displacements of the sides, and the weight.
-
-        A displacement that is one of several sides is drawn at the first of them.
-        """
-        drawn: list[tuple[int, Given]] = []
-        for name, side in self.sides.items():
-            if name == "bottom" and self.support is not None:
-                continue
-            for component, given in enumerate(side):
-                is_same = [
-                    across == component and given is other for across, other in drawn
-                ]
-                if given.prescribed and any(is_same):
-                    continue
-                drawn.append((component, given))
-                yield self._act_on_side(given, name, component)
-        if np.any(self.settlement):
-            yield self._act_of_ground()
-        size = np.hypot(*self.weight)
-        towards = self.weight / np.where(size > 0.0, size, 1.0)
-        yield Act("body", "W", on_side("body", [0.5]), towards, size, "N")
-
-    def _act_on_side(self, given: Given, side: str, component: int) -> Act:
-        """Load or displacement of a side: drawn at both ends if it is uneven."""
-        is_normal = OUTWARD[side][component] != 0.0
-        along = "xy"[component]
-        if given.prescribed:
-            symbol = f"u_{along}"
-            unit = "m"
-        elif is_normal:
-            symbol = "σ"
-            unit = "Pa"
-        else:
-            symbol = "τ"
-            unit = "Pa"
-        # Arrows along a side stand beside those across it.
-        shares = [0.15]
-        if is_normal:
-            shares = [0.7]
-        values = given.mean
-        if np.any(given.slope):
-            shares = [0.0, 1.0]
-            values = np.stack([given.mean - given.slope, given.mean + given.slope])
-        elif is_normal and not given.prescribed:
-            shares = [0.15, 0.5, 0.85]
-        return Act(
-            where=f"{side} {along}",
-            symbol=symbol,
-            points=self._on_bodies(side, on_side(side, shares)),
-            towards=((1.0, 0.0), (0.0, 1.0))[component],
-            values=values,
-            unit=unit,
-        )
-
-    def _act_of_ground(self) -> Act:
-        """Settlement of the ground, in the middle of what settles most."""
-        size = np.abs(self.settlement).max(axis=1)
-        strips = [
-            strip
-            for strip, moved in zip(self.rectangles, size.tolist(), strict=False)
-            if moved == size.max()
-        ]
-        first = strips[0].x
-        last = strips[-1].x + strips[-1].columns
-        middle = 0.5 * (first + last) / self.grid[0]
-        return Act(
-            where="bottom y",
-            symbol="u_y",
-            points=on_side("bottom", [middle]),
-            towards=(0.0, -1.0),
-            values=self.settlement[size.argmax()],
-            unit="m",
-        )
-
-    def _on_bodies(self, side: str, points: Array) -> Array:
-        """Points on a side, moved up or down onto the bodies that are there.
-
-        Shape (n, 2) both, as shares of the length and height of all bodies.
-        """
-        x, y, columns, rows = np.array(self.rectangles).T
-        points = points.copy()
-        along, up = self.grid
-        for point in points:
-            position = point[0] * along
-            is_there = (x <= position) & (position <= x + columns)
-            low = y[is_there].min() / up
-            high = (y + rows)[is_there].max() / up
-            if side == "top":
-                low = high
-            elif side == "bottom":
-                high = low
-            point[1] = low + point[1] * (high - low)
-        return points
-
-    def _holds(self) -> Iterator[Hold]:
-        """Support, clamps, rollers and spring."""
-        if self.support is not None:
-            yield Hold("support", "bottom", gap=self.support.gap)
-        for name, side in self.sides.items():
-            if name == "bottom" and self.support is not None:
-                continue
-            is_still = [given.prescribed and given.is_zero for given in side]
-            if all(is_still):
-                yield Hold("clamp", name)
-            elif any(is_still):
-                yield Hold("rollers", name)
-        if self.spring is not None:
-            yield Hold("spring", "right")
-
-
-def is_settled(name: str) -> bool:
-    """Check whether a contact is with ground that settles, by its name."""
-    return name.startswith(SETTLED)
-
-
-def pressing_force(names: Sequence[str], fields: LoopFields) -> Array:
-    """Sum of the pressing forces of contacts by name, shape (n_instants,), N."""
-    forces = [np.asarray(fields.contact(name).normal_force) for name in names]
-    total: Array = np.concatenate(forces).sum(axis=0)
-    return total
-
-
-def _rubbing_force(names: Sequence[str], fields: LoopFields) -> Array:
-    """Shear force by the friction of contacts by name, shape (n_instants,), N."""
-    forces = [-np.asarray(fields.contact(name).tangential_force) for name in names]
-    force = np.concatenate(forces)
-    return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
-
-
-def _spring_force(fields: LoopFields) -> Array:
-    """Force of the spring at the foot, shape (n_instants,), N."""
-    force: Array = np.asarray(fields.contact("spring").normal_force)[0]
-    return force
-
-
-def _shear_force(fields: LoopFields) -> Array:
-    """Friction force of the body on its support, shape (n_instants,), N."""
-    force = -fields.contact("support").tangential_force
-    return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))

@@ -28,6 +28,7 @@ from solver.discrete.plane.joint_laws import (
 from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
 from solver.discrete.plane.sides import Side, Spring, Support
 from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.stack_loads import values_along
 from solver.discrete.problem import Problem
 from solver.laws import (
     BodyStiffness,
@@ -273,7 +274,7 @@ def _prescribed(
             if not isinstance(span, Span) or span.side != side:
                 continue
             for column, component in enumerate(components):
-                moved = cut.values(number, span, given[component])
+                moved = values_along(cut.rectangles, number, span, given[component])
                 if side in ("left", "right"):
                     _move_corners(cut, number, side, component, moved)
                 rows.append(of_span[:, column])
