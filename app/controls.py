@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from functools import partial
 from typing import Any
 
@@ -300,10 +301,15 @@ class SettingControl:
 
 
 class Controls:
-    """All controls of the present scene: the chief ones, and groups that open."""
+    """All controls of the present scene: the chief ones, and groups that open.
 
-    def __init__(self, state: PageState) -> None:
+    Controls that are not in sight follow the state once they are opened: each widget
+    costs a browser time.
+    """
+
+    def __init__(self, state: PageState, *, is_open: bool = True) -> None:
         self._state = state
+        self._is_open = is_open
         self._controls: list[SettingControl] = []
         # Toggle buttons have no pictures of their own: rules of style give each of them
         # one.
@@ -336,6 +342,7 @@ class Controls:
         self.view = pn.Column(
             self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12)
         )
+        self._spacers = defaultdict(partial(pn.Spacer, height=0))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
         self.update()
@@ -343,11 +350,18 @@ class Controls:
     def _choose_scene(self, scene: str) -> None:
         fade_first(self._state, partial(self._state.choose_scene, scene))
 
+    def open(self, is_open: bool) -> None:
+        """Have the controls follow the state from now on, or no longer."""
+        self._is_open = is_open
+        self.update()
+
     def update(self) -> None:
-        """Show the present values.
+        """Show the present values, if the controls are open.
 
         With another scene build the controls of that scene.
         """
+        if not self._is_open:
+            return
         settings = self._state.settings
         with pn.io.hold():
             if settings.scene != self._built:
@@ -365,10 +379,12 @@ class Controls:
         self._chief[:] = [control.view for control in self._controls]
         # The numbers of open groups would mean groups of the scene before.
         self._groups.active = []
-        # Each group is a spacer until it is opened: it costs a page less than a column.
+        # Each group is a spacer until it is opened: it costs a page less than a column,
+        # and nothing in another scene.
         self._closed = dict(enumerate([*groups.items(), ("Files", [])]))
         self._groups[:] = [
-            (title, pn.Spacer(height=0)) for title, _ in self._closed.values()
+            (title, self._spacers[number])
+            for number, (title, _) in self._closed.items()
         ]
 
     def _open(self) -> None:

@@ -24,9 +24,6 @@ from app.widgets import MEANINGS, PlainText, html, looks, wrapped
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = 0.026
 """Type size of plots on a projector over the window's height."""
-LOW = 60
-HIGH = 0.12
-"""Height of the time line: px on the page, share of the window's on a projector."""
 ROOM = 900
 """Height of a window, px, from which all cards have room."""
 LOOK = 1000
@@ -56,11 +53,16 @@ class Live:
         # While the browser loads.
         document.add_next_tick_callback(self.prepare)
         self._above = wrapped(
-            self.transport.view, self._status, sizing_mode="stretch_width"
+            self.transport.view,
+            self._status,
+            css_classes=["above"],
+            sizing_mode="stretch_width",
         )
         self._scene = column("scene")
         self._plots = column("plots")
-        self._timeline = pn.Column(sizing_mode="stretch_width", height=LOW, margin=0)
+        self._timeline = pn.Column(
+            sizing_mode="stretch_width", margin=0, **looks("timeline")
+        )
         self._times = pn.Row(
             self.transport.play_button,
             pn.Column(
@@ -108,26 +110,15 @@ class Live:
     # What changes within a hold is sent at once, and in this order.
     @pn.io.hold()
     def arrange(self, kinds: Kinds | None) -> None:
-        """Show the cards, or the plots of a lesson.
-
-        While its question is open, texts that give the answer away are hidden.
-        """
-        state = self.state
-        is_presented = state.view == "present"
+        """Show the cards, or the plots of a lesson."""
         self._choose_cards(kinds)
-        self._above.visible = is_presented or not state.is_asked
-        for part in (self._status, self._figures, self.transport.scrub):
-            part.visible = not state.is_asked
-        # A text beside the run says what is seen, and a projector has little room.
-        is_told = state.lesson or state.case
-        self._sentence.visible = not (is_presented and is_told)
-        self.transport.present(is_presented)
-        self._fit()
-        self._timeline.height = LOW
-        if is_presented:
-            self._timeline.height = int(HIGH * state.height)
-        self._magnify(type_size(state))
+        if self.state.view == "present":
+            self.transport.present()
+        self._magnify(type_size(self.state))
+        # Before new data: a layout paints at once, and glyphs whose data have changed
+        # are whole only once the message has ended.
         self._reshape()
+        self._fit()
 
     def _choose_cards(self, kinds: Kinds | None) -> None:
         """Have as many cards as the window has room for, of all views or a lesson's."""
@@ -142,7 +133,9 @@ class Live:
             groups = tuple([group for group in (kinds[:1], kinds[1:]) if group])
         if groups == tuple([card.kinds for card in self._cards]):
             return
-        # A figure stands in one place only.
+        # A figure stands in one place only. Cards that have left the page are emptied
+        # without a layout of what is there.
+        self._plots.clear()
         for card in self._cards:
             card.clear()
         self._cards = [
@@ -165,9 +158,20 @@ class Live:
 
     @property
     def _shape(self) -> list[str]:
-        """CSS classes: plots stand beside a high picture, and below a broad one."""
+        """CSS classes that say what is shown, and where, all in one change.
+
+        Plots stand beside a high picture, and below a broad one. While the question of
+        a lesson is open, texts that give the answer away are hidden. Beside a text that
+        tells what is seen a projector has no sentence on it.
+        """
         state = self.state
         classes = ["live", state.view]
+        if state.is_asked:
+            classes.append("asked")
+        if state.lesson or state.case:
+            classes.append("told")
+        if state.frame is not None and len(state.frame.run.surfaces) > 1:
+            classes.append("several")
         shape = []
         if self._cards and state.frame is not None:
             shape = [shape_of(state.frame.run.geometry)]

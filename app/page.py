@@ -72,7 +72,11 @@ HEADINGS = {
     }
 }
 """Elements of headings in the theme: else the page would have none of first rank."""
-BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
+BARE = {
+    # It stands over the page and takes no room; what it holds need not change its size.
+    "& .header": {"visibility": "hidden"},
+    "& .main .MuiToolbar-root": {"display": "none"},
+}
 
 
 class Page:
@@ -105,6 +109,7 @@ class Page:
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         self._make_dialogs()
+        self._controls = Controls(state, is_open=self._has_controls)
         self.template = self._framed()
         follow_itself(self.template)
         keys = transport.keys() | {"p": self._present, "?": self._help}
@@ -133,11 +138,11 @@ class Page:
         """The template, with header, controls and main area."""
         return pmui.Page(
             title="Slipfront",
-            sidebar=[Controls(self.state).view],
+            sidebar=[self._controls.view],
             sidebar_width=320,
             header=[self._header()],
             main=[self._main],
-            sidebar_open=not self.state.is_narrow,
+            sidebar_open=self._has_controls,
             sidebar_variant="persistent",
             raw_css=[LOADING],
             busy_indicator=None,
@@ -162,6 +167,10 @@ class Page:
         watch(lambda event: self._dress(), "view")
         watch(lambda event: self._show_controls(), "is_narrow")
         watch(lambda event: self._on_height(), "height")
+        # A person may open or close the controls, too.
+        self.template.param.watch(
+            lambda event: self._controls.open(event.new), "sidebar_open"
+        )
 
     def loaded(self) -> None:
         """Show the figures once a browser is there, and go on or follow a class."""
@@ -276,7 +285,7 @@ class Page:
         # The text and the line of the class are appended, and put in front by the style
         # sheet: a column whose children change their order loses some of them.
         beside = [self._live.view]
-        if self._guide.view.visible:
+        if self._guide.is_open:
             beside.append(self._guide.view)
         main = [self._tabs[self.state.tab]]
         roles = ["main"]
@@ -301,10 +310,14 @@ class Page:
         self.template.sx = COMPACT if self.state.view == "page" else BARE
         self._show_controls()
 
+    @property
+    def _has_controls(self) -> bool:
+        """Check whether controls stand at the side, where they lie over nothing."""
+        is_alone = self.state.view == "page" and not self._guide.is_open
+        return is_alone and not self.state.is_narrow
+
     def _show_controls(self) -> None:
-        """Have the controls at the side, where they do not lie over all else."""
-        is_alone = self.state.view == "page" and not self._guide.view.visible
-        self.template.sidebar_open = is_alone and not self.state.is_narrow
+        self.template.sidebar_open = self._has_controls
 
 
 def follow_itself(template: pmui.Page) -> None:

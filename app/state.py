@@ -450,7 +450,7 @@ class PageState(param.Parameterized):
             if is_more and self.iteration is not None:
                 self.send(Show(self.iteration))
 
-    def turn(self, step: int) -> None:
+    def turn(self, step: int = 1) -> None:
         """Select the interface that is a number of interfaces further."""
         if self.frame is None:
             return

@@ -62,21 +62,19 @@ class Transport:
         self._run = _button("pause", "Run or pause (space)", self._toggle)
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
-        self._pin = _button("push_pin", PIN, state.pin)
-        self._turns = [
-            _button("arrow_upward", "Contact before (I)", lambda: state.turn(-1)),
-            _button("arrow_downward", "Next contact (i)", lambda: state.turn(1)),
-        ]
-        self._choices = self._make_choices()
+        self._pin = _button("push_pin", PIN, state.pin, "of-page")
         self.scrub = self._make_scrub()
-        self._presented: list[Any] = []
+        self._show_scene: Callable[[], None] | None = None
+        # Parts that are not always there are hidden by the style sheet.
         self.view = wrapped(
             self._run,
             _button("skip_previous", "From the start (r)", state.reset),
             _button("skip_next", "One stage of an iteration (s)", state.step),
             self._pin,
-            *self._turns,
-            *self._choices,
+            _button("arrow_upward", "Contact before (I)", self._turn_back, "turn"),
+            _button("arrow_downward", "Next contact (i)", state.turn, "turn"),
+            *self._make_choices(),
+            **looks("transport"),
         )
         shown = [
             "settings",
@@ -92,18 +90,13 @@ class Transport:
         document.add_periodic_callback(self._follow, FOLLOWS)
         self._show()
 
-    def present(self, is_presented: bool) -> None:
-        """Have the few buttons of the view for a projector, or all of the page's."""
-        if is_presented and not self._presented:
-            self._presented = self._make_presented()
-            self.view.extend(self._presented)
-        for part in (self._pin, *self._choices):
-            part.visible = not is_presented
-        for part in self._presented:
-            part.visible = is_presented
+    def present(self) -> None:
+        """Have the widgets of the view for a projector: the scene, and the way out.
 
-    def _make_presented(self) -> list[Any]:
-        """Widgets of the view for a projector: the scene, and the way out."""
+        A page has them once it has been such a view.
+        """
+        if self._show_scene is not None:
+            return
         state = self._state
         scene = pmui.Select(
             label="Scene",
@@ -112,7 +105,7 @@ class Transport:
             size="small",
             width=176,
             margin=(6, 4),
-            **looks("large"),
+            **looks("large", "of-projector"),
         )
         self._show_scene = linked(
             scene, state, lambda: state.settings.scene, state.choose_scene
@@ -121,7 +114,8 @@ class Transport:
         def leave() -> None:
             state.view = "page"
 
-        return [scene, _button("close", "Back to the page (p)", leave)]
+        close = _button("close", "Back to the page (p)", leave, "of-projector")
+        self.view.extend([scene, close])
 
     def _make_choices(self) -> list[Any]:
         """Widgets to choose search or answer, and the pace."""
@@ -131,7 +125,7 @@ class Transport:
             size="small",
             margin=(4, 6),
             description="Watch the search from nothing, or have the answer at once.",
-            **looks("words"),
+            **looks("words", "of-page"),
         )
 
         def present() -> str | None:
@@ -148,6 +142,7 @@ class Transport:
             size="small",
             width=136,
             margin=(6, 4),
+            **looks("of-page"),
         )
         return [finish, linked_to(self._state, "pace", pace)]
 
@@ -177,8 +172,8 @@ class Transport:
             "s": self._state.step,
             "r": self._state.reset,
             "t": self.play,
-            "i": lambda: self._state.turn(1),
-            "I": lambda: self._state.turn(-1),
+            "i": self._state.turn,
+            "I": self._turn_back,
             "ArrowLeft": lambda: self._move(-1),
             "ArrowRight": lambda: self._move(1),
             "Shift+ArrowLeft": lambda: self._move_iteration(-1),
@@ -276,6 +271,9 @@ class Transport:
             column = min(max(column, 0), len(times) - 1)
             self._state.select(phase=float(times[column] / times[-1]))
 
+    def _turn_back(self) -> None:
+        self._state.turn(-1)
+
     def _move_iteration(self, step: int) -> None:
         """Show the iterate before the present one (step -1), or after it (1)."""
         state = self._state
@@ -317,12 +315,9 @@ class Transport:
             self._run.icon = "replay"
         else:
             self._run.icon = "play_arrow"
-        has_several = state.frame is not None and len(state.frame.run.surfaces) > 1
-        for turn in self._turns:
-            turn.visible = has_several
         self._pin.color = "default" if state.pinned is None else "primary"
         self._show_finish()
-        if self._presented:
+        if self._show_scene is not None:
             self._show_scene()
 
     def name_iterate(self) -> None:
@@ -370,7 +365,9 @@ class Transport:
         return newest.iteration + newest.is_answer
 
 
-def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button:
+def _button(
+    icon: str, description: str, act: Callable[[], None], *roles: str
+) -> pmui.Button:
     """A button with an icon alone; an `IconButton` would keep its first icon."""
     return button(
         "",
@@ -380,5 +377,5 @@ def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button
         variant="text",
         color="default",
         margin=2,
-        **looks("icon"),
+        **looks("icon", *roles),
     )

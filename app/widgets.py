@@ -69,10 +69,14 @@ def explained(text: str, *terms: str) -> Markup:
     return Markup("".join(parts))
 
 
-def looks(role: str) -> dict[str, Any]:
-    """Look of a widget in a role that `widgets.css` knows."""
-    rules = [rule for rule in SHEET.split("\n\n") if f":host(.{role})" in rule]
-    return {"css_classes": [role], "stylesheets": ["\n".join(rules)]}
+def looks(*roles: str) -> dict[str, Any]:
+    """Look of a widget in roles that `widgets.css` knows."""
+    rules = [
+        rule
+        for rule in SHEET.split("\n\n")
+        if any(f":host(.{role})" in rule for role in roles)
+    ]
+    return {"css_classes": list(roles), "stylesheets": ["\n".join(rules)]}
 
 
 class PlainText(pn.viewable.Viewer):
@@ -86,15 +90,14 @@ class PlainText(pn.viewable.Viewer):
     """
 
     object = param.String(doc="The text.")
-    visible = param.Boolean(True, doc="Whether the text is shown.")
 
     def __init__(self, **look: Any) -> None:
         super().__init__()
         self._pane = pn.pane.HTML("", **(looks("line") | look))
 
-    @param.depends("object", "visible", watch=True)
+    @param.depends("object", watch=True)
     def _show(self) -> None:
-        self._pane.param.update(object=escape(self.object), visible=self.visible)
+        self._pane.object = escape(self.object)
 
     def __panel__(self) -> pn.pane.HTML:
         return self._pane

@@ -40,10 +40,10 @@ from solver.study.trade_case import Case
 class Guide:
     """The lesson or the case that a page is in, if any.
 
-    `view` stands beside the plots, `dialogs` are the lists of all lessons and of all
-    cases; `changed` is called when another lesson or case is shown. The transport plays
-    the picture once a question is answered; `open_counts` shows a class the number of
-    predictions of each choice.
+    `view` stands beside the plots while one `is_open`, `dialogs` are the lists of all
+    lessons and of all cases; `changed` is called when another lesson or case is shown.
+    The transport plays the picture once a question is answered; `open_counts` shows a
+    class the number of predictions of each choice.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Guide:
         self._choices: Choices | None = None
         self._shown: tuple[str, str, bool] | None = None
         self._type = TEXT
-        self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
+        self.view = pn.Column(css_classes=["lesson"], margin=(0, 8))
         self.dialogs = {
             "lesson": dialog("Lessons", width_option="md"),
             "case": dialog("Cases of the trade", width_option="md"),
@@ -73,6 +73,11 @@ class Guide:
         )
         state.param.watch(lambda event: self._follow_settings(), "settings")
         state.param.watch(lambda event: self.update(), "frame")
+
+    @property
+    def is_open(self) -> bool:
+        """Check whether the page is in a lesson or a case."""
+        return self._state.lesson in LESSONS or self._state.case in CASES
 
     def magnify(self, size: str) -> None:
         """Set the type size of the figure to draw on, as CSS has it."""
@@ -151,8 +156,12 @@ class Guide:
             parts = self._parts_of_case(case)
             readings = [case.quantity.name]
         state.readings = readings
-        self.view.param.update(objects=parts, visible=bool(parts))
+        if parts:
+            self.view[:] = parts
         self._changed()
+        if not parts:
+            # It has left the page.
+            self.view.clear()
         # At last, as it plays what the plots beside show.
         if lesson is not None:
             self._look(lesson)

@@ -77,7 +77,7 @@ def test_a_case_brings_its_run_its_words_and_the_settings_to_change(case: Case) 
     panel.open("case", case.name)
     assert state.settings.values() == settings_of(case).values()
     assert state.readings == [case.quantity.name]
-    assert panel.view.visible
+    assert panel.is_open
     words = words_of(panel)
     assert case.source in words
     assert PENDING in words
@@ -116,7 +116,7 @@ def test_another_scene_ends_the_case() -> None:
     state = PageState(settings_of(CASES[NAME]), case=NAME)
     panel = panel_of(state)
     state.choose_scene("rope")
-    assert (state.case, panel.view.visible, state.readings) == ("", False, [])
+    assert (state.case, panel.is_open, state.readings) == ("", False, [])
 
 
 def test_a_plot_that_only_the_next_run_has_comes_to_the_front() -> None:

@@ -271,6 +271,36 @@ def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() 
     assert sorted(shown) == sorted([*chief, *chain.from_iterable(groups.values())])
 
 
+def test_controls_out_of_sight_are_made_once_they_are_opened() -> None:
+    state = of_scene("bar")
+    controls = Controls(state, is_open=False)
+    assert not controls._controls
+    state.choose_scene("strand")
+    controls.open(True)
+    shown = {control.name: control for control in controls._controls}
+    assert set(shown) <= set(names("strand"))
+    assert controls._scene.value == "strand"
+    state.change(peak=held(state, "peak") + 1.0)
+    current = shown["peak"].field.value
+    controls.open(False)
+    state.change(peak=held(state, "peak") + 1.0)
+    assert shown["peak"].field.value == current
+    controls.open(True)
+    assert shown["peak"].field.value != current
+
+
+def test_groups_of_another_scene_take_the_places_of_the_closed_ones() -> None:
+    state = of_scene("bar")
+    controls = Controls(state)
+    groups = controls._groups
+    groups.active = [0]
+    before = list(groups)
+    state.choose_scene("block")
+    assert len(groups) > len(before)
+    is_kept = [old is new for old, new in zip(before, groups, strict=False)]
+    assert is_kept == [False] + [True] * (len(before) - 1)
+
+
 def test_each_scene_keeps_its_settings() -> None:
     state = of_scene("bar")
     controls = Controls(state)

@@ -132,7 +132,7 @@ def test_another_scene_ends_the_lesson() -> None:
     state = PageState(settings_of(LESSONS[NAME]), lesson=NAME)
     panel, _ = panel_of(state)
     state.choose_scene("rope")
-    assert (state.lesson, kinds_beside(state), panel.view.visible) == ("", None, False)
+    assert (state.lesson, kinds_beside(state), panel.is_open) == ("", None, False)
 
 
 def test_in_a_class_the_answer_waits_for_the_leader() -> None:

@@ -16,6 +16,7 @@ from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
 import app.supervisor
+from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
 from app.page import Page, open_page
 from app.server import PAGES
@@ -77,6 +78,17 @@ def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> 
         assert last < int(found[1]) == state.newest.iteration
         last = int(found[1])
         assert page._live.transport.scrub.label == f"Iteration {last} of {last}"
+
+
+@pytest.mark.usefixtures("orders", "document")
+def test_what_gives_an_answer_away_is_hidden_until_the_question_is_answered() -> None:
+    lesson = LESSONS["broken-wire"]
+    state = PageState(settings_of(lesson), lesson=lesson.name)
+    page = Page(state)
+    page.loaded()
+    assert "asked" in page._live.view.css_classes
+    state.prediction = lesson.right
+    assert "asked" not in page._live.view.css_classes
 
 
 @pytest.mark.usefixtures("document")

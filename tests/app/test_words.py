@@ -38,11 +38,7 @@ def test_markup_in_a_text_is_text_and_a_term_within_a_word_is_none() -> None:
     assert written.unescape() == "<b>wrongly</b> researched"
 
 
-def test_a_text_is_hidden_and_shown_again_with_what_it_says() -> None:
+def test_a_plain_text_is_shown_as_it_is_written() -> None:
     text = PlainText()
     text.object = "<b>3</b>"
-    text.visible = False
-    assert not text.__panel__().visible
-    text.visible = True
-    assert text.__panel__().visible
     assert text.__panel__().object == "&lt;b&gt;3&lt;/b&gt;"
