@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from itertools import chain, product
 from pathlib import Path
@@ -79,11 +80,8 @@ def test_every_setting_has_a_widget_that_shows_its_value_and_takes_others(
             slide_to_both_ends(control, state)
             # The browser has shown all that was slid: what is typed is a person's.
             state.shown = state.given
-            present = held(state, name)
             ends = *definition.softbounds[::-1], value
-            another = next(
-                end for end in ends if end != present and holds(state, name, end)
-            )
+            another = another_that_holds(state, name, ends)
             control.field.value = f"{another / unit.factor:.12g}"
             assert held(state, name) == pytest.approx(another, rel=1e-9), name
         elif isinstance(definition, param.Boolean):
@@ -101,6 +99,13 @@ def test_every_setting_has_a_widget_that_shows_its_value_and_takes_others(
             assert held(state, name) == another or state.refusal, name
 
 
+def another_that_holds(state: PageState, name: str, values: Sequence[float]) -> float:
+    """The first of some values that is another one and holds for a setting."""
+    present = held(state, name)
+    others = [value for value in values if value != present]
+    return next(value for value in others if holds(state, name, value))
+
+
 def slide_to_both_ends(control: SettingControl, state: PageState) -> None:
     """Both ends of a slider hold, or are refused at the control."""
     slider = control.slider
@@ -111,7 +116,9 @@ def slide_to_both_ends(control: SettingControl, state: PageState) -> None:
             slider.value_throttled = place
         is_refused = control.field.error_state
         assert slider.value == pytest.approx(place) or is_refused, control.name
-        told = state.refusal if is_refused else ""
+        told = ""
+        if is_refused:
+            told = state.refusal
         assert control.field.helper_text == told
 
 
@@ -336,7 +343,9 @@ def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_d
 
 def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
     taken = set[param.Parameter]()
-    settings = [(scene, name) for scene in CATALOGUE for name in names(scene)]
+    settings = list[tuple[str, str]]()
+    for scene in CATALOGUE:
+        settings += [(scene, name) for name in names(scene)]
     for scene, name in settings:
         definition = defaults(scene).definitions()[name]
         is_new = isinstance(definition, CurveParameter) and definition not in taken
