@@ -77,7 +77,7 @@ class NodeFrames:
         self.has_pair = [has_pair[first:last] for first, last in ends]
 
     def _turn(self, nodes: Indices, normals: Array) -> None:
-        """Give nodes, (n,), the directions of their first joint; normals are (n, 2)."""
+        """Turn nodes, (n,), into the frame of their first joint; normals are (n, 2)."""
         tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
         wanted = np.stack([tangents, normals], axis=1)
         known, first = np.unique(nodes, return_index=True)
@@ -87,7 +87,7 @@ class NodeFrames:
         self._of_joint[nodes] = True
 
     def _hold(self) -> None:
-        """Give held nodes the global axes, unless theirs are axes already."""
+        """Turn held nodes back to the global axes, unless theirs are axes already."""
         is_axis = np.abs(self.frames).max(axis=1) == 1.0
         is_skew = (self._held & ~is_axis).any(axis=1)
         self._unlike |= is_skew & self._of_joint
