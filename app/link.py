@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from difflib import get_close_matches
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
@@ -27,6 +28,8 @@ from solver.scenes import CATALOGUE
 from solver.settings.definitions import SettingGroup, checked_value, parse, title_of
 from solver.settings.scene import Settings
 
+ALIKE = 0.6
+"""Likeness of a name to the one that it is taken for, at least."""
 SHARED = "lesson", "case", "tab", "question", "pace", "plots", "view", "room"
 """Parts of a page's state in its address, beside settings."""
 BESIDE = (
@@ -247,7 +250,8 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     if not refused:
         return shown, ""
     reasons = "; ".join(text.rstrip(".") for text in refused)
-    return shown, f"From the address: {reasons}."
+    end = "" if reasons.endswith("?") else "."
+    return shown, f"From the address: {reasons}{end}"
 
 
 def _plots(pairs: dict[str, str], case: str, refused: list[str]) -> list[str]:
@@ -307,12 +311,20 @@ def _base(pairs: dict[str, str], refused: list[str]) -> tuple[Settings, dict[str
                 )
             return settings_of(found), {kind: name}
         if name:
-            refused.append(f"there is no {kind} {name[:40]}")
+            refused.append(f"there is no {kind} {name[:40]}: {_proposal(kind, name)}")
     if scene in CATALOGUE:
         return default_settings(scene), {}
     if scene:
         refused.append(f"there is no scene {scene[:40]}: choose {', '.join(CATALOGUE)}")
     return default_settings(next(iter(CATALOGUE))), {}
+
+
+def _proposal(kind: str, name: str) -> str:
+    """Remedy for a name that no lesson, or no case, has."""
+    near = get_close_matches(name, KNOWN[kind], n=1, cutoff=ALIKE)
+    if near:
+        return f"did you mean {near[0]}?"
+    return f"choose one under {kind.capitalize()}s"
 
 
 def _together(base: Settings, values: dict[str, Any], refused: list[str]) -> Settings:
