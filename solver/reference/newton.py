@@ -280,7 +280,7 @@ class Newton:
             n_singular += system.is_singular
             if n_singular > SINGULAR_STEPS:
                 return None
-            rounding = self._rounding(states, step)
+            rounding = self._rounding(states, step, sides)
             corrected = self._corrected(
                 states, step, tangent, system.friction, rounding
             )
@@ -418,11 +418,14 @@ class Newton:
         softened += tied.T @ sparse.diags_array(growth) @ tied
         return np.asarray(softened)
 
-    def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
+    def _rounding(
+        self, states: States, step: Increment, sides: Sides
+    ) -> tuple[float, Array]:
         """Forces that rounding may make, scaled.
 
         A held jump is the deformation less the rigid motion, whose rounding makes
-        forces at every jump.
+        forces at every jump. A jump that comes back to where it would be held is the
+        difference of two lengths, each with its rounding.
 
         Returns
         -------
@@ -431,8 +434,10 @@ class Newton:
         inside = self.system.inside(self.strained + step.strained)
         slack = ROUNDING * (inside + self.largest_load)
         blur = self.system.blur(step.motion)
+        came_back = ROUNDING * self.system.unit * np.abs(sides.held)
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
-        return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
+        whole = slack + float((blur * is_stiff).max(initial=0.0))
+        return whole, slack + np.maximum(blur, came_back)
 
     def _corrected(
         self,
