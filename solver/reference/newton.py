@@ -280,7 +280,7 @@ class Newton:
             n_singular += system.is_singular
             if n_singular > SINGULAR_STEPS:
                 return None
-            rounding = self._rounding(states, step, sides)
+            rounding = self._rounding(states, step)
             corrected = self._corrected(
                 states, step, tangent, system.friction, rounding
             )
@@ -418,26 +418,22 @@ class Newton:
         softened += tied.T @ sparse.diags_array(growth) @ tied
         return np.asarray(softened)
 
-    def _rounding(
-        self, states: States, step: Increment, sides: Sides
-    ) -> tuple[float, Array]:
+    def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
         """Forces that rounding may make, scaled.
 
         A held jump is the deformation less the rigid motion, whose rounding makes
-        forces at every jump. A jump that comes back to where it would be held is the
-        difference of two lengths, each with its rounding.
+        forces at every jump. A deformation that is undone leaves the rounding of both
+        ways.
 
         Returns
         -------
         The force at any jump; and at a jump that is not held, shape (n,) or (1,).
         """
-        inside = self.system.inside(self.strained + step.strained)
+        inside = self.system.inside(np.abs(self.strained) + np.abs(step.strained))
         slack = ROUNDING * (inside + self.largest_load)
         blur = self.system.blur(step.motion)
-        came_back = ROUNDING * self.system.unit * np.abs(sides.held)
         is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
-        whole = slack + float((blur * is_stiff).max(initial=0.0))
-        return whole, slack + np.maximum(blur, came_back)
+        return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
 
     def _corrected(
         self,

@@ -83,6 +83,25 @@ def test_bent_the_other_way_the_longest_leaf_bends_alone() -> None:
     assert deflection(moment)[-1] == pytest.approx(rotation, rel=3e-3)
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("instants", [17, 33])
+def test_leaves_that_come_apart_are_unloaded_to_nothing(
+    friction: float, instants: int
+) -> None:
+    there_and_back = {
+        "bend_load": "sine",
+        "friction": friction,
+        "instants": instants,
+        "elements": 24,
+    }
+    settings = settings_of(**{**LEAVES, **there_and_back}, layers=3, force=100.0)
+    found = reference_of(discretise(settings))
+    assert found.converged.all()
+    assert np.abs(found.contact_force).max() > 10.0
+    assert np.abs(found.contact_force[:, -1]).max() < 1e-6
+    assert np.abs(found.displacement[:, -1]).max() < 1e-9
+
+
 def test_many_leaves_tend_to_a_spring_of_uniform_strength() -> None:
     """A triangle of n widths bends by F L^3 / (2 n E I), a leaf by F L^3 / (3 E I)."""
     off = []
