@@ -94,7 +94,7 @@ def test_leaves_that_come_apart_are_unloaded_to_nothing(
         "instants": instants,
         "elements": 24,
     }
-    settings = settings_of(**{**LEAVES, **there_and_back}, layers=3, force=100.0)
+    settings = settings_of(**(LEAVES | there_and_back), layers=3, force=100.0)
     found = reference_of(discretise(settings))
     assert found.converged.all()
     assert np.abs(found.contact_force).max() > 10.0
