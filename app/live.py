@@ -333,10 +333,15 @@ def on_top(offered: Sequence[View] | Sequence[type[View]], state: PageState) -> 
     return next(iter(named), 0)
 
 
+def large_type(state: PageState) -> int:
+    """Type size of plots, and of the text beside them, on a projector, px."""
+    return round(LARGE * state.height)
+
+
 def type_size(state: PageState) -> str:
-    """Type size of plots, and of the text beside them on a projector, as CSS has it."""
+    """Type size of plots in the present view, as CSS has it."""
     if state.view == "present":
-        return f"{LARGE * state.height:.0f}px"
+        return f"{large_type(state)}px"
     return TEXT
 
 

@@ -19,7 +19,7 @@ from app.experiments.whatif import WhatIf
 from app.files.export import LOOK, offers
 from app.lessons.guide import Guide, kinds_beside
 from app.link import Link, read, show
-from app.live import STYLE, Live, column, first_needs, type_size
+from app.live import STYLE, Live, column, first_needs, large_type, type_size
 from app.server import PAGES
 from app.state import TABS, PageState
 from app.status import spoken_status
@@ -235,16 +235,15 @@ class Page:
     def _read(self) -> None:
         """Have the text beside the plots as large as they are."""
         styles = {}
-        size = type_size(self.state)
         if self.state.view == "present":
-            zoom = f"{float(size.removesuffix('px')) / READ:.2f}"
+            zoom = f"{large_type(self.state) / READ:.2f}"
             styles = {
                 "zoom": zoom,
                 "--zoom": zoom,
                 "--above": "4px",
             }
         self._guide.view.styles = styles
-        self._guide.magnify(size)
+        self._guide.magnify(type_size(self.state))
 
     def _put(self, event: Any) -> None:
         """Put a dialog on the page when it is first opened."""

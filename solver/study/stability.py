@@ -34,8 +34,8 @@ from solver.study.quantities.finished import (
 
 CASES = Path(__file__).with_name("stability_cases.toml")
 LONGEST = 60.0
-"""Time limit of a run, and of its reference, s: a run that takes longer counts as
-unsolved, and does not delay the other rows."""
+"""Time limit of a run, of its reference, and of the search for a solution near it, s: a
+run that takes longer counts as unsolved, and does not delay the other rows."""
 
 
 class Verdict(StrEnum):

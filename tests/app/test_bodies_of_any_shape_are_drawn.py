@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import replace
 from types import SimpleNamespace
 
+import frames
 import numpy as np
 import pytest
 import shaped
@@ -14,7 +14,7 @@ from scipy.spatial import Delaunay
 
 from app.frame import Frame, Selection
 from app.lessons.catalogue import CASES
-from app.messages import Needs, Start
+from app.messages import Needs
 from app.state import PageState, default_settings
 from app.status import figures_line
 from app.views.acts import hatched
@@ -27,10 +27,7 @@ from app.worker.cells import (
     drawings_of_shapes,
     joined,
 )
-from app.worker.references import ReferenceCache
-from app.worker.runner import Runner
 from solver.discrete import Bodies, Body, Held, Mesh, discretise
-from solver.files.saved import dump
 from solver.settings.scene import Settings
 
 
@@ -128,23 +125,10 @@ def test_a_belt_is_a_band_that_lies_on_its_drum() -> None:
     assert np.array_equal(drawing.numbers[:count], drawing.numbers[count:])
 
 
-FRAMES = dict[tuple[str, bool], Frame]()
-"""Frames that were made, by the text of their settings and whether the run had ended.
-"""
-
-
 def ran(settings: Settings, *, ends: bool = True) -> Frame:
     """Frame with which a run ends, or that of its second iterate."""
-    key = dump(settings), ends
-    if key not in FRAMES:
-        runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
-        while ends and runner.status is None:
-            runner.advance()
-        while len(runner.history) < 2 and runner.status is None:
-            runner._iterate()
-        needs = Needs(frozenset({"thrust", "stress"}), readings=("hinges@0.5",))
-        FRAMES[key] = runner.frame(needs)
-    return FRAMES[key]
+    needs = Needs(frozenset({"thrust", "stress"}), readings=("hinges@0.5",))
+    return frames.frame_of(settings, needs, ends=ends)
 
 
 def arch(**changes: object) -> Settings:

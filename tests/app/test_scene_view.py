@@ -5,6 +5,7 @@ import re
 from itertools import chain
 from types import SimpleNamespace
 
+import frames
 import numpy as np
 import pytest
 
@@ -24,7 +25,6 @@ from app.views.timeline import Timeline, paths_of
 from app.views.view import TEXT
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
-from solver.files.saved import dump
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
@@ -35,22 +35,9 @@ COARSE = {"elements": 24, "instants": 21}
 PHASES = np.linspace(0.0, 1.0, 7)
 
 
-FRAMES = dict[tuple[str, bool], Frame]()
-"""Frames that were made, by the text of their settings and whether the run had ended.
-"""
-
-
 def frame_of(settings: Settings, *, ends: bool = False) -> Frame:
     """Frame of the second iterate, or that with which the run ends."""
-    key = dump(settings), ends
-    if key not in FRAMES:
-        runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
-        while ends and runner.status is None:
-            runner.advance()
-        while len(runner.history) < 2 and runner.status is None:
-            runner._iterate()
-        FRAMES[key] = runner.frame(Needs(extras=NEEDS))
-    return FRAMES[key]
+    return frames.frame_of(settings, Needs(extras=NEEDS), ends=ends)
 
 
 def coarse(scene: str) -> Settings:
