@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -77,6 +78,16 @@ def largest_size(*fields: Array) -> float:
     """Largest absolute value in fields of any shape; NaN where one is in them, or 0."""
     sizes = [float(np.abs(field).max(initial=0.0)) for field in fields]
     return float(np.max(sizes, initial=0.0))
+
+
+def power_of_two(values: Array) -> float:
+    """Power of two of the largest of values, of any shape.
+
+    Values over it are at most 2. To divide by it rounds nothing, and squares of what is
+    left neither vanish nor overflow.
+    """
+    _, exponent = math.frexp(largest_size(values))
+    return math.ldexp(1.0, exponent - 1)
 
 
 def without_residue(values: Array, terms: Array) -> Array:

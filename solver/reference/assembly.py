@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices, space_time
+from solver.arrays import Array, Indices, power_of_two, space_time
 from solver.discrete.problem import Problem
 
 
@@ -95,8 +95,8 @@ def separated(load: Array) -> tuple[Array, Array]:
     for. Where it has many patterns, every instant counts as one.
     """
     patterns = np.zeros((0, len(load)))
-    rest = load.copy()
-    smallest = float(np.finfo(float).eps * np.abs(load).max(initial=0.0))
+    rest = load / power_of_two(load)
+    smallest = float(np.finfo(float).eps * np.abs(rest).max(initial=0.0))
     # Gram-Schmidt by the largest rest, as a factorisation with pivoting.
     while len(patterns) < load.shape[1] // 2:
         largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())

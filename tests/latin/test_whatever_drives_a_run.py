@@ -92,6 +92,21 @@ def test_a_run_is_certified_whatever_drives_it_and_however_little(
     assert solve(problem, method_of(chosen)).is_certified
 
 
+LEAST = [
+    ("rope", {**RODS, "layers": 2, "curvature": 1e-300}),
+    ("strand", {**RODS, "peak": 1e-200}),
+    ("fault", {"shear_stress": 1e-200, "elements": 24, "instants": 5}),
+]
+
+
+@pytest.mark.parametrize(("scene", "values"), LEAST)
+def test_a_run_is_certified_though_squares_of_what_drives_it_vanish(
+    scene: str, values: dict[str, Any]
+) -> None:
+    chosen = CATALOGUE[scene].checked(values)
+    assert solve(discretise(chosen), method_of(chosen)).is_certified
+
+
 @pytest.mark.parametrize("size", [1e-14, 1e-3, 1e6])
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_an_overlap_between_rollers_presses_as_uniaxial_strain_does(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, read_only
+from solver.arrays import Array, power_of_two, read_only
 from solver.discrete.problem import Problem
 from solver.latin.end.status_step import Certificate
 from solver.latin.iterate import Checkpoint, Iterate
@@ -253,10 +253,11 @@ def _smallest(system: sparse.csr_array, right: Array) -> Array:
     A has shape (m, n), b shape (m, n_instants), x shape (n, n_instants).
     """
     solution = np.zeros((system.shape[1], right.shape[1]))
-    residual = right.copy()
+    size = power_of_two(right)
+    residual = right / size
     direction = solution
     before = 1.0
-    enough = ENOUGH * float(np.abs(right).max(initial=0.0))
+    enough = ENOUGH * float(np.abs(residual).max(initial=0.0))
     for _ in range(MOST_STEPS):
         gradient = system.T @ residual
         # A residual without gradient is rounding in the equilibrium of the whole.
@@ -269,4 +270,4 @@ def _smallest(system: sparse.csr_array, right: Array) -> Array:
         solution += length * direction
         residual -= length * image
         before = steepness
-    return solution
+    return solution * size
