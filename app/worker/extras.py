@@ -17,7 +17,7 @@ from app.worker.cells import floats, thinned
 from app.worker.geometry import MOST_POINTS
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
-from solver.discrete.plane.band import Band
+from solver.discrete.plane.makers.band import Band
 from solver.discrete.structure import Loop
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips

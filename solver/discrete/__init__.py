@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from functools import singledispatch
 
-from solver.discrete.plane import stack_problem
-from solver.discrete.plane.band import Band
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.makers.band import Band
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.plane.sides import Given, Side, Spring, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles import stack_problem
+from solver.discrete.plane.rectangles.sides import Given, Side, Spring, Support
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods import cut_rods
 from solver.discrete.rods.rods import End, Rods

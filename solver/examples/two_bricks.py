@@ -4,7 +4,7 @@ import numpy as np
 
 from solver import Stack, discretise, solve
 from solver.discrete import Given, Side
-from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.rectangles.bricks import Brick
 
 MU = 0.4
 WIDTH = 0.2

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from solver.discrete.plane.named_mesh_refused import check_named
+from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.disk import read_bytes
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import HEAD, as_text, read_mesh

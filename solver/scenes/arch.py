@@ -12,7 +12,7 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.plane.body import Load
-from solver.discrete.plane.voussoirs import FILL, LIVE, RIGHT, Arch, Ring
+from solver.discrete.plane.makers.voussoirs import FILL, LIVE, RIGHT, Arch, Ring
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act

@@ -11,8 +11,8 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.plane.band import PULL, TAIL, Band, GuideCurve
 from solver.discrete.plane.body import Held, Load
+from solver.discrete.plane.makers.band import PULL, TAIL, Band, GuideCurve
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.laws import FrictionLaw

@@ -11,9 +11,9 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.drives import Drive, loads_at
-from solver.discrete.plane.rigid_stack import loss_of_equilibrium
-from solver.discrete.plane.sides import Spring, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.rigid_stack import loss_of_equilibrium
+from solver.discrete.plane.rectangles.sides import Spring, Support
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve

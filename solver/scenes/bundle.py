@@ -11,8 +11,8 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.plane.bodies import Bodies
-from solver.discrete.plane.bundle import Wires
-from solver.discrete.plane.wires import Packing, Zone
+from solver.discrete.plane.makers.bundle import Wires
+from solver.discrete.plane.makers.wires import Packing, Zone
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.laws import FrictionLaw

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.plane.rigid_stack import rigid_slide, wrench
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.rigid_stack import rigid_slide, wrench
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods

@@ -16,8 +16,8 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete import discretise
-from solver.discrete.plane.sides import Given, Side, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.probes import LoopFields, Probe
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Description, Hold, Loop

@@ -11,10 +11,10 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.cut_rectangles import ends_along
-from solver.discrete.plane.sides import Given, Side
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.bricks import Brick
+from solver.discrete.plane.rectangles.cut_rectangles import ends_along
+from solver.discrete.plane.rectangles.sides import Given, Side
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.reference.closed_forms import ExactCurve

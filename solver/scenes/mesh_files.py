@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.plane.named_mesh import NamedMesh
+from solver.discrete.plane.makers.named_mesh import NamedMesh
 from solver.refusal import RefusedError, Words
 
 SURFACES = {

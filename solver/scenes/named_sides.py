@@ -15,7 +15,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.plane.body import Body, Held, Load
-from solver.discrete.plane.named_mesh import NamedMesh, OuterLine
+from solver.discrete.plane.makers.named_mesh import NamedMesh, OuterLine
 from solver.refusal import RefusedError
 
 DEEDS = {

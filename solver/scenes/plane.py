@@ -11,7 +11,7 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.laws import FrictionLaw
 from solver.refusal import plain
 from solver.settings.definitions import (

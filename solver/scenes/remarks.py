@@ -9,9 +9,9 @@ import numpy as np
 from solver.arrays import Array, Flags
 from solver.discrete.drives import loads_at
 from solver.discrete.inside import Inside
-from solver.discrete.plane.band import Band
-from solver.discrete.plane.rigid_stack import is_upright
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.makers.band import Band
+from solver.discrete.plane.rectangles.rigid_stack import is_upright
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rope.rope import Rope
 from solver.discrete.rope.wire_forces import wire_forces

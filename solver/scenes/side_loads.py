@@ -10,7 +10,7 @@ import numpy as np
 import param
 
 import solver.scenes.shared as shared
-from solver.discrete.plane.sides import Given, Side
+from solver.discrete.plane.rectangles.sides import Given, Side
 from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
     CurveParameter,

@@ -10,15 +10,10 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Indices
-from solver.discrete.plane.bricks import (
-    Brick,
-    bonded,
-    grouped,
-    with_opening,
-)
-from solver.discrete.plane.cap_and_ground import on_strips, with_cap
-from solver.discrete.plane.sides import Given, Side, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.bricks import Brick, bonded, grouped, with_opening
+from solver.discrete.plane.rectangles.cap_and_ground import on_strips, with_cap
+from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
     BODY,

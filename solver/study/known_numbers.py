@@ -11,7 +11,7 @@ from scipy.special import erfc
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
-from solver.discrete.plane.band import Band
+from solver.discrete.plane.makers.band import Band
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods

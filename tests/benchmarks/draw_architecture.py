@@ -2,10 +2,10 @@
 
     python tests/benchmarks/draw_architecture.py [FILE.svg]
 
-A room is a folder, with its own folders below its name; files that stand in no folder
-share a box on each floor. What starts a program is at the top, all else right below the
-lowest that imports it; rooms that import each other stand beside each other. Arrows go
-down; those that follow from others are left out.
+A room is a folder, with the packages inside it below its name; files that stand in no
+folder share a box on each floor. What starts a program is at the top, all else right
+below the lowest that imports it; rooms that import each other stand beside each other.
+Arrows go down; those that follow from others are left out.
 """
 
 from __future__ import annotations
@@ -139,9 +139,20 @@ def folder_of(root: Path, node: str) -> Path:
 
 def room(root: Path, package: str, node: str) -> Box:
     """Box of a folder."""
-    inner = sorted(path.parent.name for path in folder_of(root, node).glob("*/*.py"))
-    words = ", ".join(dict.fromkeys(inner))
+    words = inner_rooms(folder_of(root, node))
     return Box(package, node.replace(".", "/"), words, frozenset([node]))
+
+
+def inner_rooms(folder: Path) -> str:
+    """Names of the packages inside a folder, those inside them in parentheses."""
+    words = []
+    for package in sorted(folder.glob("*/__init__.py")):
+        name = package.parent.name
+        deeper = inner_rooms(package.parent)
+        if deeper:
+            name = f"{name} ({deeper})"
+        words.append(name)
+    return ", ".join(words)
 
 
 def arrows_of(boxes: list[list[Box]], graph: Graph) -> list[tuple[Box, Box]]:

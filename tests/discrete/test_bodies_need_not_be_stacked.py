@@ -7,7 +7,7 @@ import pytest
 
 from solver import Latin, solve
 from solver.discrete import Given, Problem, Side, Stack, discretise
-from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.rectangles.bricks import Brick
 from solver.latin import Ending
 from solver.reference.incremental import reference_of
 

@@ -14,11 +14,11 @@ from scipy import sparse
 from solver.arrays import Array
 from solver.discrete import discretise
 from solver.discrete.elements import SchurComplement
-from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.cut_rectangles import ends_along
-from solver.discrete.plane.cut_stack import CutStack
-from solver.discrete.plane.sides import Given, Side
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.bricks import Brick
+from solver.discrete.plane.rectangles.cut_rectangles import ends_along
+from solver.discrete.plane.rectangles.cut_stack import CutStack
+from solver.discrete.plane.rectangles.sides import Given, Side
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.rods import End, Rods

@@ -19,7 +19,7 @@ from small_scenes import SMALL
 from solver import discrete
 from solver.arrays import Array
 from solver.discrete import Given, Side, Stack, Support
-from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods

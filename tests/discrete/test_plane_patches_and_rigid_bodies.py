@@ -12,7 +12,7 @@ from plane import lengths, reaction, solved, stress
 from solver import discrete
 from solver.discrete import Given, Side, Spring, Support
 from solver.discrete.loose import loose_bodies
-from solver.discrete.plane.rigid_stack import rigid_rest
+from solver.discrete.plane.rectangles.rigid_stack import rigid_rest
 from solver.latin import Ending, solve
 from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError

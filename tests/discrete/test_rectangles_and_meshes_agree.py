@@ -20,7 +20,7 @@ from solver.discrete import (
     Support,
     discretise,
 )
-from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.probes import reaction
 from solver.reference.incremental import reference_of
 

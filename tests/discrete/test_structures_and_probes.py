@@ -15,7 +15,7 @@ import pytest
 from solver import discrete, solve
 from solver.discrete import Given, Problem, Side, Stack, Support
 from solver.discrete.elements import von_mises
-from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.probes import reaction, side_mean
 from solver.latin import PGD, Iterate, iterations
 from solver.reference.solution import fingerprint

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.sides import Given, Side, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.bricks import Brick
+from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity, Substructure

@@ -11,7 +11,7 @@ from plane import whole_force_error
 from runs import errors, sample, settings_of
 
 from solver.discrete import discretise
-from solver.discrete.plane.sides import Given, Side
+from solver.discrete.plane.rectangles.sides import Given, Side
 from solver.latin import iterations
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces, distance_to

@@ -13,8 +13,8 @@ from scipy.special import erfc
 
 from solver import discrete
 from solver.arrays import Array
-from solver.discrete.plane.sides import Given, Side, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.files.saved import dump, read_settings, settings_from_command
 from solver.latin import Auto, Ending, Latin, Stop, solve

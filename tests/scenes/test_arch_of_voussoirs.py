@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import linprog
 
 from solver import discrete
-from solver.discrete.plane.voussoirs import LIVE
+from solver.discrete.plane.makers.voussoirs import LIVE
 from solver.latin import Latin, iterations, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from solver import discrete
-from solver.discrete.plane.band import PULL, TAIL
+from solver.discrete.plane.makers.band import PULL, TAIL
 from solver.latin import iterations, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of

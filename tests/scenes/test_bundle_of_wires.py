@@ -7,7 +7,7 @@ import pytest
 
 from solver.arrays import sparse_factor
 from solver.discrete.plane.bodies_problem import problem_of
-from solver.discrete.plane.wires import DOWN, UP, Packing
+from solver.discrete.plane.makers.wires import DOWN, UP, Packing
 from solver.kept import KEPT
 from solver.latin import Latin, iterations
 from solver.reference.distance import distance_to

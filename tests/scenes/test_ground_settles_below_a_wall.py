@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.cap_and_ground import strips_below
+from solver.discrete.plane.rectangles.bricks import Brick
+from solver.discrete.plane.rectangles.cap_and_ground import strips_below
 from solver.latin import solve
 from solver.laws import OPEN
 from solver.reference.distance import distance_to, kkt_residual

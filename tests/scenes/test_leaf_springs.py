@@ -13,7 +13,7 @@ from refusals import refusal
 
 from solver import solve
 from solver.arrays import Array
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.files.saved import settings_from_command
 from solver.reference.closed_forms.elastic_bodies import (
     TwoLeaves,

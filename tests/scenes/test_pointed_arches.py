@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import linprog
 
 from solver import discrete
-from solver.discrete.plane.voussoirs import LEFT, LIVE, RIGHT
+from solver.discrete.plane.makers.voussoirs import LEFT, LIVE, RIGHT
 from solver.discrete.probes import reaction
 from solver.latin import solve
 from solver.reference.incremental import reference_of

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from solver import discrete
-from solver.discrete.plane.bricks import bonded, grouped, with_opening
-from solver.discrete.plane.sides import Given, Side, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.bricks import bonded, grouped, with_opening
+from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.latin import Ending, Latin, iterations, solve
 from solver.latin.end.status import collapses
 from solver.laws import OPEN, FrictionLaw, SlipFactor

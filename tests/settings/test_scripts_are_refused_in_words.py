@@ -15,7 +15,7 @@ from scipy import sparse
 
 from solver import End, Latin, Problem, Rods, Stack, iterations
 from solver.discrete import Given, Rope, Side, Spring, Support, discretise
-from solver.discrete.plane.bricks import Brick
+from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
 from solver.latin import PGD, Anderson, Auto, Checkpoint, FromStatus, Nested, Stop

@@ -1,1 +1,1 @@
-"""Bodies in the plane: data, meshes, condensation, cuts, joints."""
+"""Bodies in the plane: any shape here, makers of these, rectangles; laws of joints."""

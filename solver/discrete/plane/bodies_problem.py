@@ -15,12 +15,12 @@ from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.inside import Inside
 from solver.discrete.loose import loose_bodies
-from solver.discrete.plane.band import Band
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam
 from solver.discrete.plane.joint_laws import glued, laws_of
 from solver.discrete.plane.joints_of_bodies import law_of_joints
+from solver.discrete.plane.makers.band import Band
 from solver.discrete.problem import Problem
 from solver.laws import Dirichlet, Interface, Perfect
 from solver.refusal import RefusedError, Words

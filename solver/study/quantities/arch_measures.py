@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.arrays import Flags
 from solver.discrete import discretise
-from solver.discrete.plane.voussoirs import LIVE, Arch
+from solver.discrete.plane.makers.voussoirs import LIVE, Arch
 from solver.laws import OPEN, Contact
 from solver.reference.limit_analysis import load_factors
 from solver.settings.scene import Settings

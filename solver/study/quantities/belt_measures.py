@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.plane.band import Band
+from solver.discrete.plane.makers.band import Band
 from solver.settings.scene import Settings
 from solver.study.quantities.contact_measures import AT, instant_at
 from solver.study.quantities.finished import FinishedRun, first_largest

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Flags
-from solver.discrete.plane.band import Band
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.makers.band import Band
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.probes import AxialForce, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods

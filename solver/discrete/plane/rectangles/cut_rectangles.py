@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Flags, Indices
-from solver.discrete.plane.bricks import Brick, BrickJoint, joints_of
 from solver.discrete.plane.joint_laws import JointPiece
-from solver.discrete.plane.sides import SETTLED
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.bricks import Brick, BrickJoint, joints_of
+from solver.discrete.plane.rectangles.sides import SETTLED
+from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.substructure import substructure_sizes, tributary
 
 SIDES = "left", "right", "bottom", "top"

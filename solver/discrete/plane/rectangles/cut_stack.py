@@ -26,11 +26,11 @@ from solver.discrete.elements import (
     elastic_matrix,
     legendre_basis,
 )
-from solver.discrete.plane.bricks import BrickJoint
-from solver.discrete.plane.cut_rectangles import SIDES, CutRectangles
 from solver.discrete.plane.joint_laws import JOINT_SIDES
-from solver.discrete.plane.stack import Stack
-from solver.discrete.plane.stack_loads import StackLoads
+from solver.discrete.plane.rectangles.bricks import BrickJoint
+from solver.discrete.plane.rectangles.cut_rectangles import SIDES, CutRectangles
+from solver.discrete.plane.rectangles.stack import Stack
+from solver.discrete.plane.rectangles.stack_loads import StackLoads
 from solver.discrete.scales import Scales
 from solver.kept import KEPT
 

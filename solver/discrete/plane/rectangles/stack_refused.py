@@ -16,8 +16,8 @@ from solver.checks import (
     Part,
     check_value,
 )
-from solver.discrete.plane.bricks import Brick, grid_of
-from solver.discrete.plane.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.bricks import Brick, grid_of
+from solver.discrete.plane.rectangles.sides import Given, Side, Support
 from solver.refusal import RefusedError
 
 

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from solver.arrays import Array, without_residue
-from solver.discrete.plane.sides import SETTLED, Given, Side
+from solver.discrete.plane.rectangles.sides import SETTLED, Given, Side
 from solver.discrete.probes import (
     LoopFields,
     constant,

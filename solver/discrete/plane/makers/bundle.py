@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.plane.body import Body, Held, Joint, Load
-from solver.discrete.plane.wires import (
+from solver.discrete.plane.makers.wires import (
     DOWN,
     TURN,
     TURNS,

@@ -9,9 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.plane.bricks import Brick
-from solver.discrete.plane.sides import Given, Side, Support
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.bricks import Brick
+from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.stack import Stack
 
 CAP_STIFFNESS = 1e5
 """Young's modulus of a cap over that of the bricks."""

@@ -25,22 +25,22 @@ from solver.checks import (
     check_value,
 )
 from solver.discrete.elements import MOST_POISSON
-from solver.discrete.plane.bricks import Brick, grid_of
-from solver.discrete.plane.sides import Given, Side, Spring, Support
-from solver.discrete.plane.stack_drawn import (
+from solver.discrete.plane.rectangles.bricks import Brick, grid_of
+from solver.discrete.plane.rectangles.sides import Given, Side, Spring, Support
+from solver.discrete.plane.rectangles.stack_drawn import (
     act_of_ground,
     act_of_weight,
     acts_on_sides,
     holds_of,
 )
-from solver.discrete.plane.stack_loops import (
+from solver.discrete.plane.rectangles.stack_loops import (
     SettlementLoop,
     SlopeLoop,
     StackLoop,
     loop_of_end,
     loop_on_ground,
 )
-from solver.discrete.plane.stack_refused import (
+from solver.discrete.plane.rectangles.stack_refused import (
     check_bricks,
     check_sides,
     check_support,

@@ -20,7 +20,7 @@ from scipy.spatial import cKDTree
 
 from solver.arrays import Array, Indices
 from solver.checks import Numbers, check_value
-from solver.discrete.plane.chains import chains_of
+from solver.discrete.plane.makers.chains import chains_of
 from solver.discrete.plane.meshes import Mesh
 from solver.refusal import RefusedError, Words
 

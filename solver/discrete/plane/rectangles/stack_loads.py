@@ -9,8 +9,8 @@ import numpy as np
 
 from solver.arrays import Array, read_only
 from solver.discrete.elements import EDGE_MASS, Rectangle
-from solver.discrete.plane.cut_rectangles import CutRectangles, Span
-from solver.discrete.plane.sides import Given
+from solver.discrete.plane.rectangles.cut_rectangles import CutRectangles, Span
+from solver.discrete.plane.rectangles.sides import Given
 
 
 def values_along(

@@ -15,9 +15,6 @@ import numpy as np
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.inside import Inside
 from solver.discrete.loose import loose_bodies
-from solver.discrete.plane.bricks import BrickJoint
-from solver.discrete.plane.cut_rectangles import Span
-from solver.discrete.plane.cut_stack import CutStack
 from solver.discrete.plane.joint_laws import (
     JointPairs,
     Surface,
@@ -25,10 +22,13 @@ from solver.discrete.plane.joint_laws import (
     glued,
     laws_of,
 )
-from solver.discrete.plane.rigid_stack import rigid_rest, rigid_slide
-from solver.discrete.plane.sides import Side, Spring, Support
-from solver.discrete.plane.stack import Stack
-from solver.discrete.plane.stack_loads import values_along
+from solver.discrete.plane.rectangles.bricks import BrickJoint
+from solver.discrete.plane.rectangles.cut_rectangles import Span
+from solver.discrete.plane.rectangles.cut_stack import CutStack
+from solver.discrete.plane.rectangles.rigid_stack import rigid_rest, rigid_slide
+from solver.discrete.plane.rectangles.sides import Side, Spring, Support
+from solver.discrete.plane.rectangles.stack import Stack
+from solver.discrete.plane.rectangles.stack_loads import values_along
 from solver.discrete.problem import Problem
 from solver.laws import (
     BodyStiffness,

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.plane.bricks import Brick, grid_of
-from solver.discrete.plane.sides import Given, Side, Spring, Support
+from solver.discrete.plane.rectangles.bricks import Brick, grid_of
+from solver.discrete.plane.rectangles.sides import Given, Side, Spring, Support
 from solver.discrete.structure import OUTWARD, Act, Hold, on_side
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Indices
-from solver.discrete.plane.sides import Given, Spring
-from solver.discrete.plane.stack import Stack
+from solver.discrete.plane.rectangles.sides import Given, Spring
+from solver.discrete.plane.rectangles.stack import Stack
 
 SLACK = 1e-9
 """Largest rounding of the loads, as a share of them."""

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.plane.named_mesh import SAME, NamedMesh
+from solver.discrete.plane.makers.named_mesh import SAME, NamedMesh
 from solver.refusal import RefusedError, Words
 
 CONTACT = "contact"

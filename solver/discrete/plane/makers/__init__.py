@@ -1,0 +1,1 @@
+"""Bodies of any shape made from few data: bands, arches, bundles, named meshes."""
