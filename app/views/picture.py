@@ -1,4 +1,4 @@
-"""A picture of the scene, as columns of the sources of its figure, px."""
+"""A picture of the scene without its words, as columns of sources of its figure, px."""
 
 from __future__ import annotations
 
@@ -9,48 +9,21 @@ from typing import Any
 import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
-from app.units import number
 from app.views.acts import (
     Arrows,
     Rest,
-    anchor_of,
     color_of,
     footing_strokes,
     gapped,
     ground_edge,
     strokes_of,
-    text_of,
 )
-from app.views.colors import EDGE, ERROR, FORCE, HALO, REFERENCE, STATUS
-from app.views.colors import GROUND as GROUND_COLOR
-from app.views.layout import (
-    BAND,
-    EACH,
-    FOOTING,
-    GROUND,
-    IMAGE,
-    Layout,
-    is_opposite,
-    turned,
-)
-from app.views.words import Word, around, in_rows, inside, lies_on, meets
+from app.views.colors import EDGE, ERROR, HALO, STATUS
+from app.views.layout import BAND, GROUND, IMAGE, Layout, turned
 from solver.arrays import Array
-from solver.discrete.structure import Act
 
 MECHANISM = 0.12
 """Largest motion of a mechanism as drawn, over the height of all bodies."""
-NAMED = 0.4
-"""Largest length of the name of a joint over that of all bodies."""
-NAME = 14.0
-ASKEW = 0.3
-"""Distance of the name of a joint from its end, px, and slope of a joint from which on
-its name stands beside it and not above or below."""
-ALONG = 9
-"""Number of places along an arrow which words make way for."""
-HANDLE = 5.5
-"""Half of the size of the handle of an arrow, px."""
-MOST_ROWS = 3
-"""Largest number of rows by which a word makes way for another."""
 Columns = dict[str, Any]
 """Columns of one source by their names."""
 Strokes = list[tuple[Array, str, float]]
@@ -62,7 +35,7 @@ class Picture:
 
     `peaks` has the value of an arrow of full length for each load, by where it acts. Of
     several interfaces the `selected` one has a halo. `rests` are loads that were
-    dragged to zero.
+    dragged to zero. Words are no part of it: `labels` places them.
     """
 
     def __init__(
@@ -78,18 +51,18 @@ class Picture:
         self.frame = frame
         self.column = column
         self.layout = layout
-        self._factor = factor
+        self.factor = factor
         self._peaks = peaks
-        self._selected = selected
+        self.selected = selected
         self._rests = rests
         self._geometry = frame.run.geometry
-        self._description = layout.description
+        self.description = layout.description
         # Values of a description are not thinned.
         instant = frame.run.instants[column]
-        self._now = int(np.argmin(np.abs(self._description.instants - instant)))
+        self.now = int(np.argmin(np.abs(self.description.instants - instant)))
         self.tilt = layout.angle
-        if self._description.tilt is not None:
-            self.tilt = float(self._description.tilt[self._now])
+        if self.description.tilt is not None:
+            self.tilt = float(self.description.tilt[self.now])
 
     @cached_property
     def nodes(self) -> Array:
@@ -103,12 +76,10 @@ class Picture:
         """Contact points, px from the middle of the foot, shape (n_points, 2)."""
         positions = self._geometry.points
         local = self._moved(positions, self.frame.deformed.points[:, :, self.column])
-        is_alone = (
-            self._description.bodies == 1 and self._description.height is not None
-        )
-        if is_alone and self._description.footings is None:
+        is_alone = self.description.bodies == 1 and self.description.height is not None
+        if is_alone and self.description.footings is None:
             # The band lies below a single body. Rods leave room for it.
-            at_foot = positions[:, 1] <= 1e-6 * self._description.length
+            at_foot = positions[:, 1] <= 1e-6 * self.description.length
             local[at_foot, 1] -= 0.5 * BAND
         return local
 
@@ -118,11 +89,11 @@ class Picture:
         layout = self.layout
         behind = self.frame.run.settings.behind()
         arrows = []
-        for act in self._description.acts:
+        for act in self.description.acts:
             setting = behind.get(act.where)
             peak = self._peaks[act.where]
-            points = self._follow(act.points_at(self._now) * layout.size)
-            arrows.append(Arrows(act, setting, points, layout, peak, self._now))
+            points = self._follow(act.points_at(self.now) * layout.size)
+            arrows.append(Arrows(act, setting, points, layout, peak, self.now))
         return arrows
 
     @property
@@ -144,7 +115,6 @@ class Picture:
             "strokes": self._columns(self._strokes()),
             "heads": self._columns(self._heads()),
             "marks": self._marks(),
-            "words": self._words(),
         }
 
     @property
@@ -153,9 +123,9 @@ class Picture:
         return self.layout.surroundings is not None and not self.layout.is_bare
 
     @property
-    def _is_of_any_shape(self) -> bool:
+    def is_of_any_shape(self) -> bool:
         """Check whether bodies have any shape, and not straight sides alone."""
-        return self._description.footings is not None
+        return self.description.footings is not None
 
     @property
     def _top(self) -> float:
@@ -172,15 +142,15 @@ class Picture:
         """Patches of the ground of a case, below the bodies or on both sides."""
         if not self._has_ground:
             return {"xs": [], "ys": []}
-        edge = ground_edge(self.layout, self._factor)
+        edge = ground_edge(self.layout, self.factor)
         low = edge[:, 1].min() - GROUND
         foot = np.array([[edge[-1, 0], low], [edge[0, 0], low]])
-        if self._is_around and self._is_of_any_shape:
+        if self._is_around and self.is_of_any_shape:
             # It has no other side that is like the lower one: it is behind all bodies.
             edge = edge + np.array([0.0, self._top + GROUND])
         patch = np.concatenate([edge, foot])
         patches = [patch]
-        if self._is_around and not self._is_of_any_shape:
+        if self._is_around and not self.is_of_any_shape:
             patches.append([0.0, self._top] - [-1.0, 1.0] * patch)
         return self.many(np.stack(patches))
 
@@ -189,7 +159,7 @@ class Picture:
 
         Both are outlines with NaN behind each, shape (n, 2), px.
         """
-        if not any(hold.kind == "image" for hold in self._description.holds):
+        if not any(hold.kind == "image" for hold in self.description.holds):
             return np.zeros((0, 2))
         # As far as there is room.
         y = np.maximum(-bodies[:, 1], -IMAGE)
@@ -255,7 +225,7 @@ class Picture:
 
     def _moved(self, positions: Array, moved: Array) -> Array:
         """Moved positions in px from the middle of the foot, both (n, 2), m."""
-        magnified = moved * (self._factor * self.layout.scale)
+        magnified = moved * (self.factor * self.layout.scale)
         return self.layout.local(positions) + magnified
 
     def _follow(self, positions: Array) -> Array:
@@ -269,12 +239,12 @@ class Picture:
     @cached_property
     def _at_break(self) -> Array:
         """Numbers of the nodes on both sides of a break, (2, 2); (0, 2) without one."""
-        if self._description.broken is None:
+        if self.description.broken is None:
             return np.zeros((0, 2), dtype=np.intp)
-        body, position = self._description.broken
+        body, position = self.description.broken
         x, y = self._geometry.nodes.T
-        is_there = np.abs(x - position) < 1e-4 * self._description.length
-        row = np.floor(y * self._description.bodies / self.layout.size[1])
+        is_there = np.abs(x - position) < 1e-4 * self.description.length
+        row = np.floor(y * self.description.bodies / self.layout.size[1])
         return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _columns(self, strokes: Strokes) -> Columns:
@@ -291,10 +261,10 @@ class Picture:
     def _holds(self) -> Array:
         """Strokes of the supports, and a horizontal where bodies tilt, (n, 2), px."""
         layout = self.layout
-        length = self._description.length
+        length = self.description.length
         feet = self._follow(np.array([[0.0, 0.0], [length, 0.0]]))
-        strokes = strokes_of(layout, self._factor, self._now, feet)
-        for footing in self._description.footings or ():
+        strokes = strokes_of(layout, self.factor, self.now, feet)
+        for footing in self.description.footings or ():
             if footing.kind == "support" and self._has_ground:
                 # The ground of the case is what supports the bodies.
                 continue
@@ -302,8 +272,8 @@ class Picture:
             places = layout.local(points)
             if footing.kind != "support":
                 places = self._follow(points)
-            strokes.append(footing_strokes(footing, places, layout, self._factor))
-        if self._description.tilt is not None:
+            strokes.append(footing_strokes(footing, places, layout, self.factor))
+        if self.description.tilt is not None:
             corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
@@ -314,7 +284,7 @@ class Picture:
         status = self.frame.deformed.status[:, self.column]
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
-        if self._is_around and not self._is_of_any_shape:
+        if self._is_around and not self.is_of_any_shape:
             # The other side of bodies that the ground is all around of.
             for kind, line in lines.items():
                 other = [0.0, self._top] - [-1.0, 1.0] * line
@@ -322,8 +292,8 @@ class Picture:
         height = self.layout.body_height * self.layout.scale[1]
         width = min(BAND, 0.35 * height)
         # Broad bands of many interfaces, as in a wall, would cover the bodies.
-        most = self._description.bodies
-        if self._is_of_any_shape:
+        most = self.description.bodies
+        if self.is_of_any_shape:
             most = 1
         if chains.max() >= most:
             width = min(width, 5.0)
@@ -331,7 +301,7 @@ class Picture:
         slipping = [line for kind, line in lines.items() if kind in (-1, 1)]
         rims = np.concatenate([np.zeros((0, 2)), *slipping])
         strokes: Strokes = [
-            (self._halo(), HALO, width + 9.0),
+            (self.halo, HALO, width + 9.0),
             (rims, EDGE, width + 2.0),
         ]
         for kind, line in lines.items():
@@ -341,182 +311,14 @@ class Picture:
                 strokes.append((line, STATUS[kind], width))
         return strokes
 
-    def _halo(self) -> Array:
+    @property
+    def halo(self) -> Array:
         """Line along the selected interface, (n, 2), px, if there are several."""
         run = self.frame.run
-        if self._selected not in run.surfaces or len(run.surfaces) == 1:
+        if self.selected not in run.surfaces or len(run.surfaces) == 1:
             return np.zeros((0, 2))
-        chain = list(run.interfaces).index(self._selected)
+        chain = list(run.interfaces).index(self.selected)
         return self.points[self._geometry.chains == chain]
-
-    def _words(self) -> Columns:
-        """Symbols and values of loads, names of ground and joint, and the slope."""
-        words = self._words_of_loads()
-        if not self.layout.is_bare:
-            words += self._name_of_ground() + self._name_of_joint()
-        if self._description.tilt is not None:
-            x = 0.5 * self._description.length * self.layout.scale[0] + 30.0
-            slope = f"slope {number(float(np.degrees(self.tilt)))}°"
-            anchor = np.array([x, -14.0]) + self.layout.origin
-            words.append(Word(slope, anchor, "left", FORCE))
-        words = self._apart(inside(self.layout, words))
-        x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
-        return {
-            "x": x,
-            "y": y,
-            "text": [word.text for word in words],
-            "text_align": [word.align for word in words],
-            "text_color": [word.color for word in words],
-        }
-
-    def _words_of_loads(self) -> list[Word]:
-        """Symbols and values of the loads."""
-        layout = self.layout
-        words = []
-        rows = 0
-        for arrows, count in zip(self.arrows, layout.equals, strict=True):
-            act = arrows.act
-            # Pressures from both sides have one text, and so have equal loads.
-            if self._is_repeated(act) or count == 0:
-                continue
-            text = text_of(act, self._now)
-            if count > 1:
-                text += EACH
-            anchor, align = anchor_of(arrows, layout)
-            if count > 1 and act.side in ("left", "right"):
-                anchor = np.array([0.0, -FOOTING - 0.6 * layout.row])
-                align = "center"
-            word = Word(text, self.page(anchor), align, color_of(act))
-            if layout.angle or layout.is_told_above(act, count):
-                above = layout.height - (rows + 0.5) * layout.row
-                anchor = np.array([layout.origin[0], above])
-                word = word._replace(anchor=anchor, align="center")
-                rows += 1
-            elif act.side == "body" and len(arrows.lines):
-                word = self._beside(word, arrows.lines[0])
-            words.append(word)
-        return words
-
-    def _beside(self, word: Word, arrow: Array) -> Word:
-        """A word beside an upright arrow, (n, 2), px, or below it, if it has room.
-
-        Below an arch, say, there is room at the arrow itself. An arrow on bodies ends
-        at the ground, where there is none.
-        """
-        line = self.page(arrow)
-        middle = line.mean(axis=0)
-        if self._is_on_bodies(word._replace(text="", anchor=middle)):
-            return word
-        foot = line[line[:, 1].argmin()]
-        aside = np.array([12.0, 0.0])
-        below = np.array([0.0, -8.0 - self.layout.row])
-        places = [
-            word._replace(anchor=middle + aside, align="left"),
-            word._replace(anchor=middle - aside, align="right"),
-            word._replace(anchor=foot + below, align="center"),
-        ]
-        free = [place for place in places if not self._covers(place)]
-        return next(iter(free), word)
-
-    def _covers(self, word: Word) -> bool:
-        """Check whether a word lies on bodies, or on an arrow or its handle."""
-        return self._is_on_bodies(word) or self._meets_arrow(word)
-
-    def _is_on_bodies(self, word: Word) -> bool:
-        """Check whether a word lies on bodies."""
-        corners = self.page(self.nodes[self._geometry.cells])
-        return lies_on(self.layout, word, corners.min(axis=1), corners.max(axis=1))
-
-    def _meets_arrow(self, word: Word) -> bool:
-        """Check whether a word lies on an arrow or its handle."""
-        places = self._shafts
-        is_on_arrows = lies_on(self.layout, word, places, places)
-        return is_on_arrows or self._hides_handle(word)
-
-    @cached_property
-    def _shafts(self) -> Array:
-        """Places along the shafts of all arrows, (n, 2), px."""
-        shares = np.linspace(0.0, 1.0, ALONG)[:, None]
-        places = [np.zeros((0, 2))]
-        for arrows in self.arrows:
-            for line in arrows.lines:
-                places.append(line[0] + shares * (line[-1] - line[0]))
-        return self.page(np.concatenate(places))
-
-    def _hides_handle(self, word: Word) -> bool:
-        """Check whether a word lies on the handle of an arrow."""
-        handles = np.reshape([arrows.handle for arrows in self.draggable], (-1, 2))
-        marks = self.page(handles)
-        return lies_on(self.layout, word, marks - HANDLE, marks + HANDLE)
-
-    def _apart(self, words: Sequence[Word]) -> list[Word]:
-        """Words, moved up, down or aside, off earlier ones and off arrows.
-
-        They go to the next place that bodies leave free, too, if there is one.
-        """
-        placed: list[Word] = []
-        for word in words:
-            moved = word
-            if meets(self.layout, word, placed) or self._meets_arrow(word):
-                places = around(self.layout, word, MOST_ROWS)
-                free = [one for one in places if not meets(self.layout, one, placed)]
-                moved = min(free, key=self._covers, default=word)
-            placed.append(moved)
-        return placed
-
-    def _name_of_ground(self) -> list[Word]:
-        """Name of the ground of a case, if there is one."""
-        surroundings = self.layout.surroundings
-        if surroundings is None:
-            return []
-        edge = ground_edge(self.layout, self._factor)
-        end = edge[0] + [8.0, -0.5 * GROUND]
-        align = "left"
-        if self.layout.angle:
-            end = edge[-1] - [10.0, 0.5 * GROUND]
-            align = "center"
-        return [Word(surroundings.ground, self.page(end), align, GROUND_COLOR)]
-
-    def _name_of_joint(self) -> list[Word]:
-        """Name of the selected joint of bodies of any shape, where it has room."""
-        line = self._halo()
-        # Where bodies are small the name would cover them.
-        room = NAMED * self.layout.size[0] * self.layout.scale[0]
-        if self.layout.letter * len(self._selected) > room:
-            return []
-        if not self._is_of_any_shape or not len(line):
-            return []
-        places = []
-        for name in self._names_at_ends(line):
-            # Beside a joint that ends within bodies the next row may be free.
-            places += [name, *in_rows(self.layout, name, 1)]
-        return [min(places, key=self._covers)]
-
-    def _names_at_ends(self, line: Array) -> list[Word]:
-        """The name of a joint beyond each end of its line, (n, 2), px.
-
-        The end that is nearer to the middle of all bodies comes first.
-        """
-        middle = 0.5 * self.layout.size * self.layout.scale * [0.0, 1.0]
-        ends = line[[0, -1]]
-        nearer = int(np.hypot(*(ends - middle).T).argmin())
-        names = []
-        for end in (nearer, 1 - nearer):
-            away = ends[end] - ends[1 - end]
-            away /= np.hypot(*away) or 1.0
-            align = "center"
-            if abs(away[0]) > ASKEW:
-                align = "left" if away[0] > 0.0 else "right"
-            anchor = self.page(ends[end] + NAME * away)
-            names.append(Word(self._selected, anchor, align, REFERENCE))
-        return names
-
-    def _is_repeated(self, act: Act) -> bool:
-        """Check whether a load is a pressure from below that is named above already."""
-        if not act.where.startswith("bottom"):
-            return False
-        above = [act for act in self._description.acts if act.where.startswith("top")]
-        return any(is_opposite(act, other) for other in above)
 
 
 def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:

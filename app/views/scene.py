@@ -27,6 +27,7 @@ from app.views.colors import (
     UNSEEN,
 )
 from app.views.hints import NONE, hints_of
+from app.views.labels import labels_of
 from app.views.layout import NARROW, Layout, layout_of
 from app.views.parts import LEAST, bare, color_bar, size_told
 from app.views.picture import Picture
@@ -169,6 +170,7 @@ class Scene(View):
                 self._dragged[arrows.setting] = arrows, run.settings
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
+        self.fill("words", **labels_of(picture))
         if not self.is_bare:
             hints = NONE
             if self.state.is_new:

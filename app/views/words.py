@@ -1,4 +1,4 @@
-"""Words in the figure of the scene, and places where they cover nothing."""
+"""A word in the figure of the scene: its box, and places that it may move to."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import frames
 import numpy as np
 import pytest
 import shaped
+from pictures import boxes_of_words, meet, shown
 from scipy.spatial import Delaunay
 
 from app.frame import Frame, Selection
@@ -136,13 +137,6 @@ def arch(**changes: object) -> Settings:
     return default_settings("arch").replace(**few)
 
 
-def shown(frame: Frame, phase: float, kind: type[Scene] = Scene) -> Scene:
-    view = kind(PageState(frame.run.settings, frame=frame))
-    _ = view.figure
-    view.update(frame, Selection(phase), None)
-    return view
-
-
 @pytest.fixture(scope="module")
 def spread() -> Frame:
     """An arch whose abutments have moved apart."""
@@ -193,7 +187,7 @@ def test_the_foot_of_an_abutment_is_hatched_and_moves_with_it(spread: Frame) -> 
     held_now = picture._holds()
     before = shown(spread, 0.0).picture._holds()  # type: ignore[union-attr]
     moved = np.nanmax(held_now[:, 0]) - np.nanmax(before[:, 0])
-    assert moved == pytest.approx(1e-3 * picture._factor * picture.layout.scale[0])
+    assert moved == pytest.approx(1e-3 * picture.factor * picture.layout.scale[0])
     assert np.nanmin(held_now[:, 0]) == pytest.approx(np.nanmin(before[:, 0]))
 
 
@@ -233,7 +227,7 @@ def test_the_selected_joint_is_named_beside_it(spread: Frame) -> None:
     place = words["text"].index("crown")
     picture = view.picture
     assert picture is not None
-    halo = picture.page(picture._halo())
+    halo = picture.page(picture.halo)
     assert abs(words["x"][place] - halo[:, 0].mean()) < 12.0
     # Above the ring: below it the weight has its arrow.
     assert words["y"][place] > halo[:, 1].max()
@@ -246,23 +240,6 @@ def test_hatches_of_a_round_support_lie_behind_it() -> None:
     radii = np.hypot(*strokes[np.isfinite(strokes[:, 0])].T)
     assert radii.max() < 100.0 + 1e-9
     assert radii.min() < 94.0
-
-
-def boxes_of_words(view: Scene) -> dict[str, np.ndarray]:
-    """Lower left and upper right corners, (2, 2), px, of words by their texts."""
-    words = view.sources["words"].data
-    boxes = {}
-    for x, y, text, align in zip(
-        words["x"], words["y"], words["text"], words["text_align"], strict=True
-    ):
-        length = 7.5 * len(text)
-        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
-        boxes[text] = np.array([[left, y - 7.0], [left + length, y + 7.0]])
-    return boxes
-
-
-def meet(box: np.ndarray, low: np.ndarray, high: np.ndarray) -> bool:
-    return bool(np.any(np.all((low < box[1]) & (high > box[0]), axis=-1)))
 
 
 CROWDED = {
@@ -285,7 +262,7 @@ def test_words_of_many_loads_lie_apart_and_leave_handles_free(
     view.lay_out(*size)
     for phase in (0.0, 0.3, 0.5, 0.75, 1.0):
         view.update(crowded, Selection(phase), None)
-        boxes = list(boxes_of_words(view).values())
+        boxes = [box for _, box in boxes_of_words(view)]
         marks = view.sources["marks"].data
         handles = np.stack([marks["x"], marks["y"]], axis=1)
         for index, box in enumerate(boxes):
@@ -299,7 +276,7 @@ def test_equal_loads_have_one_word() -> None:
     acts = frame.run.geometry.description.acts
     bands = [act for act in acts if act.where.startswith("band")]
     assert len(bands) > 3
-    texts = list(boxes_of_words(shown(frame, 0.5)))
+    texts = [text for text, _ in boxes_of_words(shown(frame, 0.5))]
     assert sum(text.endswith(" each") for text in texts) == 1
     assert sum(text.startswith("F = ") for text in texts) == 2
     assert shown(frame, 0.5).picture.layout.equals.count(len(bands)) == 1  # type: ignore[union-attr]
@@ -314,7 +291,7 @@ def test_the_weight_of_an_arch_is_read_at_its_arrow() -> None:
     picture = view.picture
     assert picture is not None
     (weight,) = (each for each in picture.arrows if each.act.side == "body")
-    (box,) = (box for text, box in boxes_of_words(view).items() if text[0] == "W")
+    (box,) = (box for text, box in boxes_of_words(view) if text[0] == "W")
     tail, head = picture.page(weight.lines[0])
     assert head[0] < box[0, 0] < head[0] + 20.0
     assert head[1] < box[:, 1].mean() < tail[1]
@@ -327,7 +304,7 @@ def test_the_weight_of_a_wall_is_read_beside_it_and_not_at_its_pressure() -> Non
     view.update(frame, Selection(0.5), None)
     assert view.picture is not None
     corners = view.picture.page(view.picture.nodes)
-    (box,) = (box for text, box in boxes_of_words(view).items() if text[0] == "W")
+    (box,) = (box for text, box in boxes_of_words(view) if text[0] == "W")
     assert box[1, 0] < corners[:, 0].min()
     assert corners[:, 1].min() < box[:, 1].mean() < corners[:, 1].max()
 
@@ -390,7 +367,7 @@ def test_the_ground_of_a_case_is_all_that_supports_bodies_of_any_shape(
     if case.surroundings is not None and case.surroundings.place == "around":
         assert min(ground["ys"][0]) < y.min() < y.max() < max(ground["ys"][0])
     hatches = picture._holds()
-    clamps = [each for each in picture._description.footings if each.kind == "clamp"]
+    clamps = [each for each in picture.description.footings if each.kind == "clamp"]
     assert bool(len(hatches)) == bool(clamps)
 
 
@@ -403,7 +380,7 @@ def test_the_name_of_a_joint_lies_on_no_body_where_one_end_is_free() -> None:
         picture = view.picture
         assert picture is not None
         corners = picture.page(picture.nodes[frame.run.geometry.cells])
-        box = boxes_of_words(view)[name]
+        box = dict(boxes_of_words(view))[name]
         assert not meet(box, corners.min(axis=1), corners.max(axis=1)), name
 
 
@@ -427,7 +404,7 @@ def test_the_weight_of_an_arch_is_named_at_its_arrow(
     assert picture is not None
     arrows = [each for each in picture.arrows if each.act.where == "body"]
     shaft = picture.page(np.concatenate(arrows[0].lines)).mean(axis=0)
-    boxes = boxes_of_words(view)
+    boxes = dict(boxes_of_words(view))
     (name,) = [text for text in boxes if text.startswith("W")]
     apart = np.maximum(boxes[name][0] - shaft, shaft - boxes[name][1])
     assert apart.max() < 40.0

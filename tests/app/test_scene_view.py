@@ -2,19 +2,16 @@
 
 import math
 import re
-from itertools import chain
 from types import SimpleNamespace
 
-import frames
 import numpy as np
 import pytest
+from pictures import PHASES, coarse, frame_of, shown, small
 
 from app.frame import Frame, Selection
-from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Start
 from app.state import PageState, answer, default_settings
 from app.status import status_line
-from app.views.catalogue import CARDS
 from app.views.colors import HALO
 from app.views.contact_force import ContactForce
 from app.views.picture import bands
@@ -22,71 +19,12 @@ from app.views.rope import WireSection
 from app.views.scene import HEIGHT, WIDEST, WIDTH, Scene, Stress, Thrust
 from app.views.status_map import StatusMap
 from app.views.timeline import Timeline, paths_of
-from app.views.view import TEXT
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
 SCENES = tuple(CATALOGUE)
-KINDS = tuple(chain.from_iterable(CARDS))
-NEEDS = frozenset(chain.from_iterable(kind.needs for kind in KINDS))
-COARSE = {"elements": 24, "instants": 21}
-PHASES = np.linspace(0.0, 1.0, 7)
-
-
-def frame_of(settings: Settings, *, ends: bool = False) -> Frame:
-    """Frame of the second iterate, or that with which the run ends."""
-    return frames.frame_of(settings, Needs(extras=NEEDS), ends=ends)
-
-
-def coarse(scene: str) -> Settings:
-    """Settings with which a page begins a scene, on a coarse mesh."""
-    settings = default_settings(scene)
-    fewer = {
-        name: min(most, getattr(settings, name))
-        for name, most in COARSE.items()
-        if name in settings.definitions()
-    }
-    if scene == "bundle":
-        # Those of a contact, of which a wire has several.
-        fewer["elements"] = 4
-    return settings.checked(fewer)
-
-
-def small(scene: str) -> Settings:
-    """Settings of a scene with few bodies."""
-    settings = coarse(scene)
-    if scene == "bundle":
-        return settings.replace(rings=1)
-    return settings
-
-
-@pytest.fixture(scope="module", params=SCENES)
-def frame(request: pytest.FixtureRequest) -> Frame:
-    return frame_of(small(request.param))
-
-
-@pytest.fixture(scope="module")
-def page_scene(frame: Frame) -> Scene:
-    """The scene of a page that has shown the frame."""
-    return shown(frame)
-
-
-@pytest.fixture
-def scene(page_scene: Scene) -> Scene:
-    """The scene of that page, in its first size."""
-    page_scene.magnify(TEXT)
-    page_scene.lay_out(WIDTH, HEIGHT)
-    page_scene.update(*page_scene._shown)  # type: ignore[misc]
-    return page_scene
-
-
-def shown(frame: Frame, phase: float = 0.75, kind: type[Scene] = Scene) -> Scene:
-    view = kind(PageState(frame.run.settings))
-    _ = view.figure
-    view.update(frame, Selection(phase), None)
-    return view
 
 
 def flat(values: object) -> np.ndarray:
@@ -117,99 +55,10 @@ def test_everything_lies_inside_the_figure_at_every_instant(
                 assert np.all((known > -3.0) & (known < end + 3.0)), name
 
 
-def test_words_beside_a_body_have_room_on_a_projector() -> None:
-    frame = frame_of(small("bar"))
-    view = shown(frame, 0.25)
-    view.magnify("22px")
-    view.update(frame, Selection(0.25), None)
-    words = view.sources["words"].data
-    (x,) = (
-        x for x, text in zip(words["x"], words["text"], strict=True) if text[0] == "F"
-    )
-    end = view.picture.page(view.picture.nodes)[:, 0].max()  # type: ignore[union-attr]
-    assert x > end
-
-
-def test_words_of_large_type_lie_on_no_arrow(frame: Frame, scene: Scene) -> None:
-    scene.magnify("28px")
-    scene.lay_out(560.0, 400.0)
-    shares = np.linspace(0.0, 1.0, 9)[:, None]
-    for phase in PHASES:
-        scene.update(frame, Selection(phase), None)
-        picture = scene.picture
-        assert picture is not None
-        places = [np.zeros((0, 2))]
-        for arrows in picture.arrows:
-            for first, *_, last in arrows.lines:
-                places.append(picture.page(first + shares * (last - first)))
-        x, y = np.concatenate(places).T
-        words = scene.sources["words"].data
-        for left, middle, text, align in zip(
-            words["x"], words["y"], words["text"], words["text_align"], strict=True
-        ):
-            length = 14.0 * len(text)
-            start = left - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
-            is_across = (x > start) & (x < start + length)
-            assert not np.any(is_across & (np.abs(y - middle) < 10.0)), (phase, text)
-
-
-def test_words_stand_above_bodies_that_they_would_leave_no_room_beside() -> None:
-    """Three turns on a bollard, both ends named, in a picture on a small projector."""
-    lesson = LESSONS["turns-on-a-bollard"]
-    view = shown(frame_of(lesson.settings), 1.0)
-    view.magnify("19px")
-    view.lay_out(370.0, 230.0)
-    view.update(*view._shown)  # type: ignore[misc]
-    picture = view.picture
-    assert picture is not None
-    assert np.ptp(picture.page(picture.nodes)[:, 0]) > 70.0
-
-
 def test_bodies_in_the_plane_have_equal_axes(frame: Frame, scene: Scene) -> None:
     layout = scene.picture.layout  # type: ignore[union-attr]
     if frame.run.geometry.description.height is not None:
         assert layout.scale[0] == layout.scale[1]
-
-
-@pytest.mark.parametrize("width", [WIDTH, 374.0], ids=["wide", "narrow"])
-@pytest.mark.parametrize("size", [TEXT, "36px"], ids=["page", "projector"])
-def test_words_are_whole(frame: Frame, scene: Scene, size: str, width: float) -> None:
-    scene.magnify(size)
-    scene.lay_out(width, HEIGHT)
-    scene.update(frame, Selection(0.3), None)
-    words = scene.sources["words"].data
-    for x, text, align in zip(
-        words["x"], words["text"], words["text_align"], strict=True
-    ):
-        length = 0.5 * float(scene.words.removesuffix("px")) * len(text)
-        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
-        assert left >= -1.0
-        assert left + length <= width
-
-
-@pytest.mark.parametrize("name", ["block", "fault", "incline"])
-def test_words_leave_handles_free_in_a_picture_beside_plots(name: str) -> None:
-    frame = frame_of(small(name))
-    view = shown(frame)
-    view.figure.trigger("inner_width", WIDTH, 270.0)
-    view.figure.trigger("inner_height", HEIGHT, 420.0)
-    for phase in PHASES:
-        view.update(frame, Selection(phase), None)
-        words = view.sources["words"].data
-        marks = {axis: np.asarray(view.sources["marks"].data[axis]) for axis in "xy"}
-        for x, y, text, align in zip(
-            words["x"], words["y"], words["text"], words["text_align"], strict=True
-        ):
-            left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * 6.0 * len(
-                text
-            )
-            is_across = (marks["x"] > left - 5.0) & (
-                marks["x"] < left + 6.0 * len(text) + 5.0
-            )
-            assert not np.any(is_across & (np.abs(marks["y"] - y) < 12.0)), (
-                phase,
-                text,
-            )
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -429,31 +278,6 @@ def drag(view: Scene, start: np.ndarray, end: np.ndarray) -> None:
     view._let_go(SimpleNamespace(x=end[0], y=end[1]))
 
 
-@pytest.mark.parametrize("width", [WIDTH, 374.0], ids=["wide", "narrow"])
-def test_words_lie_beside_the_bodies(frame: Frame, scene: Scene, width: float) -> None:
-    scene.lay_out(width, HEIGHT)
-    for phase in PHASES:
-        scene.update(frame, Selection(phase), None)
-        picture = scene.picture
-        assert picture is not None
-        words = scene.sources["words"].data
-        corners = picture.page(picture.nodes[frame.run.geometry.cells])
-        low = corners.min(axis=1)
-        high = corners.max(axis=1)
-        for x, y, text, align in zip(
-            words["x"], words["y"], words["text"], words["text_align"], strict=True
-        ):
-            length = 6.0 * len(text)
-            left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
-            covers = (
-                (low[:, 0] < left + length)
-                & (high[:, 0] > left)
-                & (low[:, 1] < y + 4.0)
-                & (high[:, 1] > y - 4.0)
-            )
-            assert not covers.any(), (phase, text)
-
-
 def test_a_figure_that_goes_to_another_card_is_laid_out_for_the_size_it_is_told() -> (
     None
 ):
@@ -497,21 +321,3 @@ def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_narrow_picture()
     view.state.is_new = False
     view.update(frame, Selection(0.25), None)
     assert keys.visible
-
-
-@pytest.mark.parametrize("phase", [0.0, 0.25, 0.4, 0.8])
-def test_words_meet_no_arrow_at_the_end_of_a_body(phase: float) -> None:
-    frame = frame_of(LESSONS["two-points"].settings)
-    view = Scene(PageState(frame.run.settings))
-    _ = view.figure
-    view.lay_out(910.0, 560.0)
-    view.update(frame, Selection(phase), None)
-    heads = [np.concatenate(view.sources["heads"].data[name]) for name in ("xs", "ys")]
-    words = view.sources["words"].data
-    for x, y, text, align in zip(
-        words["x"], words["y"], words["text"], words["text_align"], strict=True
-    ):
-        length = 7.0 * len(text)
-        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * length
-        is_across = (heads[0] > left) & (heads[0] < left + length)
-        assert not np.any(is_across & (np.abs(heads[1] - y) < 7.0)), text

@@ -1,0 +1,245 @@
+"""Words in the picture of a scene: loads, ground, joint, slope, beside what is drawn.
+
+Anchors of words are px of the figure; the picture's own lines are px from the middle of
+the foot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from app.units import number
+from app.views.acts import Arrows, anchor_of, color_of, ground_edge, text_of
+from app.views.colors import FORCE, REFERENCE
+from app.views.colors import GROUND as GROUND_COLOR
+from app.views.layout import EACH, FOOTING, GROUND, is_opposite
+from app.views.picture import Columns, Picture
+from app.views.words import Word, around, in_rows, inside, lies_on, meets
+from solver.arrays import Array
+from solver.discrete.structure import Act
+
+NAMED = 0.4
+"""Largest length of the name of a joint over that of all bodies."""
+NAME = 14.0
+ASKEW = 0.3
+"""Distance of the name of a joint from its end, px, and slope of a joint from which on
+its name stands beside it and not above or below."""
+ALONG = 9
+"""Number of places along an arrow which words make way for."""
+HANDLE = 5.5
+"""Half of the size of the handle of an arrow, px."""
+MOST_ROWS = 3
+"""Largest number of rows by which a word makes way for another."""
+
+
+def labels_of(picture: Picture) -> Columns:
+    """Columns of all words on a picture, moved off each other and off arrows."""
+    obstacles = Obstacles(picture)
+    words = _words_of_loads(picture, obstacles)
+    if not picture.layout.is_bare:
+        words += _name_of_ground(picture)
+        words += _name_of_joint(picture, obstacles)
+    if picture.description.tilt is not None:
+        words.append(_slope(picture))
+    words = _apart(inside(picture.layout, words), obstacles)
+    x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
+    return {
+        "x": x,
+        "y": y,
+        "text": [word.text for word in words],
+        "text_align": [word.align for word in words],
+        "text_color": [word.color for word in words],
+    }
+
+
+class Obstacles:
+    """Bodies, arrows and handles of a picture, which words leave free."""
+
+    def __init__(self, picture: Picture) -> None:
+        self.layout = picture.layout
+        self._picture = picture
+
+    def covered_by(self, word: Word) -> bool:
+        """Check whether a word lies on bodies, or on an arrow or its handle."""
+        return self.has_bodies_below(word) or self.has_arrows_below(word)
+
+    def has_bodies_below(self, word: Word) -> bool:
+        """Check whether a word lies on bodies."""
+        return lies_on(self.layout, word, *self._cells)
+
+    def has_arrows_below(self, word: Word) -> bool:
+        """Check whether a word lies on an arrow or its handle."""
+        places = self._shafts
+        if lies_on(self.layout, word, places, places):
+            return True
+        handles = self._handles
+        return lies_on(self.layout, word, handles - HANDLE, handles + HANDLE)
+
+    @cached_property
+    def _cells(self) -> tuple[Array, Array]:
+        """Lower left and upper right corners of all cells, (n_cells, 2) each, px."""
+        cells = self._picture.frame.run.geometry.cells
+        corners = self._picture.page(self._picture.nodes[cells])
+        return corners.min(axis=1), corners.max(axis=1)
+
+    @cached_property
+    def _shafts(self) -> Array:
+        """Places along the shafts of all arrows, (n, 2), px."""
+        shares = np.linspace(0.0, 1.0, ALONG)[:, None]
+        places = [np.zeros((0, 2))]
+        for arrows in self._picture.arrows:
+            for line in arrows.lines:
+                places.append(line[0] + shares * (line[-1] - line[0]))
+        return self._picture.page(np.concatenate(places))
+
+    @cached_property
+    def _handles(self) -> Array:
+        """Middles of the handles of all arrows, (n, 2), px."""
+        handles = [arrows.handle for arrows in self._picture.draggable]
+        return self._picture.page(np.reshape(handles, (-1, 2)))
+
+
+def _words_of_loads(picture: Picture, obstacles: Obstacles) -> list[Word]:
+    """Symbols and values of the loads."""
+    layout = picture.layout
+    words = []
+    rows = 0
+    for arrows, count in zip(picture.arrows, layout.equals, strict=True):
+        act = arrows.act
+        # Pressures from both sides have one text, and so have equal loads.
+        if _is_repeated(act, picture.description.acts) or count == 0:
+            continue
+        word = _word_of_load(picture, arrows, count)
+        if layout.angle or layout.is_told_above(act, count):
+            above = layout.height - (rows + 0.5) * layout.row
+            anchor = np.array([layout.origin[0], above])
+            word = word._replace(anchor=anchor, align="center")
+            rows += 1
+        elif act.side == "body" and len(arrows.lines):
+            word = _beside(word, picture.page(arrows.lines[0]), obstacles)
+        words.append(word)
+    return words
+
+
+def _word_of_load(picture: Picture, arrows: Arrows, count: int) -> Word:
+    """Symbol and value of a load, or of a number of equal ones, at its arrows."""
+    act = arrows.act
+    layout = picture.layout
+    text = text_of(act, picture.now)
+    anchor, align = anchor_of(arrows, layout)
+    if count > 1:
+        text += EACH
+        if act.side in ("left", "right"):
+            anchor = np.array([0.0, -FOOTING - 0.6 * layout.row])
+            align = "center"
+    return Word(text, picture.page(anchor), align, color_of(act))
+
+
+def _is_repeated(act: Act, acts: Sequence[Act]) -> bool:
+    """Check whether a load is a pressure from below that is named above already."""
+    if not act.where.startswith("bottom"):
+        return False
+    above = [other for other in acts if other.where.startswith("top")]
+    return any(is_opposite(act, other) for other in above)
+
+
+def _beside(word: Word, line: Array, obstacles: Obstacles) -> Word:
+    """A word beside an upright arrow, (n, 2), px, or below it, if it has room.
+
+    Below an arch, say, there is room at the arrow itself. An arrow on bodies ends
+    at the ground, where there is none.
+    """
+    middle = line.mean(axis=0)
+    if obstacles.has_bodies_below(word._replace(text="", anchor=middle)):
+        return word
+    foot = line[line[:, 1].argmin()]
+    aside = np.array([12.0, 0.0])
+    below = np.array([0.0, -8.0 - obstacles.layout.row])
+    places = [
+        word._replace(anchor=middle + aside, align="left"),
+        word._replace(anchor=middle - aside, align="right"),
+        word._replace(anchor=foot + below, align="center"),
+    ]
+    free = [place for place in places if not obstacles.covered_by(place)]
+    return next(iter(free), word)
+
+
+def _slope(picture: Picture) -> Word:
+    """The angle of bodies that tilt, beside their foot."""
+    layout = picture.layout
+    x = 0.5 * picture.description.length * layout.scale[0] + 30.0
+    text = f"slope {number(float(np.degrees(picture.tilt)))}°"
+    # It stands upright beside what is tilted.
+    anchor = np.array([x, -14.0]) + layout.origin
+    return Word(text, anchor, "left", FORCE)
+
+
+def _name_of_ground(picture: Picture) -> list[Word]:
+    """Name of the ground of a case, if there is one."""
+    surroundings = picture.layout.surroundings
+    if surroundings is None:
+        return []
+    edge = ground_edge(picture.layout, picture.factor)
+    end = edge[0] + [8.0, -0.5 * GROUND]
+    align = "left"
+    if picture.layout.angle:
+        end = edge[-1] - [10.0, 0.5 * GROUND]
+        align = "center"
+    return [Word(surroundings.ground, picture.page(end), align, GROUND_COLOR)]
+
+
+def _name_of_joint(picture: Picture, obstacles: Obstacles) -> list[Word]:
+    """Name of the selected joint of bodies of any shape, where it has room."""
+    layout = picture.layout
+    line = picture.halo
+    # Where bodies are small the name would cover them.
+    room = NAMED * layout.size[0] * layout.scale[0]
+    if layout.letter * len(picture.selected) > room:
+        return []
+    if not picture.is_of_any_shape or not len(line):
+        return []
+    places = []
+    for name in _names_at_ends(picture, line):
+        # Beside a joint that ends within bodies the next row may be free.
+        places += [name, *in_rows(layout, name, 1)]
+    return [min(places, key=obstacles.covered_by)]
+
+
+def _names_at_ends(picture: Picture, line: Array) -> list[Word]:
+    """The name of a joint beyond each end of its line, (n, 2), px.
+
+    The end that is nearer to the middle of all bodies comes first.
+    """
+    middle = 0.5 * picture.layout.size * picture.layout.scale * [0.0, 1.0]
+    ends = line[[0, -1]]
+    nearer = int(np.hypot(*(ends - middle).T).argmin())
+    names = []
+    for end in (nearer, 1 - nearer):
+        away = ends[end] - ends[1 - end]
+        away /= np.hypot(*away) or 1.0
+        align = "center"
+        if abs(away[0]) > ASKEW:
+            align = "left" if away[0] > 0.0 else "right"
+        anchor = picture.page(ends[end] + NAME * away)
+        names.append(Word(picture.selected, anchor, align, REFERENCE))
+    return names
+
+
+def _apart(words: Sequence[Word], obstacles: Obstacles) -> list[Word]:
+    """Words, moved up, down or aside, off earlier ones and off arrows.
+
+    They go to the next place that bodies leave free, too, if there is one.
+    """
+    layout = obstacles.layout
+    placed: list[Word] = []
+    for word in words:
+        moved = word
+        if meets(layout, word, placed) or obstacles.has_arrows_below(word):
+            places = around(layout, word, MOST_ROWS)
+            free = [one for one in places if not meets(layout, one, placed)]
+            moved = min(free, key=obstacles.covered_by, default=word)
+        placed.append(moved)
+    return placed

@@ -1,0 +1,32 @@
+"""Every scene with few bodies, as a page shows it."""
+
+from __future__ import annotations
+
+import pytest
+from pictures import frame_of, shown, small
+
+from app.frame import Frame
+from app.views.scene import HEIGHT, WIDTH, Scene
+from app.views.view import TEXT
+from solver.scenes import CATALOGUE
+
+
+@pytest.fixture(scope="module", params=CATALOGUE)
+def frame(request: pytest.FixtureRequest) -> Frame:
+    """Frame of the second iterate of a scene."""
+    return frame_of(small(request.param))
+
+
+@pytest.fixture(scope="module")
+def page_scene(frame: Frame) -> Scene:
+    """The scene of a page that has shown the frame."""
+    return shown(frame)
+
+
+@pytest.fixture
+def scene(page_scene: Scene) -> Scene:
+    """The scene of that page, in its first size."""
+    page_scene.magnify(TEXT)
+    page_scene.lay_out(WIDTH, HEIGHT)
+    page_scene.update(*page_scene._shown)  # type: ignore[misc]
+    return page_scene

@@ -1,0 +1,115 @@
+"""Words in the picture of a scene are whole, and cover neither bodies nor arrows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pictures import PHASES, boxes_of_words, frame_of, meet, shown, small
+
+from app.frame import Frame, Selection
+from app.lessons.catalogue import LESSONS
+from app.views.picture import Picture
+from app.views.scene import HEIGHT, WIDTH, Scene
+from app.views.view import TEXT
+
+
+def picture_of(view: Scene) -> Picture:
+    """Picture that a scene shows."""
+    assert view.picture is not None
+    return view.picture
+
+
+def shafts(picture: Picture) -> np.ndarray:
+    """Places along all arrows, (n, 2), px."""
+    shares = np.linspace(0.0, 1.0, 9)[:, None]
+    places = [np.zeros((0, 2))]
+    for arrows in picture.arrows:
+        for first, *_, last in arrows.lines:
+            places.append(picture.page(first + shares * (last - first)))
+    return np.concatenate(places)
+
+
+def test_words_beside_a_body_have_room_on_a_projector() -> None:
+    frame = frame_of(small("bar"))
+    view = shown(frame, 0.25)
+    view.magnify("22px")
+    view.update(frame, Selection(0.25), None)
+    words = view.sources["words"].data
+    (x,) = (
+        x for x, text in zip(words["x"], words["text"], strict=True) if text[0] == "F"
+    )
+    picture = picture_of(view)
+    assert x > picture.page(picture.nodes)[:, 0].max()
+
+
+def test_words_of_large_type_lie_on_no_arrow(frame: Frame, scene: Scene) -> None:
+    scene.magnify("28px")
+    scene.lay_out(560.0, 400.0)
+    for phase in PHASES:
+        scene.update(frame, Selection(phase), None)
+        places = shafts(picture_of(scene))
+        for text, box in boxes_of_words(scene, letter=14.0, half=10.0):
+            assert not meet(box, places, places), (phase, text)
+
+
+def test_words_stand_above_bodies_that_they_would_leave_no_room_beside() -> None:
+    """Three turns on a bollard, both ends named, in a picture on a small projector."""
+    view = shown(frame_of(LESSONS["turns-on-a-bollard"].settings), 1.0)
+    view.magnify("19px")
+    view.lay_out(370.0, 230.0)
+    view.update(*view._shown)  # type: ignore[misc]
+    picture = picture_of(view)
+    assert np.ptp(picture.page(picture.nodes)[:, 0]) > 70.0
+
+
+@pytest.mark.parametrize("width", [WIDTH, 374.0], ids=["wide", "narrow"])
+@pytest.mark.parametrize("size", [TEXT, "36px"], ids=["page", "projector"])
+def test_words_are_whole(frame: Frame, scene: Scene, size: str, width: float) -> None:
+    scene.magnify(size)
+    scene.lay_out(width, HEIGHT)
+    scene.update(frame, Selection(0.3), None)
+    letter = 0.5 * float(scene.words.removesuffix("px"))
+    for text, box in boxes_of_words(scene, letter):
+        assert box[0, 0] >= -1.0, text
+        assert box[1, 0] <= width, text
+
+
+@pytest.mark.parametrize("name", ["block", "fault", "incline"])
+def test_words_leave_handles_free_in_a_picture_beside_plots(name: str) -> None:
+    frame = frame_of(small(name))
+    view = shown(frame)
+    view.figure.trigger("inner_width", WIDTH, 270.0)
+    view.figure.trigger("inner_height", HEIGHT, 420.0)
+    for phase in PHASES:
+        view.update(frame, Selection(phase), None)
+        marks = view.sources["marks"].data
+        handles = np.stack([marks["x"], marks["y"]], axis=1)
+        half = np.array([5.0, 0.0])
+        for text, box in boxes_of_words(view, letter=6.0, half=12.0):
+            assert not meet(box, handles - half, handles + half), (phase, text)
+
+
+@pytest.mark.parametrize("width", [WIDTH, 374.0], ids=["wide", "narrow"])
+def test_words_lie_beside_the_bodies(frame: Frame, scene: Scene, width: float) -> None:
+    scene.lay_out(width, HEIGHT)
+    for phase in PHASES:
+        scene.update(frame, Selection(phase), None)
+        picture = picture_of(scene)
+        corners = picture.page(picture.nodes[frame.run.geometry.cells])
+        low = corners.min(axis=1)
+        high = corners.max(axis=1)
+        for text, box in boxes_of_words(scene, letter=6.0, half=4.0):
+            assert not meet(box, low, high), (phase, text)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.25, 0.4, 0.8])
+def test_words_meet_no_arrow_at_the_end_of_a_body(phase: float) -> None:
+    frame = frame_of(LESSONS["two-points"].settings)
+    view = shown(frame, phase)
+    view.lay_out(910.0, 560.0)
+    view.update(frame, Selection(phase), None)
+    heads = view.sources["heads"].data
+    x, y = (np.concatenate(heads[name]) for name in ("xs", "ys"))
+    corners = np.stack([x, y], axis=1)
+    for text, box in boxes_of_words(view, letter=7.0, half=7.0):
+        assert not meet(box, corners, corners), text
