@@ -80,8 +80,9 @@ JUDGES: dict[str, str] = {
         "distance to the reference says nothing"
     ),
     Judge.REFERENCE: (
-        "by the distance to a reference that obeys them: the incremental solver's, or "
-        "where several solutions exist the one that the run came to"
+        "by the distance to a reference that obeys them: the incremental solver's, or, "
+        "of a run that is called converged where several solutions exist, the one that "
+        "it came to"
     ),
     Judge.NOTHING: (
         "no judge is needed, or there is none: not solved, refused, broken off, unclear"
@@ -264,7 +265,9 @@ def _beside_reference(outcome: Outcome, iterate: Iterate) -> Outcome:
     if reference is None:
         return replace(outcome, doubt=doubt)
     beside = _compared(outcome, iterate, reference)
-    if beside.reference_laws > AT_ROUNDING or beside.error_force <= APART:
+    is_settled = beside.reference_laws > AT_ROUNDING or beside.error_force <= APART
+    # What a run came to judges its claim; a run that is not converged makes none.
+    if is_settled or outcome.ending != Ending.CONVERGED:
         return replace(beside, doubt=doubt or beside.doubt)
     # Friction may leave several solutions, of which an iterate may come to another.
     other = _solution_near(iterate)

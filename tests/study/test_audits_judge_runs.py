@@ -22,6 +22,7 @@ from solver.scenes import CATALOGUE
 from solver.study.quantities.finished import BROKEN, REFUSED, finished_run
 from solver.study.random_runs import draw, random_case
 from solver.study.stability import (
+    APART,
     AT_ROUNDING,
     METHODS,
     Judge,
@@ -220,6 +221,19 @@ def test_an_iterate_far_from_every_solution_is_wrong(monkeypatch):
     (row,) = judged_runs([random_case(early, 99796577, 25)])
     assert row["judged_by"] == Judge.REFERENCE
     assert row["verdict"] == Verdict.WRONG
+
+
+def test_no_other_solution_is_sought_for_a_run_that_claims_nothing(monkeypatch):
+    def sought(*_, **__):
+        raise AssertionError("a status step was made")
+
+    monkeypatch.setattr("solver.study.stability.status_step", sought)
+    settings = draw("block", 99796577, 25)
+    early = CATALOGUE["block"].checked({**settings.changed(), "max_iterations": 20})
+    (row,) = judged_runs([random_case(early, 99796577, 25)])
+    assert row["status"] == Ending.EXHAUSTED
+    assert row["error_force"] > APART
+    assert row["verdict"] == Verdict.UNSOLVED
 
 
 def test_laws_hold_where_nothing_moves_but_by_rounding():
