@@ -17,7 +17,7 @@ them (MATHEMATICS.md, 6).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
 
@@ -266,11 +266,7 @@ class Newton:
                     self.accumulated_slip + slip
                 ).tobytes()
                 piece += is_capped.tobytes()
-            # On one piece of the laws a linear problem comes to rest in one step, and a
-            # nonlinear one may take several.
-            stays = rules.is_nonlinear and pieces[-1:] == [piece]
-            visits = pieces.count(piece)
-            if visits == STEPS_ON_A_PIECE or (visits and not stays):
+            if _cycles(pieces, piece, is_nonlinear=rules.is_nonlinear):
                 return None
             pieces.append(piece)
             step = system(states, tangent)
@@ -476,6 +472,17 @@ class Newton:
         partner = self._rules.partner
         pressing = np.where(held, force[partner], -moved[partner])
         return np.asarray(bound + np.maximum(friction * pressing, 0.0))
+
+
+def _cycles(pieces: Sequence[bytes], piece: bytes, *, is_nonlinear: bool) -> bool:
+    """Check whether steps that were on some pieces of the laws cycle on the next.
+
+    On one piece a linear problem comes to rest in one step, and a nonlinear one may
+    take several.
+    """
+    stays = is_nonlinear and pieces[-1:] == [piece]
+    visits = pieces.count(piece)
+    return visits == STEPS_ON_A_PIECE or (visits > 0 and not stays)
 
 
 def _slip_of_states(states: States, slip: Array) -> Array:

@@ -230,7 +230,7 @@ def from_text(text: str) -> NamedMesh:
 
 
 def _arrays_in(data: bytes) -> dict[str, Array]:
-    """Arrays by name in a file of NumPy; larger ones than are allowed are refused."""
+    """Arrays of any shape by name in a file of NumPy; a file too large is refused."""
     with zipfile.ZipFile(io.BytesIO(data)) as content:
         size = sum(entry.file_size for entry in content.infolist())
     if size > LARGEST:

@@ -444,19 +444,25 @@ def dovetail(answer: SolvedCase) -> Iterator[Number]:
     and up while it goes back.
     """
     settings = answer.settings
-    contacts = settings.parts.contacts
     tractions = settings.path("load")
     turned = int(tractions.argmax())
     back = turned + (len(tractions) - turned) * 4 // 5
     side = next(side for side in settings.parts.sides if side.name.startswith("top"))
     width = settings.parts.shapes[side.body].shares(side.nodes).sum()
-    across, upward = np.abs(contacts[0].normals[0])
+    across, upward = np.abs(settings.parts.contacts[0].normals[0])
     for instant, sign, words in ((turned, 1.0, "pulled"), (back, -1.0, "let go")):
         carried = 2.0 * (upward + sign * settings.friction * across)
         known = tractions[instant] * width / carried
-        found = 0.0
-        for contact in contacts:
-            pressing = answer.fields.contact(contact.name).normal_force
-            assert pressing is not None
-            found += float(pressing[:, instant].sum()) / len(contacts)
+        found = _mean_normal_force(answer, instant)
         yield f"normal force of a flank, {words}", "N", float(known), found
+
+
+def _mean_normal_force(answer: SolvedCase, instant: int) -> float:
+    """Mean of the normal forces of all contacts of a mesh at an instant, N."""
+    contacts = answer.settings.parts.contacts
+    mean = 0.0
+    for contact in contacts:
+        pressing = answer.fields.contact(contact.name).normal_force
+        assert pressing is not None
+        mean += float(pressing[:, instant].sum()) / len(contacts)
+    return mean

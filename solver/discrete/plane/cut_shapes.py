@@ -131,14 +131,24 @@ def _seams_of(shape: Shape, labels: Indices) -> list[Seam]:
     keys, of_edges = np.unique(both, axis=0, return_inverse=True)
     for number, (first, second) in enumerate(keys.tolist()):
         own = of_edges.ravel() == number
-        some, inverse = np.unique(nodes[own], return_inverse=True)
-        weights = np.zeros(len(some))
-        np.add.at(weights, inverse.ravel(), lengths[own].ravel())
-        along = _along_longest(shape.nodes[some])
-        order = np.argsort(along, kind="stable")
-        seam = Seam((first, second), some[order], along[order], weights[order])
+        seam = _seam_of(shape, (first, second), nodes[own], lengths[own])
         seams.append(seam)
     return seams
+
+
+def _seam_of(
+    shape: Shape, parts: tuple[int, int], nodes: Indices, lengths: Array
+) -> Seam:
+    """Seam between two parts, by the nodes of its edges and their shares in lengths.
+
+    Both have shape (n_edges, n_nodes of an edge); shares are in m.
+    """
+    some, inverse = np.unique(nodes, return_inverse=True)
+    weights = np.zeros(len(some))
+    np.add.at(weights, inverse.ravel(), lengths.ravel())
+    along = _along_longest(shape.nodes[some])
+    order = np.argsort(along, kind="stable")
+    return Seam(parts, some[order], along[order], weights[order])
 
 
 def _along_longest(places: Array) -> Array:

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Sequence
 
 import numpy as np
 
-from solver.arrays import Array, Flags
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
@@ -62,19 +62,18 @@ def _stiffness_beside(
     A mesh resists with about E as a whole (`of_whole_mesh`). Beams resist with E A / l
     along a joint of length l; across it they stay where they are pressed.
     """
-    assert pairs.normal is not None
     of_joint = pairs.joints
     lengths: Array = np.bincount(of_joint, weights=pairs.weights).astype(float)
     share = pairs.weights / lengths[of_joint]
-    components = pairs.tangent, pairs.normal
-    rows = np.stack([np.stack(each.sides, axis=1) for each in components], axis=1)
+    rows = _rows_of(pairs)
     local = cut.local_stiffness[rows]
     whole = np.empty_like(local)
     squeezed = np.full(len(share), np.inf)
     for side in range(rows.shape[2]):
         bodies = [cut.structure.joints[number].sides[side][0] for number in numbers]
-        on_support = rows.shape[2] == 1
-        of_joints, across = _whole_joints(cut, bodies, lengths, on_support)
+        of_joints, across = _whole_joints(
+            cut, bodies, lengths, on_support=rows.shape[2] == 1
+        )
         along = of_joints[of_joint] * share
         # Across beams k is at least that along them, as their tension presses them.
         tension = np.maximum(local[:, 1, side], np.sqrt(along * local[:, 0, side]))
@@ -86,13 +85,20 @@ def _stiffness_beside(
     return NodalStiffness(whole, local, squeezed)
 
 
+def _rows_of(pairs: JointPairs) -> Indices:
+    """Boundary rows of pairs, (n_pairs, 2, n_sides): tangential ones, then normal."""
+    assert pairs.normal is not None
+    components = pairs.tangent, pairs.normal
+    return np.stack([np.stack(each.sides, axis=1) for each in components], axis=1)
+
+
 def _is_mesh(cut: CutBodies, bodies: Sequence[int]) -> Flags:
     """Check which bodies, by number, are meshes, (n,)."""
     return np.array([cut.is_mesh(number) for number in bodies])
 
 
 def _whole_joints(
-    cut: CutBodies, bodies: Sequence[int], lengths: Array, on_support: bool
+    cut: CutBodies, bodies: Sequence[int], lengths: Array, *, on_support: bool
 ) -> tuple[Array, Array]:
     """Stiffness of bodies on a side of whole joints: as a whole, and squeezed.
 

@@ -216,7 +216,6 @@ class CutRods:
         stiffness = self._stiffness(rods)
         free_force = _free_force(rods, stiffness)
         inner_force = self._inner_force(rods, free_force)
-        first_dof = int(self._dofs_at[:rod].sum())
         first = 0
         for number, size in enumerate(self._sizes):
             piece = _Piece(number, first, size)
@@ -224,29 +223,45 @@ class CutRods:
             springs = piece.springs(rods)
             # A node of a break, or one that does not rub, has no row.
             is_row = rows != NO_ROW
-            unit = self._scales.force / self._scales.displacement
-            key = (
-                "rod",
-                is_row.tobytes(),
-                stiffness[piece.elements].tobytes(),
-                (rods.length / self._scales.displacement, rods.elements),
-                tuple((node, end.spring / unit) for node, end in springs.items()),
-            )
+            key = self._key(rods, piece, stiffness, springs, is_row)
             if key not in shared:
                 make = partial(self._operator, rods, piece, stiffness, springs, is_row)
                 shared[key] = KEPT.of(key, make)
-            first_of_piece = first_dof + first + int(self._beyond[rod, number])
             pushing = None
             if free_force is not None:
                 pushing = free_force[piece.elements]
             yield Substructure(
                 elasticity=shared[key],
-                dofs=np.arange(first_of_piece, first_of_piece + size + 1),
+                dofs=self._dofs_of(rod, piece),
                 rows=rows[is_row],
                 body_force=self._body_force(rods, piece, springs, inner_force),
                 free_force=pushing,
             )
             first += size
+
+    def _dofs_of(self, rod: int, piece: _Piece) -> Indices:
+        """Degrees of freedom of the nodes of a piece of a rod, (n_nodes,)."""
+        before = int(self._dofs_at[:rod].sum()) + int(self._beyond[rod, piece.number])
+        first = before + piece.first
+        return np.arange(first, first + piece.size + 1)
+
+    def _key(
+        self,
+        rods: Rods,
+        piece: _Piece,
+        stiffness: Array,
+        springs: Mapping[int, End],
+        is_row: NDArray[np.bool_],
+    ) -> tuple[object, ...]:
+        """Data on which the operator of a piece depends; arguments as `_operator`."""
+        unit = self._scales.force / self._scales.displacement
+        return (
+            "rod",
+            is_row.tobytes(),
+            stiffness[piece.elements].tobytes(),
+            (rods.length / self._scales.displacement, rods.elements),
+            tuple((node, end.spring / unit) for node, end in springs.items()),
+        )
 
     def _rows(self, rod: int, piece: _Piece) -> Indices:
         """Boundary rows of a piece, or NO_ROW, (n,): of contacts, then of both ends."""

@@ -118,7 +118,10 @@ class VoussoirArch:
         return np.asarray(own + self.fill * columns)
 
     def _columns(self, angles: Array) -> Array:
-        """Area of columns on the outer side from the angle 0, and its moment."""
+        """Area of columns from the angle 0 to others, and its moment, (2, n_angles).
+
+        They stand on the outer side; the moment is about the centre of the half.
+        """
         _, outer = self.radii
         sine = np.sin(angles)
         cosine = np.cos(angles)

@@ -165,7 +165,7 @@ class Band(Bodies):
         return Probe(dofs, np.concatenate([x.weights, y.weights]))
 
     def _reaction(self, problem: Problem) -> Callable[[LoopFields], Array]:
-        """Tension that moves the last end, N."""
+        """Tension that moves the last end, a function that gives (n_instants,), N."""
         x, y = [reaction(problem, f"{PULL} {name}", axis) for axis, name in _AXES]
         by_x, by_y = self.guide.outwards[1]
         x = x.times(by_x)

@@ -174,7 +174,7 @@ class NamedMesh:
 
     @cached_property
     def groups(self) -> dict[tuple[str, tuple[int, ...]], Array]:
-        """Edges with a name, by the name and the bodies that have them."""
+        """Edges with a name, (n, 2), by the name and the bodies that have them."""
         groups: dict[tuple[str, tuple[int, ...]], list[tuple[int, int]]] = {}
         for name, ends in self.lines.items():
             for low, high in np.sort(self.places[ends], axis=1).tolist():

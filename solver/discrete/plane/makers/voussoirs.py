@@ -288,10 +288,10 @@ class Ring:
         return np.asarray(turned + self.origins[:, None])
 
     def under_fill(self, top: float) -> Array:
-        """Volumes of columns from the outer side up to a height.
+        """Shares of nodes in columns from the outer side up, (voussoirs, n_nodes).
 
-        Their shares of each node, (voussoirs, n_nodes), m^3 for a metre of thickness.
-        The height is above the centres, m.
+        They are volumes, m^3 for a metre of thickness; the top of the columns is a
+        height above the centres, m.
         """
         points = self.backs
         widths = np.diff(points[:, ::2, 0], axis=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from operator import itemgetter
 
 import numpy as np
@@ -120,10 +121,20 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
         else:
             pushed = np.abs(x)
         losses.append((pushed > friction + slack, "friction cannot hold it"))
+    return _first_of(losses, stack.instants)
+
+
+def _first_of(
+    losses: Iterable[tuple[NDArray[np.bool_], str]], instants: Array
+) -> tuple[float, str] | None:
+    """Time, s, and reason of the first of losses; of equal times the first reason.
+
+    A loss is at which instants it is so, (n_instants,), and its reason.
+    """
     first = list[tuple[float, str]]()
     for is_lost, reason in losses:
         if is_lost.any():
-            first.append((float(stack.instants[np.argmax(is_lost)]), reason))
+            first.append((float(instants[np.argmax(is_lost)]), reason))
     return min(first, key=itemgetter(0), default=None)
 
 

@@ -171,9 +171,10 @@ def loop_of_end(end: Side, count: int, height: float) -> MomentLoop | Deflection
 def _force_on(
     problem: Problem, side: str, component: int, given: Given, length: float
 ) -> Callable[[LoopFields], Array]:
-    """Force on a side of that length, m: its reaction, or the resultant of a traction.
+    """Force on a side of a length, m: its reaction, or the resultant of a traction.
 
-    `given` is what is given along the component, 0 along x and 1 along y.
+    It is over time, shape (n_instants,), N, for a metre of thickness. `given` is what
+    is given along the component, 0 along x and 1 along y.
     """
     if given.prescribed:
         return reaction(problem, side, component).of
