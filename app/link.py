@@ -25,8 +25,9 @@ from app.state import PageState, default_settings
 from solver.files.saved import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import SettingGroup, checked_value, parse, title_of
+from solver.settings.definitions import SettingGroup, title_of
 from solver.settings.scene import Settings
+from solver.settings.values import checked_value, parse
 
 ALIKE = 0.6
 """Likeness of a name to the one that it is taken for, at least."""

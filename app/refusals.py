@@ -7,8 +7,9 @@ from typing import Any
 
 from app.units import Unit, number, unit_of, units_of_points
 from solver.refusal import RefusedError
-from solver.settings.definitions import CurveParameter, about, allowed, title_of
+from solver.settings.definitions import CurveParameter, about, title_of
 from solver.settings.scene import Settings
+from solver.settings.values import allowed
 
 EXACT = 10
 """Digits of a refused value: it differs from the end of a range even close to it."""

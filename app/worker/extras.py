@@ -24,8 +24,8 @@ from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import SlipSpace, room_of_two, slip_space
-from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import (

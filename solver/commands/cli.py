@@ -39,8 +39,9 @@ from solver.reference.distance import distance_to, held_instants
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError, about, allowed
+from solver.settings.definitions import about
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError, allowed
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import (
     FinishedRun,

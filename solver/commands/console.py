@@ -22,8 +22,8 @@ from solver.files.tables import Table, read_table
 from solver.latin.end.cost import run_cost
 from solver.scenes.method import method_of
 from solver.scenes.remarks import remarks_before
-from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.page import NO_CHARTS, renderer
 
 INTERRUPTED = 130

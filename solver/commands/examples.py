@@ -10,7 +10,7 @@ from typing import Any
 import solver
 from solver.commands.console import add_command, refusing
 from solver.files.disk import write
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 SCRIPTS = Path(solver.__path__[0]) / "examples"
 

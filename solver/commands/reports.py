@@ -21,7 +21,7 @@ from solver.commands.console import (
 )
 from solver.files.disk import write
 from solver.files.saved import scene_settings, settings_from_command
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study import proof
 from solver.study import stability_report as stability
 from solver.study import study_report as study

@@ -25,8 +25,9 @@ from solver.discrete import Problem
 from solver.latin import Ending, Solution, solve
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError, about
+from solver.settings.definitions import about
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.compared_runs import ComparedRun
 from solver.study.comparison import CAN, FEWEST, Comparison, OtherResults
 from solver.study.fit import MOST, fit

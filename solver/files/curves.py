@@ -14,8 +14,9 @@ from solver.files.disk import read_bytes
 from solver.files.tables import Table, read_table
 from solver.files.units import unit_doubt
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import CurveParameter, SettingError, allowed
+from solver.settings.definitions import CurveParameter
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError, allowed
 
 
 def _names_of_curves() -> set[str]:

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 Refuse = Callable[[str], SettingError]
 """Function from a remedy to a refusal."""

@@ -10,8 +10,9 @@ from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.disk import read_bytes
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import HEAD, as_text, read_mesh
-from solver.settings.definitions import SettingError, TextParameter, allowed
+from solver.settings.definitions import TextParameter
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError, allowed
 
 MESHES = ".msh"
 """Files of meshes that a page opens: those of Gmsh name no other files."""

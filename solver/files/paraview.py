@@ -21,7 +21,7 @@ from solver.arrays import Array, Indices
 from solver.discrete.inside import Inside
 from solver.files.disk import Refuse, whole_file
 from solver.latin import Iterate
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 if TYPE_CHECKING:
     import meshio

@@ -21,8 +21,8 @@ from solver.latin import Answer, Iterate, Solution
 from solver.reference.distance import determinate_forces, held_instants
 from solver.scenes import CATALOGUE
 from solver.scenes.remarks import remarks_on
-from solver.settings.definitions import SettingError, parse
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError, parse
 
 WORDS = {
     str: "text",

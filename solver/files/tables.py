@@ -75,7 +75,7 @@ from solver.files.table_blocks import Block, block_of, fitted, headed
 from solver.files.table_lines import Line, lines_of_text
 from solver.files.units import examples_of, size_in
 from solver.files.workbooks import is_archive, lines_of_workbook
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 STANDS_IN = {"displacement": "position"}
 """Quantities that may stand in for others that no column names."""

@@ -26,18 +26,11 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
 from solver.scenes.plane import RectangleSettings
-from solver.settings.definitions import (
-    BODY,
-    CONTACT,
-    LOAD,
-    POSITIVE,
-    SettingError,
-    about,
-    redefined,
-)
+from solver.settings.definitions import BODY, CONTACT, LOAD, POSITIVE, about, redefined
 from solver.settings.load_paths import INJECTIONS, instants_of
 from solver.settings.profiles import Profile
 from solver.settings.scene import Icon
+from solver.settings.values import SettingError
 
 PROFILES = {
     "uniform": Profile("1 all along", ((0.0, 1.0), (1.0, 1.0))),

@@ -19,16 +19,10 @@ from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import from_text, read_example
 from solver.scenes.named_sides import ALLOWED, MeshSides, deeds_of, taken_apart
 from solver.scenes.plane import PlaneSettings, RectangleSettings
-from solver.settings.definitions import (
-    BODY,
-    LOAD,
-    Rows,
-    SettingError,
-    TablePreset,
-    redefined,
-)
+from solver.settings.definitions import BODY, LOAD, Rows, TablePreset, redefined
 from solver.settings.load_paths import PRESETS, PRESSURES
 from solver.settings.scene import Icon
+from solver.settings.values import SettingError
 
 EXAMPLES = {
     "bolted": "a plate between two covers that a bolt presses together, moved along",

@@ -8,15 +8,8 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.settings.definitions import (
-    DECOMPOSITION,
-    METHOD,
-    SettingError,
-    SettingGroup,
-    about,
-    checked_value,
-    unknown,
-)
+from solver.settings.definitions import DECOMPOSITION, METHOD, SettingGroup, about
+from solver.settings.values import SettingError, checked_value, unknown
 
 STOP = SettingGroup("Stop")
 

@@ -18,8 +18,9 @@ from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
 from solver.reference.closed_forms import ExactCurve
-from solver.settings.definitions import SettingError, about
+from solver.settings.definitions import about
 from solver.settings.load import LoadSettings
+from solver.settings.values import SettingError
 
 LARGEST_FIELD = 25_000_000
 """Largest number of nodes times instants; a run keeps about ten fields over them."""

@@ -16,8 +16,9 @@ from solver.latin import Ending
 from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.settings.definitions import SettingError, about, is_logarithmic
+from solver.settings.definitions import about, is_logarithmic
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
 from solver.study.quantities.finished import FinishedRun, finished_run
 

@@ -28,8 +28,8 @@ import numpy as np
 from scipy.linalg import null_space, qr
 
 from solver.arrays import Array, Flags
-from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.compared_runs import ComparedRun, ComparedRuns, fittable
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.valley import (

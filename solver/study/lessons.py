@@ -24,8 +24,8 @@ from solver.files.saved import (
     scene_settings,
 )
 from solver.refusal import is_number
-from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.quantities import reading
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantity import Quantity

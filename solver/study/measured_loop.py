@@ -33,7 +33,7 @@ from solver.discrete.structure import Axes, Loop
 from solver.files.columns import KINDS, TableColumn
 from solver.files.tables import Table
 from solver.files.units import unit_doubt
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.comparison import FEWEST, in_si
 from solver.study.quantities.cycles import SMALLEST_SWING, turning_points
 

@@ -34,8 +34,8 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
 """Errors of the friction force in the table of times, by their titles."""

@@ -20,12 +20,12 @@ from solver.arrays import Array
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import (
     CurveParameter,
-    SettingError,
     TextParameter,
     about,
     is_logarithmic,
 )
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.random_loads import OFTEN_LOADS, SELDOM, log_uniform, random_loads
 from solver.study.stability import NOT_WRONG, StabilityCase
 

@@ -19,8 +19,9 @@ from solver.files.saved import (
     require,
     scene_settings,
 )
-from solver.settings.definitions import SettingError, about
+from solver.settings.definitions import about
 from solver.settings.scene import Icon, Settings
+from solver.settings.values import SettingError
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 

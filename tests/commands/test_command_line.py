@@ -18,14 +18,9 @@ from solver.commands.cli import main
 from solver.files.saved import settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.settings.definitions import (
-    CurveParameter,
-    SettingError,
-    about,
-    allowed,
-    help_of,
-)
+from solver.settings.definitions import CurveParameter, about, help_of
 from solver.settings.load_paths import DECAY, PRESETS, PULLS
+from solver.settings.values import SettingError, allowed
 
 ROOT = Path(__file__).resolve().parents[2]
 PAPER = ["--set", "method=paper"]

@@ -19,7 +19,7 @@ from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 PRESSURE = 1e6
 SHEAR = 4e5

@@ -17,7 +17,7 @@ from solver import discrete
 from solver.commands.cli import main
 from solver.files.tables import Table, read_table
 from solver.scenes import CATALOGUE, discretise
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.measured_loop import CAN, MeasuredLoop, loop_in
 from solver.study.table_use import Use, use_of
 

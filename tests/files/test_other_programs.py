@@ -17,8 +17,8 @@ from solver.reference.distance import determinate_forces
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
-from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.comparison import CAN, Comparison, OtherResults, results_in
 
 HEAD = "x,t,friction force\n"

@@ -22,7 +22,7 @@ from solver.files.table_blocks import block_of, fitted, headed
 from solver.files.table_lines import lines_of_text, text_of
 from solver.files.units import SPELLINGS, examples_of, parse_unit, size_in, unit_doubt
 from solver.files.workbooks import UNPACKED, is_archive, lines_of_workbook
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 ANY = settings(max_examples=60)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)

@@ -19,7 +19,7 @@ from solver.files.curves import curve_of
 from solver.files.saved import settings_from_command, settings_from_toml
 from solver.files.tables import read_table
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 TIMES = {"s": 1.0, "SEC": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 POUND = 4.4482216152605

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 
 def refusal(action):

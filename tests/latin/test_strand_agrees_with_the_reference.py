@@ -13,7 +13,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 FAST = {"finish": "none"}

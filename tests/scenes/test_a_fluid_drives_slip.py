@@ -28,7 +28,7 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.fault import FaultSettings
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
 

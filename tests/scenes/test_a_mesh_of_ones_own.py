@@ -17,7 +17,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.mesh_files import as_text, from_text, named, read_example
 from solver.scenes.named_sides import deeds_of
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 MESH = CATALOGUE["mesh"]
 FIELDS = {

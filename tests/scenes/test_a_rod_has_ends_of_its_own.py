@@ -13,7 +13,7 @@ from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES
 from solver.study.quantities.finished import finished_run
 

@@ -16,7 +16,7 @@ from solver.reference.incremental import reference_of
 from solver.reference.newton import FEWEST_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import FinishedRun
 

@@ -14,7 +14,7 @@ from runs import solved
 
 from solver.laws import Component, Contact, Unilateral
 from solver.scenes.incline import InclineSettings
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 SMALL = {"elements": 12, "elements_up": 6, "instants": 41}
 

@@ -13,7 +13,7 @@ from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.trade_case import all_cases
 
 BRICK = 2e4 * 0.25 * 0.12

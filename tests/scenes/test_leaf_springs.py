@@ -24,7 +24,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 LENGTH = 0.5
 HEIGHT = 0.01

@@ -22,7 +22,7 @@ from solver.reference.linear_system import LinearSystem
 from solver.reference.newton import SINGULAR_STEPS, Newton
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.quantities.finished import known_reference
 
 TIMES = np.linspace(0.0, 1.0, 21)

@@ -14,8 +14,8 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.settings.definitions import SettingError
 from solver.settings.load import EVERY_POINT, THINNED
+from solver.settings.values import SettingError
 
 SPIKE = [[0.0, 0.0], [0.5, 0.0], [0.503, 1200.0], [0.506, 0.0], [1.0, 0.0]]
 SCENES_AND_PATHS: list[tuple[str, str]] = []

@@ -11,7 +11,7 @@ from solver.commands.cli import main
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 PRESSED = {"top": "traction", "top_normal_traction": -7e7}
 SMALL = {"elements": 8, "elements_up": 4, "instants": 11}

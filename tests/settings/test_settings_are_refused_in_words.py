@@ -13,7 +13,8 @@ from app.link import query_of, read
 from app.state import default_settings
 from solver.files.saved import settings_from_command, settings_from_toml
 from solver.scenes.bar import BarSettings
-from solver.settings.definitions import GONE, CurveParameter, allowed
+from solver.settings.definitions import CurveParameter
+from solver.settings.values import GONE, allowed
 
 DEFINITIONS = BarSettings.definitions()
 BAD_TABLES = [

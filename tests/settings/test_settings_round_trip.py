@@ -8,7 +8,7 @@ from app.link import query_of, read
 from solver.files.saved import dump, settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.settings.definitions import allowed, parse
+from solver.settings.values import allowed, parse
 from solver.study.random_runs import draw
 
 

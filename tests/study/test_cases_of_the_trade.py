@@ -10,7 +10,7 @@ import pytest
 
 from solver.commands.cli import main
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study import proof
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run

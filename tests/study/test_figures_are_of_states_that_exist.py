@@ -21,7 +21,7 @@ from app.worker.sampling import Sampler
 from solver.commands.cli import main
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import FinishedRun, figures_of, finished_run
 

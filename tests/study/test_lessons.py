@@ -13,7 +13,7 @@ import pytest
 from app.views.catalogue import CARDS
 from solver.commands.cli import main
 from solver.scenes import discretise
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.lessons import Lesson, check, lesson_from_file
 
 FOLDER = Path(__file__).resolve().parents[2] / "app" / "lessons"

@@ -13,8 +13,8 @@ from small_scenes import SMALL as SMALL_SCENES
 from solver.commands.cli import main
 from solver.files.saved import scene_settings, settings_from_toml
 from solver.files.tables import read_table
-from solver.settings.definitions import SettingError
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
 from solver.study.fit import fit
 from solver.study.fit_report import messages
 from solver.study.measured_loop import (

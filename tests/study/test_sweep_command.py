@@ -17,7 +17,7 @@ from sweeps import TINY, Here, rows_of, tiny
 from solver.commands import reports as report_commands
 from solver.commands.cli import main
 from solver.scenes.bar import BarSettings
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.page import Map
 from solver.study.sweep.plan import Row, axis_of, plan_of
 from solver.study.sweep.report import chart_of, write_sweep

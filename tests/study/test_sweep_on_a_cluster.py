@@ -19,7 +19,7 @@ from processes import PATIENCE, wait_for
 from sweeps import rows_in_table, rows_of, sweep_of_bars, tiny
 
 from solver.commands.cli import main
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.sweep.executors import opened
 from solver.study.sweep.run import sweep, versions
 

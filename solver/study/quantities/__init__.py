@@ -16,7 +16,7 @@ import solver.study.quantities.cycle_measures as cyclic
 import solver.study.quantities.holding_measures as holding
 import solver.study.quantities.reduction_measures as reductions
 import solver.study.quantities.run_measures as runs
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.quantities.quantity import Parameter, Quantity, by_name
 
 QUANTITIES = by_name(

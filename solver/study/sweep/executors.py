@@ -26,7 +26,7 @@ import numpy as np
 import scipy
 from threadpoolctl import threadpool_limits
 
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 
 LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 """Variables that `python -m solver` sets to 1 before it imports NumPy.

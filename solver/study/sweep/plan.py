@@ -14,17 +14,9 @@ import param
 
 from solver.arrays import Array
 from solver.latin import Ending
-from solver.settings.definitions import (
-    Parameter,
-    SettingError,
-    about,
-    allowed,
-    checked_value,
-    parse,
-    title_of,
-    unknown,
-)
+from solver.settings.definitions import Parameter, about, title_of
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError, allowed, checked_value, parse, unknown
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 

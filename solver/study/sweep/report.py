@@ -14,7 +14,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.files.saved import dump
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.page import (
     Chart,
     Map,

@@ -27,7 +27,7 @@ from solver.latin import Ending
 from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.settings.definitions import SettingError
+from solver.settings.values import SettingError
 from solver.study.quantities.finished import (
     BROKEN,
     REFUSED,

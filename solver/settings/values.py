@@ -1,0 +1,228 @@
+"""Values of settings: what is allowed, checks, refusals in words, reading from text."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from textwrap import shorten
+from typing import Any
+
+import param
+
+from solver.refusal import RefusedError, is_number, plain
+from solver.settings.definitions import (
+    CurveParameter,
+    Parameter,
+    Rows,
+    TextParameter,
+    about,
+    title_of,
+)
+
+FAR = 1e6
+"""Bound from which on a message calls a range unlimited: no problem has such values."""
+GONE = {
+    "interpolation": "paths are linear between their points",
+    "k_friction_scale": "k_scale is for all interfaces",
+    "k_normal_scale": "k_scale is for all interfaces",
+}
+"""Settings of early versions that exist no more, with the reason."""
+NEAREST = 3
+"""Largest number of settings that the refusal of an unknown name proposes."""
+ALIKE = 0.5
+"""Smallest likeness of a setting that the refusal of an unknown name proposes."""
+MEANING = 70
+"""Largest number of characters of the meaning of a proposed setting."""
+
+
+class SettingError(RefusedError):
+    """A refused setting."""
+
+
+def allowed(definition: Parameter) -> str:
+    """Words on the values that a setting takes."""
+    if isinstance(definition, CurveParameter):
+        return f"{', '.join(definition.presets)}, or {_allowed_rows(definition)}"
+    if isinstance(definition, TextParameter):
+        return ", ".join([*definition.presets, f"or {definition.others}"])
+    if isinstance(definition, param.Boolean):
+        return "true or false"
+    if isinstance(definition, param.Selector):
+        return ", ".join(definition.objects)
+    return _allowed_numbers(definition)
+
+
+def _allowed_rows(definition: CurveParameter) -> str:
+    """Words on the rows of a table."""
+    if definition.is_path:
+        return f"pairs [[{', '.join(definition.columns)}], ...]"
+    heads = []
+    for column, unit in zip(definition.columns, definition.units, strict=True):
+        if unit:
+            heads.append(f"{column} in {unit}")
+        else:
+            heads.append(column)
+    return f"rows [[{', '.join(heads)}], ...]"
+
+
+def _allowed_numbers(definition: Any) -> str:
+    """Words on the range of a number."""
+    low, high = definition.bounds
+    unit = about(definition).unit
+    minimum = f"{plain(low)} {unit}".strip()
+    maximum = f"{plain(high)} {unit}".strip()
+    if isinstance(definition, param.Integer):
+        return f"a whole number from {minimum} to {maximum}"
+    if high < FAR:
+        return f"a number from {minimum} to {maximum}"
+    if low < 0.0:
+        return f"any number (at most {maximum} in size)"
+    if low > 0.0:
+        return f"any number above 0 (from {minimum} to {maximum})"
+    return f"any number from 0 on (to {maximum})"
+
+
+def unknown(
+    name: str, value: object, scene: str, known: Mapping[str, Parameter]
+) -> SettingError:
+    """Refusal of an unknown name, with settings of similar names and their meaning."""
+    can = f"a setting of {scene}"
+    if name in GONE:
+        return SettingError(name, value, can, f"it is gone: {GONE[name]}; leave it out")
+    likeness = {other: _likeness(name, other, known[other]) for other in known}
+    near = [other for other in likeness if likeness[other] >= ALIKE]
+    near.sort(key=lambda other: -likeness[other])
+    remedy = "correct the name or leave it out"
+    if near:
+        proposals = [f"{other} ({_meaning(known[other])})" for other in near[:NEAREST]]
+        remedy = f"did you mean {', or '.join(proposals)}?"
+    return SettingError(name, value, can, f"there is no such setting, {remedy}")
+
+
+def _likeness(name: str, other: str, definition: Parameter) -> float:
+    """Likeness of a name to a setting in spelling, in words, and in its meaning."""
+    spelling = difflib.SequenceMatcher(None, name.lower(), other).ratio()
+    words = set(name.lower().split("_"))
+    # People mistype a name, turn its words round, or call a setting by its meaning.
+    in_name = words & set(other.split("_"))
+    meaning = f"{title_of(definition)} {_meaning(definition)}".lower()
+    in_meaning = words & set(re.findall(r"\w+", meaning))
+    return spelling + (0.4 * len(in_name) + 0.5 * len(in_meaning)) / len(words)
+
+
+def _meaning(definition: Parameter) -> str:
+    """First clause of the help of a setting, or the names of its choices."""
+    if isinstance(definition, param.Selector):
+        return f"one of {allowed(definition)}"
+    clause = re.split(r"[.:;,]", definition.doc or "", maxsplit=1)[0]
+    return shorten(clause, MEANING, placeholder="...")
+
+
+def checked_value(definition: Parameter, name: str, value: object) -> Any:
+    """Value of a setting in its own type; refuse a wrong type or range."""
+    if isinstance(definition, CurveParameter):
+        return _checked_curve(definition, name, value)
+    refuse = _refusing(definition, name, value)
+    if isinstance(definition, param.Boolean):
+        if not isinstance(value, bool):
+            raise refuse("write true or false")
+        return value
+    if isinstance(definition, param.Selector):
+        if value not in definition.objects:
+            if len(definition.objects) == 1:
+                raise refuse("this scene has no other")
+            raise refuse("choose one of these")
+        return value
+    if isinstance(definition, TextParameter):
+        if not isinstance(value, str):
+            raise refuse("write a text")
+        return value
+    if not is_number(value):
+        raise refuse("write a number")
+    low, high = definition.bounds
+    if not low <= value <= high:
+        raise refuse("choose a value inside this range")
+    if not isinstance(definition, param.Integer):
+        return float(value)
+    if value != int(value):
+        raise refuse("write a whole number")
+    return int(value)
+
+
+Refuse = Callable[[str], SettingError]
+"""Refusal of a value, made from the remedy."""
+
+
+def _refusing(definition: Parameter, name: str, value: object) -> Refuse:
+    """Make the function from a remedy to the refusal of a value."""
+    return lambda remedy: SettingError(name, value, allowed(definition), remedy)
+
+
+def _checked_curve(definition: CurveParameter, name: str, value: object) -> str | Rows:
+    """Preset, or rows of numbers; refuse others."""
+    if isinstance(value, str) and value in definition.presets:
+        return value
+    refuse = _refusing(definition, name, value)
+    if isinstance(value, str):
+        raise refuse("choose a preset, or give a table of points")
+    if not isinstance(value, list | tuple) or not value:
+        raise refuse(f"give at least one {'pair' if definition.is_path else 'row'}")
+    rows: list[tuple[float, ...]] = []
+    # Row by row, so that a refusal names the first that is wrong.
+    for number in range(1, len(value) + 1):
+        rows.append(_checked_row(definition, name, value, number))
+        if definition.is_path and number > 1 and rows[-1][0] <= rows[-2][0]:
+            raise refuse(
+                f"row {number}: {definition.abscissa} must increase from row to row"
+            )
+    return tuple(rows)
+
+
+def _checked_row(
+    definition: CurveParameter, name: str, value: Sequence[Any], number: int
+) -> tuple[float, ...]:
+    """Numbers of a row of a table, by the row's number from 1 on; refuse others."""
+    refuse = _refusing(definition, name, value)
+    row = value[number - 1]
+    n_columns = len(definition.columns)
+    if not isinstance(row, list | tuple) or len(row) != n_columns:
+        # Most curves have two columns, which people call a pair.
+        expected = f"{n_columns} numbers"
+        if definition.is_path:
+            expected = "a pair of numbers"
+        raise refuse(f"row {number} must be {expected}")
+    if not all(is_number(entry) for entry in row):
+        raise refuse(f"row {number} has an entry that is not a number")
+    for index, entry in enumerate(row):
+        column = definition.columns[index]
+        unit = definition.units[index]
+        low, high = definition.bounds[index]
+        if entry < low == 0.0:
+            can = f"{column}s of at least 0 {unit}".rstrip()
+            raise SettingError(name, value, can, f"raise the negative {column}")
+        is_counted = isinstance(low, int)
+        if not low <= entry <= high or (is_counted and entry != int(entry)):
+            kind = "a number"
+            if is_counted:
+                kind = "a whole number"
+            minimum = f"{plain(low)} {unit}".strip()
+            maximum = f"{plain(high)} {unit}".strip()
+            raise refuse(
+                f"row {number}: {column} is {plain(entry)}, give {kind} "
+                f"from {minimum} to {maximum}"
+            )
+    return tuple(float(entry) for entry in row)
+
+
+def parse(text: str) -> object:
+    """Value of a setting from text, as typed on a command line or in an address."""
+    try:
+        table: dict[str, object] = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        # It is no TOML, has digits beyond Python's limit, or is nested too deeply.
+        return text
+    if len(table) == 1:
+        return table["value"]
+    return text
