@@ -79,18 +79,25 @@ def pressed_patch(mesh: Mesh, angle: float, cuts: int, state: str) -> Bodies:
         body = Body(name, mesh, 1e9, 0.3, origin, angle, substructures=cuts)
         far = chains[("bottom", "top")[number]]
         rim = np.unique(np.concatenate([far, chains["left"], chains["right"]]))
-        wanted = body.nodes[rim] @ gradient.T
-        for axis in (0, 1):
-            motion = np.outer(wanted[:, axis], TIME)
-            held.append(Held(f"{name} {axis}", number, rim, axis, motion))
+        held += held_by(gradient, body, number, rim)
         bodies.append(body)
     normals = np.tile(turn @ [0.0, 1.0], (len(chains["top"]), 1))
     bed = Joint("bed", 1, chains["bottom"], 0, chains["top"], normals, friction=0.9)
     return Bodies(bodies, [bed], held, [], TIME, 1.0, state=state)
 
 
+def held_by(gradient: Array, body: Body, number: int, nodes: Indices) -> list[Held]:
+    """Holds of nodes, (n,), of a body that move with a gradient, (2, 2)."""
+    wanted = body.nodes[nodes] @ gradient.T
+    held = []
+    for axis in (0, 1):
+        motion = np.outer(wanted[:, axis], TIME)
+        held.append(Held(f"{body.name} {axis}", number, nodes, axis, motion))
+    return held
+
+
 def uniform_stress(state: str) -> Array:
-    """Stresses xx, yy, xy under `GRADIENT`, Pa."""
+    """Stresses xx, yy, xy under `GRADIENT`, (3,), Pa."""
     xx, yy = np.diag(GRADIENT)
     shear = 1e9 / 2.6 * (GRADIENT[0, 1] + GRADIENT[1, 0])
     poisson = 0.3
@@ -230,19 +237,24 @@ def test_weight_on_the_ground_is_carried_by_it() -> None:
     assert displacement[-1] < 0.0
 
 
-def test_a_cantilever_of_beams_bends_as_it_should_and_its_clamp_holds_it() -> None:
+def cantilever(cuts: int) -> Bodies:
+    """An upright line of beams, 2 m long, clamped below and pulled by 1 kN above."""
     x = np.linspace(0.0, 2.0, 9)
     line = Beam(np.stack([x, 0.0 * x], axis=1), 1e-2, 1e-5)
+    body = Body("beam", line, 2e11, angle=0.5 * np.pi, substructures=cuts)
+    clamp = np.array([0])
+    held = [Held(name, 0, clamp, axis, STILL) for axis, name in enumerate("xyz")]
+    tip = np.array([[[0.0, 1e3], [0.0, 0.0]]])
+    loads = [Load("tip", 0, np.array([8]), tip)]
+    # A wall far away, as only problems with a contact have a reference.
+    along = np.tile([1.0, 0.0], (9, 1))
+    wall = Joint("wall", 0, np.arange(9), None, None, along, gap=1.0)
+    return Bodies([body], [wall], held, loads, TIME, 1.0, shown="tip")
+
+
+def test_a_cantilever_of_beams_bends_as_it_should_and_its_clamp_holds_it() -> None:
     for cuts in (1, 4):
-        body = Body("beam", line, 2e11, angle=0.5 * np.pi, substructures=cuts)
-        clamp = np.array([0])
-        held = [Held(name, 0, clamp, axis, STILL) for axis, name in enumerate("xyz")]
-        tip = np.array([[[0.0, 1e3], [0.0, 0.0]]])
-        loads = [Load("tip", 0, np.array([8]), tip)]
-        # Far away, as references are of contacts alone.
-        along = np.tile([1.0, 0.0], (9, 1))
-        wall = Joint("wall", 0, np.arange(9), None, None, along, gap=1.0)
-        structure = Bodies([body], [wall], held, loads, TIME, 1.0, shown="tip")
+        structure = cantilever(cuts)
         problem = discretise(structure)
         reference = reference_of(problem)
         displacement, force = structure.loop(problem).along(reference)

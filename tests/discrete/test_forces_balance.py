@@ -17,7 +17,7 @@ from ropes import SMALL_ROPE
 from small_scenes import SMALL
 
 from solver import discrete
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 from solver.discrete import Given, Side, Stack, Support
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
@@ -80,7 +80,6 @@ def on_supports(
 
     And their moments about the origin.
     """
-    assert problem.inside is not None
     x = []
     y = []
     moments = []
@@ -89,22 +88,35 @@ def on_supports(
             continue
         contact = fields.contact(name)
         _, pairs = np.unique(law.points, return_index=True)
-        of_normal = contact.normal_force
         if law.is_spring:
-            assert of_normal is not None
-            x.append(of_normal.sum(axis=0))
+            assert contact.normal_force is not None
+            x.append(contact.normal_force.sum(axis=0))
             continue
         forces = [(law.tangent, contact.tangential_force)]
-        if of_normal is not None and law.normal is not None:
-            forces.append((law.normal.component, of_normal))
+        if contact.normal_force is not None and law.normal is not None:
+            forces.append((law.normal.component, contact.normal_force))
         for component, force in forces:
-            dofs = problem.row_dofs[component.above[pairs]]
-            across, up = problem.positions[dofs].T
-            along_x, along_y, _ = problem.inside.directions[dofs].T
-            x.append(along_x @ force)
-            y.append(along_y @ force)
-            moments.append((across * along_y - up * along_x) @ force)
+            rows = component.above[pairs]
+            along_x, along_y, moment = resultants(problem, rows, force)
+            x.append(along_x)
+            y.append(along_y)
+            moments.append(moment)
     return x, y, moments
+
+
+def resultants(
+    problem: Problem, rows: Indices, force: Array
+) -> tuple[Array, Array, Array]:
+    """Resultants, N, and moment about the origin, N m, (n_instants,) each.
+
+    Of forces, (n_rows, n_instants), N, on boundary rows, (n_rows,).
+    """
+    assert problem.inside is not None
+    dofs = problem.row_dofs[rows]
+    across, up = problem.positions[dofs].T
+    along_x, along_y, _ = problem.inside.directions[dofs].T
+    moment = (across * along_y - up * along_x) @ force
+    return along_x @ force, along_y @ force, moment
 
 
 def assert_bodies_balance(problem: Problem, fields: LoopFields) -> None:

@@ -114,13 +114,12 @@ def arch(
     top = sides(block, across, 3)["top"]
     joints = radial_joints(voussoirs, friction, sides(stone, across, 3), top)
     move = np.clip((t - 0.3) / 0.7, 0.0, 1.0) * spread
-    still = 0.0 * t
     foot = sides(block, across, 3)["bottom"]
     held = [
-        Held("left x", 0, foot, 0, still),
-        Held("left y", 0, foot, 1, still),
+        Held("left x", 0, foot, 0, 0.0 * t),
+        Held("left y", 0, foot, 1, 0.0 * t),
         Held("right x", voussoirs + 1, foot, 0, move),
-        Held("right y", voussoirs + 1, foot, 1, still),
+        Held("right y", voussoirs + 1, foot, 1, 0.0 * t),
     ]
     return Bodies(bodies, joints, held, (), t, 1.0, shown="right x")
 
@@ -156,7 +155,7 @@ def belt(
 
 
 def rotation(angle: float) -> NDArray[np.float64]:
-    """Matrix that turns vectors by an angle, rad."""
+    """Matrix that turns vectors by an angle, rad, (2, 2)."""
     c = np.cos(angle)
     s = np.sin(angle)
     return np.array([[c, -s], [s, c]])

@@ -13,7 +13,7 @@ SIZE = 30
 
 
 def parts(seed: int) -> tuple[Array, Indices, Indices, Indices]:
-    """A matrix of all rows; those of before, and of them removed and added ones."""
+    """A matrix of all rows, (n, n); rows of before, removed and added, (m,) each."""
     random = np.random.default_rng(seed)
     matrix = random.normal(size=(SIZE, SIZE)) + 4.0 * np.eye(SIZE)
     before = np.sort(random.choice(SIZE, 20, replace=False))
@@ -26,7 +26,7 @@ def parts(seed: int) -> tuple[Array, Indices, Indices, Indices]:
 def updated(
     matrix: Array, changed: Array, before: Indices, removed: Indices, added: Indices
 ) -> tuple[UpdatedFactors, Array]:
-    """Factors that are updated, and the matrix that they are of.
+    """Factors that are updated, and the matrix that they are of, (n_now, n_now).
 
     Rows that are removed and added are those of the changed matrix.
     """

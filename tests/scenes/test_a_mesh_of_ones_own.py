@@ -69,7 +69,7 @@ def text_of(mesh: meshio.Mesh, folder: Path, end: str = ".msh") -> str:
 
 
 def flat(z: float) -> Array:
-    """Points of two squares, of which one has another z."""
+    """Points of two squares, (n_points, 3), of which one has another z."""
     points = two_squares().points.copy()
     points[4, 2] = z
     return points

@@ -54,6 +54,16 @@ def carried(problem, answer, names="support and"):
     return np.sum(forces, axis=0)
 
 
+def friction_of_ground(problem, answer):
+    """Friction force of the ground, (n_instants,), N."""
+    forces = [
+        answer.contact(name).tangential_force.sum(axis=0)
+        for name in problem.rubbing
+        if "support" in name
+    ]
+    return np.sum(forces, axis=0)
+
+
 def test_a_brick_falls_with_the_ground_and_the_wall_bridges_it():
     """The reaction falls to the weight of the brick; sums stay the weight."""
     settings, problem, answer = made(**SETTLES)
@@ -135,11 +145,7 @@ def test_a_wall_slides_on_smooth_ground_before_it_slides_in_its_joints():
     """Friction of the ground is half of that of the joints, and carries no more."""
     low = SMALL | {"courses": 1, "bricks": 3, "friction": 0.6, "bond": "stack"}
     _, problem, answer = made(**low, ground_friction=0.5, displacement=1e-3)
-    rubbed = sum(
-        answer.contact(name).tangential_force.sum(axis=0)
-        for name in problem.rubbing
-        if "support" in name
-    )
+    rubbed = friction_of_ground(problem, answer)
     pressed = carried(problem, answer)
     peak = np.abs(rubbed).argmax()
     np.testing.assert_allclose(abs(rubbed[peak]), 0.3 * pressed[peak], rtol=1e-9)
@@ -165,11 +171,7 @@ def test_a_cap_stays_straight_and_a_guided_one_level(cap):
     else:
         assert turns < 1e-7
     _, force = settings.bodies.loop(problem).along(answer)
-    rubbed = sum(
-        answer.contact(name).tangential_force.sum(axis=0)
-        for name in problem.rubbing
-        if name.startswith("support")
-    )
+    rubbed = friction_of_ground(problem, answer)
     np.testing.assert_allclose(force, -rubbed, atol=1e-6 * np.abs(force).max())
 
 
