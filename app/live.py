@@ -143,7 +143,7 @@ class Live:
         ]
 
     def _view(self, kind: type[View]) -> View:
-        """The view of a kind: one, whatever card it is in."""
+        """The only view of a kind, whichever card shows it."""
         if kind not in self._known:
             self._known[kind] = kind(self.state)
         return self._known[kind]

@@ -24,7 +24,7 @@ NONE: Columns = {"x": [], "y": [], "text": [], "text_align": []}
 
 
 def hints_of(picture: Picture) -> Columns:
-    """Columns of the marks on a picture, whose driving load is the one that varies."""
+    """Columns of the marks on a picture; the load that varies most drives."""
     layout = picture.layout
     length, top = layout.size * layout.scale
     texts = [SOLVER]

@@ -172,7 +172,7 @@ def _slope(picture: Picture) -> Word:
     layout = picture.layout
     x = 0.5 * picture.description.length * layout.scale[0] + 30.0
     text = f"slope {number(float(np.degrees(picture.tilt)))}°"
-    # It stands upright beside what is tilted.
+    # The word is not turned with the bodies.
     anchor = np.array([x, -14.0]) + layout.origin
     return Word(text, anchor, "left", FORCE)
 

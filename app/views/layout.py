@@ -215,7 +215,7 @@ class Layout:
             elif is_aside(act):
                 yield act.side, beside(self.description, act.side) + 11.0
                 if act.outward is not None:
-                    # It may stand at an end of the side.
+                    # On bodies of any shape the arrow may stand at an end of the side.
                     for end in BESIDE:
                         yield end, self.arrow + 6.0
             else:

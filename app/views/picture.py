@@ -146,7 +146,7 @@ class Picture:
         low = edge[:, 1].min() - GROUND
         foot = np.array([[edge[-1, 0], low], [edge[0, 0], low]])
         if self._is_around and self.is_of_any_shape:
-            # It has no other side that is like the lower one: it is behind all bodies.
+            # Bodies of any shape have no upper side like the lower: it is behind all.
             edge = edge + np.array([0.0, self._top + GROUND])
         patch = np.concatenate([edge, foot])
         patches = [patch]
@@ -161,7 +161,7 @@ class Picture:
         """
         if not any(hold.kind == "image" for hold in self.description.holds):
             return np.zeros((0, 2))
-        # As far as there is room.
+        # The image goes down as far as the figure has room for it.
         y = np.maximum(-bodies[:, 1], -IMAGE)
         return np.stack([-bodies[:, 0], y], axis=1)
 
@@ -285,7 +285,7 @@ class Picture:
         chains = self._geometry.chains
         lines = bands(self.points, chains, status)
         if self._is_around and not self.is_of_any_shape:
-            # The other side of bodies that the ground is all around of.
+            # Ground all around straight bodies touches their upper side, too.
             for kind, line in lines.items():
                 other = [0.0, self._top] - [-1.0, 1.0] * line
                 lines[kind] = np.concatenate([line, other])

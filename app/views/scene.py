@@ -176,7 +176,7 @@ class Scene(View):
             if self.state.is_new:
                 hints = hints_of(picture)
             self.fill("hints", **hints)
-            # They stand where a narrow picture has its keys.
+            # Hints stand where a narrow picture has its keys.
             is_narrow = layout.width < NARROW
             self._keys.visible = not (is_narrow and self.state.is_new)
         # In the place of the ghost a structure that collapses shows its mechanism.

@@ -132,7 +132,7 @@ class View:
 
     @property
     def layout(self) -> Any:
-        """The figure, or a layout of it and of the one beside it, as a card has it."""
+        """The figure as a card has it: alone, or laid out with another beside it."""
         return self.figure
 
     def magnify(self, size: str) -> None:

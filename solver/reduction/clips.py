@@ -270,7 +270,7 @@ def _steepest(shares: Array, low: Array, rises: Array) -> Array:
 
 
 def _entries(shares: Array, low: Array) -> Iterator[Indices | int]:
-    """Yield instants through whose entries lines go: one a point, (n_points,), or one.
+    """Yield instants through which lines go: of each point, (n_points,), or of all.
 
     Shares and stops are those of `_ramps`.
     """

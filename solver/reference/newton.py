@@ -349,7 +349,7 @@ class Newton:
         if not len(free):
             return True
         try:
-            # It succeeds exactly where the matrix is positive definite.
+            # Cholesky's factors exist exactly where the matrix is positive definite.
             cholesky(self._softened(growth, free), overwrite_a=True, check_finite=False)
         except LinAlgError:
             return False

@@ -167,7 +167,7 @@ class LoadSettings(FrictionSettings):
     def _times(self) -> Array:
         """Instants, (n_instants,), s; of large problems those of thinned tables."""
         instants = self._instants({name: getattr(self, name) for name in self._tables})
-        # Only where every point would cost minutes.
+        # Tables are thinned only where every point of them would cost minutes.
         if self.n_nodes * len(instants) > EVERY_POINT and self._tables:
             instants = self._instants(
                 {name: self._thinned(name) for name in self._tables}

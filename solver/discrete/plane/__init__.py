@@ -1,1 +1,1 @@
-"""Bodies in the plane: any shape here, makers of these, rectangles; laws of joints."""
+"""Bodies in the plane, of any shape; makers of bodies, and rectangles, in rooms."""

@@ -88,7 +88,7 @@ class Bodies:
             friction_law=Part(FrictionLaw),
             macro_degree=Count(0),
         )
-        # There may be none of these.
+        # Bodies need not be joined, held or loaded: empty sequences are right.
         for name, kind in (("joints", Joint), ("held", Held), ("loads", Load)):
             if getattr(self, name):
                 check_value(f"Bodies.{name}", getattr(self, name), Each(Part(kind)))
@@ -225,7 +225,7 @@ class Bodies:
         return list(axes.values())
 
     def _acts_of_held(self, alike: Sequence[Held]) -> Iterator[Act]:
-        """Displacements of the same nodes: one, where they go along one direction."""
+        """Acts of displacements of the same nodes; one act if they go straight."""
         moved = [held for held in alike if np.any(held.mean)]
         if len(moved) == 2:
             motion = np.zeros((2, len(self.instants)))
@@ -250,7 +250,7 @@ class Bodies:
         values: Array,
         unit: str,
     ) -> Act:
-        """Act at the middle one of the nodes of what is given."""
+        """Act of a hold or a load, at the middle one of its nodes."""
         along = np.asarray(towards)
         if along.ndim > 1:
             along = along[:, np.abs(values).argmax()]
@@ -267,14 +267,14 @@ class Bodies:
         return Act(given.name, symbol, points, towards, values, unit, (x, y))
 
     def _chains_of(self, given: Held | Load) -> list[Indices]:
-        """Chains of edges of a mesh that the nodes of what is given make, if all do."""
+        """Chains of edges that nodes of a hold or load make; [] if they are none."""
         shape = self.bodies[given.body].shape
         if not isinstance(shape, Mesh):
             return []
         return shape.chains_of(given.nodes)
 
     def _lines(self, given: Held | Load) -> list[tuple[Indices, Array]]:
-        """Nodes of what is given in order along lines, (n,), and unit vectors there.
+        """Nodes of a hold or load in order along lines, (n,), and unit vectors there.
 
         The vectors point out of the body, (n, 2): those of its edges, or where the
         nodes are no chains of edges all the way from its middle to theirs.

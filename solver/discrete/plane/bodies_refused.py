@@ -179,7 +179,7 @@ def _check_opposite(joints: Sequence[Joint], pairs: NodePairs, nodes: Array) -> 
     """Refuse nodes of a pair, at positions in m, that are apart beyond their gap."""
     sizes = np.diff(pairs.first)
     above = nodes[pairs.above]
-    # Steps from a joint to the next are none.
+    # From the last node of a joint to the first of the next there is no step.
     steps = np.linalg.norm(np.diff(above, axis=0, prepend=np.inf), axis=1)
     steps[pairs.first[:-1]] = np.inf
     shortest = np.repeat(np.minimum.reduceat(steps, pairs.first[:-1]), sizes)

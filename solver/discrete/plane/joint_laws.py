@@ -262,7 +262,7 @@ def _beside_each_other(blocks: Sequence[Array]) -> sparse.csr_array | None:
     widths = np.array([block.shape[1] for block in blocks])
     if not widths.any():
         return None
-    # Rows of one block are as wide as it.
+    # Each row has as many entries as its block has columns.
     of_rows = np.repeat(widths, heights)
     ends = np.append(0, np.cumsum(of_rows))
     first_columns = np.repeat(np.cumsum(widths) - widths, heights)

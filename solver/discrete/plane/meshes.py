@@ -158,9 +158,10 @@ class Mesh:
         return edges
 
     def chains_of(self, nodes: Indices) -> list[Indices]:
-        """Chains of edges, (n,) each, that nodes make one after the other, if all do.
+        """Chains of edges, (n,) each, that nodes make one after the other.
 
-        Those of both ends of a plate are two, say.
+        Both ends of a plate are two chains, say. Nodes make none, [], if some of them
+        belong to no chain.
         """
         chains = []
         first = 0

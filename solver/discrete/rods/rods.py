@@ -330,7 +330,7 @@ class Rods:
 
     @property
     def _drive(self) -> tuple[str, str, Array] | None:
-        """Title, unit and values over time of what drives rods beside their ends.
+        """Title, unit and values of a load along the rods; None without any.
 
         Values, (n_instants,), are those at the place where they are largest.
         """

@@ -57,9 +57,12 @@ def cut_at(rope: Rope, position: float) -> CutWires:
 def _cut_wire(
     wire: RopeWire, position: float, *, is_clamped: bool
 ) -> tuple[Array, Array, Array]:
-    """Polar angles, rad, arc lengths, m, and sides of the wires that one stands for.
+    """Section of the wires that a wire stands for, at a position along the strand, m.
 
-    At a position along the strand, m; shape (stands_for,) each.
+    Returns
+    -------
+    Their polar angles, rad, arc lengths, m, and the side of each half turn, -1 or 1;
+    shape (stands_for,) each.
     """
     lay = wire.layer_data.lay
     starts = wire.start + 2.0 * np.pi * np.arange(wire.stands_for) / wire.stands_for

@@ -220,7 +220,7 @@ def _beyond(offset: float, radius: float, height: float) -> float:
 
 
 def _onset(reserve: Callable[[float], float], largest: float) -> float | None:
-    """Smallest value up to a largest one whose reserve is not negative; None: none."""
+    """Smallest value up to a largest whose reserve is at least 0; None without any."""
     if reserve(largest) < 0.0:
         return None
     if reserve(LEAST) >= 0.0:

@@ -221,7 +221,7 @@ class Ring:
             )
             bodies.append(body)
         ends = []
-        # Upwards of a block is into the ring, which the left one meets clockwise.
+        # The upward axis of a block points into the ring, on the left side clockwise.
         for name, angle, sign in (
             (LEFT, self.angles[0], 1),
             (RIGHT, self.angles[-1], -1),
@@ -383,6 +383,6 @@ class Arch(Bodies):
         for act in self.above:
             yield replace(act, points=self._as_shares(act.points))
         for act in super()._acts():
-            # Those on every voussoir are drawn together.
+            # Fill and live load act on many voussoirs, and are drawn once, by `above`.
             if not act.where.startswith((FILL, LIVE)):
                 yield act

@@ -276,7 +276,7 @@ class Packing:
         return sorted(directions)
 
     def outward(self, wire: int) -> int | None:
-        """Direction of a wire at the end of an inner row out of all; None of others."""
+        """Direction out of the bundle from the end of an inner row; None elsewhere."""
         if self.row_of_wires[wire] in (0, len(self.rows) - 1):
             return None
         free = [

@@ -128,7 +128,7 @@ class CutRectangles:
             if elements is None:
                 yield Span(side, 0, self.extent(number, side)[0])
             elif not elements.all():
-                # Where it begins and ends to be covered; outside it counts as covered.
+                # Spans lie between covered elements; beyond the ends a side is covered.
                 changes = np.diff(elements, prepend=True, append=True)
                 ends = np.flatnonzero(changes).reshape(-1, 2)
                 for first, last in ends.tolist():

@@ -183,7 +183,7 @@ class CutStack:
         material = modulus, self.stack.poisson, self.stack.state
         key = "operator", shape, material, traces, has_force
         of_mesh = [self._trace(trace, mesh, modulus) for trace in traces]
-        # No load and no friction changes it.
+        # The operator is kept between runs, as no load and no friction changes it.
         return KEPT.of(
             key,
             lambda: Operator(SchurComplement(mesh.outline, kept_by(of_mesh)), of_mesh),
