@@ -235,6 +235,15 @@ class Browser(DataModel):
     shown: int = Int(default=0)  # type: ignore[assignment]
     is_stale: bool = Bool(default=False)  # type: ignore[assignment]
 
+    def tell(self, **values: Any) -> None:
+        """Tell the browser values of properties.
+
+        What Panel hands on may come without the document's lock, as where a person
+        types a value and presses a button at once.
+        """
+        with pn.io.unlocked():
+            self.update(**values)
+
     def listen(
         self, state: PageState, document: Any, actions: Mapping[str, Callable[[], Any]]
     ) -> None:
@@ -262,7 +271,7 @@ class Browser(DataModel):
         )
         self.given = state.given
         state.param.watch(
-            lambda *events: self.update(**{event.name: event.new for event in events}),
+            lambda *events: self.tell(**{event.name: event.new for event in events}),
             ["given", "is_stale"],
         )
         document.add_root(self)

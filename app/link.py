@@ -96,8 +96,10 @@ class Link:
 
     def copy(self) -> str:
         """Have the browser copy the whole link, and return a message on it."""
-        self._browser.copied = ""
-        self._browser.copied, message = link_of(self._state)
+        link, message = link_of(self._state)
+        # The same link may be copied again.
+        self._browser.tell(copied="")
+        self._browser.tell(copied=link)
         return f"The link to what is shown is copied. {message}".rstrip()
 
     def join(self, code: str) -> None:
@@ -106,13 +108,8 @@ class Link:
 
     def _visit(self, query: str) -> None:
         """Have the browser open the page of an address."""
-
-        def leave() -> None:
-            self._browser.destination = ""
-            self._browser.destination = query
-
-        # A model changes under the document's lock, which a click does not have.
-        pn.state.execute(leave, schedule=True)
+        self._browser.tell(destination="")
+        self._browser.tell(destination=query)
 
     def go(self, query: str) -> None:
         """Show the state of an address, or open the page of a class."""

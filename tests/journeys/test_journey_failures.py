@@ -119,14 +119,12 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
 ) -> None:
     before = server.processes()
 
-    def strike(visit: Visit, blow: signal.Signals) -> tuple[Page, int]:
-        """A page, and its worker, which has taken a blow."""
+    def searching(visit: Visit) -> tuple[Page, int]:
+        """A page that searches, and its worker."""
         known = server.processes()
         page = visit(f"?{ENDLESS}&pace=5 a second")
         expect(status(page)).to_contain_text(re.compile(r"iteration \d"))
-        worker = newest_worker(server, known)
-        os.kill(worker, blow)
-        return page, worker
+        return page, newest_worker(server, known)
 
     def goes_on(page: Page, worker: int, words: str) -> None:
         expect(page.locator(".status")).to_contain_text(
@@ -136,11 +134,15 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
         wait_for(lambda: not is_alive(worker))
 
     with visits(server, chrome) as visit:
-        stopped = strike(visit, signal.SIGSTOP)
+        stopped = searching(visit)
         # Both waits at once: for the sign of life, and for the end of a page that is
         # closed.
         with visits(server, chrome) as visit_too:
-            goes_on(*strike(visit_too, signal.SIGKILL), "process ended")
+            killed = searching(visit_too)
+            # Only now, as a page whose worker hangs soon has another, the newest.
+            os.kill(stopped[1], signal.SIGSTOP)
+            os.kill(killed[1], signal.SIGKILL)
+            goes_on(*killed, "process ended")
         goes_on(*stopped, "no sign of life for some seconds")
         wait_for(lambda: len(set(server.processes()) - set(before)) == 1)
 
