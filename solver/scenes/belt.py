@@ -79,8 +79,9 @@ class BeltSettings(PlaneSettings):
     CHIEF = ("pull_load", "pull", "displacement", "draw_in", "tail_force", "wrap")
     ALSO_CHIEF = ("friction", "substructures", "multiscale")
     GROWS = ("elements", "substructures")
-    # A status step ends a search from zero sooner than a start is found, but on fine
-    # meshes.
+    # Up to 250 elements a status step ends a search from zero about as soon as a start
+    # is found: of 40, 250, 500 and 1000 after 0.10, 0.27, 1.2 and 4.9 s, and from a
+    # nested start after 0.28, 0.54, 0.35 and 1.7 s (measured).
     METHODS: ClassVar = {
         **PlaneSettings.METHODS,
         "fast": {**PlaneSettings.METHODS["fast"], "start": "zero"},
@@ -225,7 +226,7 @@ class BeltSettings(PlaneSettings):
         "zero",
         doc="zero: start from nothing, or where the band has slid to. nested: start "
         "from the solution on half the elements, which the incremental solver finds; "
-        "the run time includes that. It pays from some 300 elements on.",
+        "the run time includes that. It pays from some 400 elements on.",
     )
 
     @property
