@@ -188,7 +188,7 @@ def settings_of(scene: str, size: int, changes: dict[str, Any]) -> Settings:
 
 
 def ways_of(scene: str, ways: list[str]) -> Iterator[str]:
-    """Those of some ways of LATIN that a scene has: few start from a coarser mesh."""
+    """Ways of LATIN, of some ways, for which a scene has the start."""
     starts = CATALOGUE[scene].definitions()["start"].objects
     for way in ways:
         if way not in RIVALS:
