@@ -110,7 +110,8 @@ def prolong(solution: Reference, fine: Problem, k: Array) -> Array:
     """
     coarse = solution.problem
     _check_meshes(coarse, fine)
-    displacement = solution.displacement / coarse.scales.displacement
+    # Curves on both meshes may differ in size, and with it their scales.
+    displacement = solution.displacement / fine.scales.displacement
     if fine.inside is None:
         inside = _interpolated(_apart(fine), _apart(coarse), displacement)
     else:
@@ -134,6 +135,7 @@ def _check_meshes(coarse: Problem, fine: Problem) -> None:
             allowed = "problems of rods or lines of beams"
             raise RefusedError("Nested.coarser", shown, allowed, remedy)
     for kind, are_alike in (
+        ("elements", (coarse.inside is None) == (fine.inside is None)),
         ("interfaces", list(coarse.rubbing) == list(fine.rubbing)),
         ("bodies", _bodies(coarse).max() == _bodies(fine).max()),
         ("instants", np.array_equal(coarse.instants, fine.instants)),
@@ -199,7 +201,7 @@ def _contact_forces(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
     whether they do not rub, shape (n_rows,).
     """
     coarse = solution.problem
-    known, _ = known_forces(coarse, solution.contact_force / coarse.scales.force)
+    known, _ = known_forces(coarse, solution.contact_force / fine.scales.force)
     force = np.zeros((fine.n_rows, known.shape[1]))
     is_open = np.ones(fine.n_rows, dtype=bool)
     for name, target in fine.rubbing.items():

@@ -142,6 +142,28 @@ def test_a_band_that_slides_far_stays_on_its_guide_on_the_finer_mesh():
     assert np.abs(across).max() <= 1e-12
 
 
+@pytest.mark.parametrize("wrap", [130.0, 180.0, 500.0])
+def test_the_ends_of_a_contact_start_where_the_coarser_mesh_has_them(wrap):
+    """Both meshes have points there, but boxes of different sizes."""
+    settings = settings_of(wrap=wrap, elements=50, driven="moved")
+    fine = problem_of(settings)
+    solution = reference_of(next(settings.coarser()))
+    k = fine.direction
+    carried = prolong(solution, fine, k)
+    moved = prolong(solution, fine, np.full(fine.n_rows, 1e300))
+    law = fine.rubbing["guide"]
+    coarse = solution.problem.rubbing["guide"]
+    known = solution.contact("guide")
+    rows = law.tangent.above[[0, -1]]
+    slip = moved[rows] * fine.scales.displacement
+    size = np.abs(known.slip).max()
+    assert slip == pytest.approx(known.slip[[0, -1]], rel=1e-9, abs=1e-12 * size)
+    stretched = k[rows, None] * (carried[rows] - moved[rows])
+    force = stretched * fine.scales.force / law.weights[[0, -1], None]
+    wanted = known.tangential_force[[0, -1]] / coarse.weights[[0, -1], None]
+    assert force == pytest.approx(wanted, rel=1e-6, abs=1e-8 * np.abs(wanted).max())
+
+
 def test_the_start_comes_to_the_truth_as_meshes_are_refined():
     errors = []
     for elements in (20, 40, 80, 160):
@@ -214,6 +236,13 @@ def test_lines_are_no_start_of_another_number_of_lines():
     one = discretise(leaf(8, friction=0.3))
     with pytest.raises(RefusedError, match="other interfaces"):
         prolong(reference_of(one), two, two.direction)
+
+
+def test_a_line_of_beams_is_no_start_of_a_rod():
+    rod = problem_of(CATALOGUE["bar"].checked({"elements": 8, "substructures": 1}))
+    line = discretise(leaf(8, friction=0.3))
+    with pytest.raises(RefusedError, match="other elements"):
+        prolong(reference_of(line), rod, rod.direction)
 
 
 def test_belts_start_from_zero_unless_a_nested_start_is_chosen():
