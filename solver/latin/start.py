@@ -29,7 +29,7 @@ from solver.refusal import RefusedError, Words
 WAVES = 2.0
 """Length of the longest waves that a start leaves wrong, over an element of the coarser
 mesh. Of belts of 40, 120 and 500 elements, five each, 1 % of the contact force takes at
-most 14, 6 and 3 iterations; 18, 8 and 4 with twice as much; 60, 181 and 176 with the k
+most 14, 6 and 3 iterations; 18, 8 and 4 with twice as much; 74, 168 and 225 with the k
 of a search from zero (measured)."""
 
 

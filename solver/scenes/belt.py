@@ -80,8 +80,8 @@ class BeltSettings(PlaneSettings):
     ALSO_CHIEF = ("friction", "substructures", "multiscale")
     GROWS = ("elements", "substructures")
     # Up to 250 elements a status step ends a search from zero about as soon as a start
-    # is found: of 40, 250, 500 and 1000 after 0.10, 0.27, 1.2 and 4.9 s, and from a
-    # nested start after 0.28, 0.54, 0.35 and 1.7 s (measured).
+    # is found: of 40, 250, 500 and 1000 after 0.09, 0.19, 1.1 and 4.9 s, and from a
+    # nested start after 0.23, 0.39, 0.29 and 1.6 s (measured).
     METHODS: ClassVar = {
         **PlaneSettings.METHODS,
         "fast": {**PlaneSettings.METHODS["fast"], "start": "zero"},
