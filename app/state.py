@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
@@ -25,8 +25,6 @@ from solver.study.trade_case import Case, cases_by_name
 
 SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings that show the search from its start, as a page begins."""
-ANSWER = {"start": "nested", "finish": "at-once"}
-"""Settings that show the answer at once."""
 RUNS = count(1)
 """Numbers of the runs of all pages: a page that joins or leaves a class meets no number
 twice."""
@@ -470,14 +468,17 @@ def answer(settings: Settings) -> Settings:
     """Settings with the answer at once in place of a search that is watched."""
     if settings.finish != SEARCH["finish"]:
         return settings
-    return settings.replace(**known(settings, ANSWER))
+    return settings.replace(**answering(settings))
 
 
-def known(settings: Settings, values: Mapping[str, str]) -> dict[str, str]:
-    """Values of choices that the scene has."""
-    definitions = settings.definitions()
-    return {
-        name: value
-        for name, value in values.items()
-        if value in definitions[name].objects
-    }
+def answering(settings: Settings) -> dict[str, str]:
+    """Values of settings with which a run shows the answer at once.
+
+    The start is that of the fast method; where this starts from zero, that of the
+    settings stays.
+    """
+    values = {"finish": "at-once"}
+    start = settings.of_method("fast")["start"]
+    if start != SEARCH["start"]:
+        values["start"] = start
+    return values

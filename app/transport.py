@@ -12,7 +12,7 @@ import panel_material_ui as pmui
 from app.browser import Echoes, linked, linked_to
 from app.frame import Selection
 from app.server import PAGES
-from app.state import ANSWER, PACES, SEARCH, PageState, known
+from app.state import PACES, SEARCH, PageState, answering
 from app.widgets import button, looks, wrapped
 from solver.scenes import CATALOGUE
 
@@ -294,10 +294,10 @@ class Transport:
         self._state.seek(iteration)
 
     def _choose_finish(self, finish: str) -> None:
-        values = ANSWER
-        if finish == SEARCH["finish"]:
-            values = SEARCH
-        self._state.change(**known(self._state.settings, values))
+        values = SEARCH
+        if finish != SEARCH["finish"]:
+            values = answering(self._state.settings)
+        self._state.change(**values)
 
     def _show(self) -> None:
         """Show the state of the run, but not while a slider is dragged.

@@ -158,6 +158,11 @@ class Inside:
         parts = [part.stress(scaled[part.nodes.ravel()]) for part in self._parts]
         return self._young * np.concatenate(parts)
 
+    @property
+    def is_of_lines(self) -> bool:
+        """Check whether all bodies are lines of beams, whose nodes turn."""
+        return all(part.mesh.n_axes == N_AXES for part in self._parts)
+
     @cached_property
     def body_of_dofs(self) -> Indices:
         """Number of the body of every degree of freedom of the problem, (n_dofs,)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from itertools import count
@@ -17,6 +18,7 @@ from solver.latin.method import Latin
 from solver.latin.stages.blocks import Blocks, one_blas_thread
 from solver.latin.stages.linear import LinearStage
 from solver.latin.stages.local import LocalStage
+from solver.latin.start import prolong, wrong_waves
 from solver.refusal import RefusedError
 
 STARTING = 0.5
@@ -90,10 +92,16 @@ class Iteration:
     ) -> None:
         self._problem = problem
         self._latin = latin
+        coarse = None
+        if start is None and latin.start is not None:
+            coarse = latin.start.of(problem, STARTING * latin.stop.seconds)
         if start is not None and start.k_update is not None:
             self._k_update = start.k_update
         else:
-            self._k_update = latin.direction.begin(problem, start)
+            waves = math.inf
+            if coarse is not None:
+                waves = wrong_waves(coarse)
+            self._k_update = latin.direction.begin(problem, start, waves)
         self.k = self._k_update.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         self.linear = _linear_stage(problem, self.k, latin, blocks)
@@ -103,12 +111,12 @@ class Iteration:
             self._mixture = AndersonState(
                 problem, self.linear, self.local.motion, blocks
             )
-        if start is None and problem.rest is not None:
+        if coarse is not None:
+            start = Checkpoint(0, 0.0, prolong(coarse, problem, self.k))
+        elif start is None and problem.rest is not None:
             # A body that nothing else holds would have to travel there iteration by
             # iteration.
             start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
-        elif start is None and latin.start is not None:
-            start = latin.start.of(problem, self.k, STARTING * latin.stop.seconds)
         self.linear.go_to(start)
         self._show()
 

@@ -101,7 +101,11 @@ class Settings(LoadSettings):
             # A start on other instants would have to be interpolated in time.
             if not np.array_equal(coarse.times(), self.times()):
                 return
-            yield discretise(coarse.structure())
+            yield discretise(self.on_mesh_of(coarse))
+
+    def on_mesh_of(self, coarser: Self) -> Structure:
+        """Bodies of these settings on the mesh of coarser ones."""
+        return coarser.structure()
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None

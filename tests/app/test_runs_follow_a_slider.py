@@ -193,3 +193,11 @@ def test_a_run_that_follows_a_slider_is_compared_with_its_own_solution(
     shown = run.reference_loop.shape[1]
     assert shown == loop.shape[1]
     assert np.allclose(run.reference_loop, loop, rtol=1e-6, atol=0.0)
+
+
+def test_an_answer_starts_as_the_fast_method_does_and_a_chosen_start_stays() -> None:
+    assert answer(default_settings("bar")).start == "nested"
+    assert answer(default_settings("block")).start == "zero"
+    belt = default_settings("belt")
+    assert answer(belt).start == "zero"
+    assert answer(belt.replace(start="nested")).start == "nested"

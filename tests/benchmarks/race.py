@@ -90,19 +90,24 @@ RACES = {
 }
 """Walls of 10, 27, 68, 150, 264, 1040 bricks; bundles of 7 and 37 wires."""
 PAPER = {"method": "paper"}
+NESTED = {"start": "nested"}
 LATIN: dict[str, dict[str, Any]] = {
     "LATIN": {},
+    "LATIN, nested": NESTED,
     "LATIN, two threads": {"threads": 2},
     "LATIN, monoscale": {"multiscale": False},
     "LATIN-PGD, 10 modes": {"linear_stage": "pgd", "pgd_modes": 10},
     "paper's method": PAPER,
     "paper's, monoscale": {**PAPER, "multiscale": False},
 }
-KNOWN = "LATIN, until known"
+KNOWN: dict[str, dict[str, Any]] = {
+    "LATIN, until known": {},
+    "nested, until known": NESTED,
+}
 INCREMENTAL = "incremental"
 SPARSE = "sparse incremental"
 RIVALS = (INCREMENTAL, SPARSE)
-WAYS = (*RIVALS, *LATIN, KNOWN)
+WAYS = (*RIVALS, *LATIN, *KNOWN)
 NOTES = (
     f"Until the contact force is within {GOAL:.0%} of the incremental solvers'. "
     f"Medians, in turns (of one from {LONG:.0f} s on), s: of the processor, and by "
@@ -182,6 +187,16 @@ def settings_of(scene: str, size: int, changes: dict[str, Any]) -> Settings:
     return CATALOGUE[scene].checked(alone | race.settings | grown | changes)
 
 
+def ways_of(scene: str, ways: list[str]) -> Iterator[str]:
+    """Ways of LATIN, of some ways, for which a scene has the start."""
+    starts = CATALOGUE[scene].definitions()["start"].objects
+    for way in ways:
+        if way not in RIVALS:
+            start = (LATIN | KNOWN)[way].get("start", "zero")
+            if start in starts:
+                yield way
+
+
 def making_of(scene: str, size: int) -> Making:
     """Measure the making of a problem beside the first iterations."""
     settle()
@@ -226,11 +241,11 @@ def raced(scene: str, size: int, rival: str) -> tuple[Sample, Answer]:
 
 def iterated(scene: str, size: int, way: str, count: int) -> Sample:
     """Run iterations with the clock on."""
-    settings = settings_of(scene, size, LATIN.get(way, {}))
+    settings = settings_of(scene, size, (LATIN | KNOWN)[way])
 
     def run(problem: Problem) -> None:
         steps: Iterator[object] = iterations(problem, method_of(settings))
-        if way == KNOWN:
+        if way in KNOWN:
             steps = judged(problem, method_of(settings))
         for _ in islice(steps, count):
             pass
@@ -252,12 +267,12 @@ def measured(settings: Settings, work: Callable[[Problem], None]) -> Sample:
 
 def count_of(scene: str, size: int, way: str, truth: Answer) -> tuple[int, float]:
     """Iterations until a way is near enough, 0 if it never is; and its last error."""
-    settings = settings_of(scene, size, LATIN.get(way, {}))
+    settings = settings_of(scene, size, (LATIN | KNOWN)[way])
     problem = discretise(settings)
     distance = distance_to(truth, problem)
     method = method_of(settings)
     error = np.inf
-    if way == KNOWN:
+    if way in KNOWN:
         for iterate, decision in islice(judged(problem, method), MOST):
             error = distance.of_friction_force(iterate)
             if decision.status and decision.status.ending is Ending.CONVERGED:
@@ -414,9 +429,9 @@ def rows_of(
     yield f"  {sentence}"
     entries = rivals
     if truth is not None:
-        own = [way for way in ways if way not in RIVALS]
         entries = rivals + [
-            latin_entry(scene, size, way, truth, processes) for way in own
+            latin_entry(scene, size, way, truth, processes)
+            for way in ways_of(scene, ways)
         ]
     measure_in_turns(entries, processes, repeats)
     arrived = [entry.seconds for entry in rivals if entry.arrives]

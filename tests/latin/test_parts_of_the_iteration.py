@@ -469,15 +469,14 @@ def test_a_start_refuses_bodies_in_the_plane_and_what_is_another_structure() -> 
         prolong(reference_of(bar), scene_problem("strand"), bar.direction)
     longer = CATALOGUE["bar"].checked({**SCENES["bar"], "instants": 5})
     with pytest.raises(RefusedError, match="other instants"):
-        Nested(lambda: [bar]).of(discretise(longer), bar.direction)
+        Nested(lambda: [bar]).of(discretise(longer))
 
 
 def test_a_start_takes_the_first_mesh_and_none_where_there_is_no_time_or_mesh() -> None:
     of = scene_problem("bar")
-    k = of.direction
     coarse = scene_problem("bar")
-    found = Nested(lambda: [coarse]).of(of, k)
+    found = Nested(lambda: [coarse]).of(of)
     assert found is not None
-    assert np.array_equal(found.outgoing, prolong(reference_of(of), of, k))
-    assert Nested(lambda: []).of(of, k) is None
-    assert Nested(lambda: [coarse]).of(of, k, seconds=-1.0) is None
+    assert found.problem is coarse
+    assert Nested(lambda: []).of(of) is None
+    assert Nested(lambda: [coarse]).of(of, seconds=-1.0) is None

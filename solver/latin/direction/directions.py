@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 
@@ -11,7 +12,7 @@ from solver.arrays import Array, read_only
 from solver.checks import POSITIVE, check
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint, Iterate, UpdateProgress
-from solver.laws import Contact, RodStiffness
+from solver.laws import Contact, NodalStiffness, RodStiffness
 
 LOOK = 3
 """Iteration that shows whether bodies slip on each other anywhere. In the second,
@@ -54,8 +55,14 @@ class SearchDirection(ABC):
         """Search direction k at the start, shape (n_rows,), scaled, read-only."""
         return read_only(self.scale * self.rule(problem))
 
-    def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
-        """State of the k update at the start of a run, which may go on from another."""
+    def begin(
+        self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
+    ) -> UpdateProgress:
+        """State of the k update at the start of a run, which may go on from another.
+
+        `waves` is the length of the longest waves that a start from a coarser mesh
+        leaves wrong, m.
+        """
         return UpdateProgress("returned", self.of(problem))
 
     def follow(self, iterate: Iterate, progress: UpdateProgress) -> UpdateProgress:
@@ -92,11 +99,17 @@ class Auto(SearchDirection):
         """Search direction k of rows without the factor, shape (n_rows,), scaled."""
         return automatic(problem)
 
-    def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
+    def begin(
+        self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
+    ) -> UpdateProgress:
         """State of the k update at the start: k may change between bodies only.
 
-        In a run from the fields of another, which are near, k stays.
+        In a run from the fields of another or from a coarser mesh, which are near, k
+        stays.
         """
+        if waves < math.inf:
+            k = self.scale * automatic(problem, waves=waves)
+            return UpdateProgress("returned", read_only(k))
         laws = problem.rubbing.laws.values()
         has_bodies = any(law.opens and not law.is_on_support for law in laws)
         if start is None and has_bodies:
@@ -131,7 +144,9 @@ def _slips_between_bodies(iterate: Iterate) -> bool:
     return False
 
 
-def automatic(problem: Problem, *, sticks: bool = False) -> Array:
+def automatic(
+    problem: Problem, *, sticks: bool = False, waves: float = math.inf
+) -> Array:
     """Search direction k of every row by a rule that needs no tuning.
 
     Where bodies rub, k is that of `solver.laws.stiffness`, in series with the spring of
@@ -148,6 +163,8 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     sticks
         Whether k is that of bodies that nowhere slip on each other, and not that of
         bodies that do.
+    waves
+        Length of the longest waves that are wrong, m.
 
     Returns
     -------
@@ -166,6 +183,8 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
         law.stiffness_beside.choose(law, k, parts)
         if sticks and not isinstance(law.stiffness_beside, RodStiffness):
             law.stiffness_beside.stick(law, k)
+        if isinstance(law.stiffness_beside, NodalStiffness):
+            law.stiffness_beside.shorten(law, k, waves)
         # The spring in series comes last, as it softens any k of the bodies.
         _raise_above_slope(law, k)
         _soften_by_contact(law, k)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,7 +65,9 @@ class FromStatus:
         """Search direction k at the start, shape (n_rows,), scaled, read-only."""
         return self.first.of(problem)
 
-    def begin(self, problem: Problem, start: Checkpoint | None) -> UpdateProgress:
+    def begin(
+        self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
+    ) -> UpdateProgress:
         """State of the k update at the start; without contact k stays."""
         if problem.rubbing:
             return UpdateProgress("first", self.of(problem))

@@ -42,6 +42,8 @@ class GuideCurve:
         Angle of the arc, rad, and its radius, m.
     elements
         Number of equal elements on the arc. Either span beyond it is one more.
+    span
+        Length of either span, m.
     turned
         Counter-clockwise angle of the last span from the x axis, rad.
     """
@@ -49,6 +51,7 @@ class GuideCurve:
     angle: float
     radius: float
     elements: int
+    span: float
     turned: float = 0.0
 
     @property
@@ -57,8 +60,8 @@ class GuideCurve:
         return self.angle * self.radius
 
     @property
-    def span(self) -> float:
-        """Length of either span, m."""
+    def spacing(self) -> float:
+        """Length of an element on the arc, m."""
         return self.length / self.elements
 
     @cached_property
@@ -237,7 +240,7 @@ class Band(Bodies):
         """
         moved = self._moved_nodes(problem, displacement)[self.guide.nodes]
         away = np.einsum("na,nat->nt", self.guide.normals, moved)
-        return np.asarray(np.diff(away, axis=0) / self.guide.span)
+        return np.asarray(np.diff(away, axis=0) / self.guide.spacing)
 
     def _moved_nodes(self, problem: Problem, displacement: Array) -> Array:
         """Displacement of all nodes, shape (n_nodes, 2, n_instants), m."""
