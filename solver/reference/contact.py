@@ -79,7 +79,8 @@ class IncrementalContact:
         guess
             States from which an instant starts, stacked as `Problem.sum_of_contact`
             says, shape (n_forces, n_instants), unless those of the instant before turn
-            out to be better.
+            out to be better. States that come to an instant without solution are wrong:
+            the instants after it are not tried.
         max_systems
             Largest number of linear systems to solve; the instants that are not reached
             then do not move, and are not `converged`.
@@ -122,6 +123,8 @@ class IncrementalContact:
             reached[instant] = True
             # Beyond a collapse there is no equilibrium to seek.
             if self._collapse is not None and instant >= self._collapse.instant:
+                break
+            if guess is not None and instants.is_lost:
                 break
         return self._judged(instants, done, has_others, reached)
 

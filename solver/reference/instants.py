@@ -52,6 +52,8 @@ class Instants:
         always does.
     has_others
         Another solution of the last instant was met, which is not stable.
+    is_lost
+        No solution was found at this instant, or at one before.
     """
 
     jumps_at: int | None = None
@@ -86,7 +88,7 @@ class Instants:
         rules = condensed.rules
         self.system = self._newton.system
         self._may_hold = may_hold
-        self._is_lost = False
+        self.is_lost = False
         self._condensed = condensed
         self._rules = rules
         self._opening = rules.gap.copy()
@@ -215,14 +217,14 @@ class Instants:
         if self._has_guess and self._starts.from_guess and not rules.is_nonlinear:
             guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, sides, guesses)
-        if solved is None and not self._is_lost:
+        if solved is None and not self.is_lost:
             if rules.is_nonlinear:
                 solved = self._in_parts(begin, sides, known, instant)
             elif self._may_hold(instant):
                 solved = newton.follow(begin, sides, newton.approach(begin, sides))
         # Where one instant is lost the next ones start from nothing sure: they get no
         # costly search.
-        self._is_lost = self._is_lost or solved is None
+        self.is_lost = self.is_lost or solved is None
         return solved
 
     def _in_parts(
@@ -246,6 +248,9 @@ class Instants:
             self.jumps_at = instant
         if not self._may_hold(instant):
             return None
+        if not rules.softens:
+            newton = self._newton
+            return newton.follow(at, sides, newton.approach(at, sides))
         return self._beyond(at, (begin.towards(sides, share), sides), known)
 
     def _followed(
