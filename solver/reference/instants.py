@@ -52,12 +52,13 @@ class Instants:
         always does.
     has_others
         Another solution of the last instant was met, which is not stable.
-    is_lost
-        No solution was found at this instant, or at one before.
+    is_stuck
+        No solution of the last instant was found: all contacts stay where they were.
     """
 
     jumps_at: int | None = None
     has_others = False
+    is_stuck = False
 
     def __init__(
         self,
@@ -88,7 +89,7 @@ class Instants:
         rules = condensed.rules
         self.system = self._newton.system
         self._may_hold = may_hold
-        self.is_lost = False
+        self._is_lost = False
         self._condensed = condensed
         self._rules = rules
         self._opening = rules.gap.copy()
@@ -124,6 +125,7 @@ class Instants:
         condensed = self._condensed
         rules = self._rules
         self.has_others = False
+        self.is_stuck = False
         if self._is_at_rest[instant]:
             return self._nothing()
         load = (
@@ -217,14 +219,15 @@ class Instants:
         if self._has_guess and self._starts.from_guess and not rules.is_nonlinear:
             guesses[:2] = guesses[1::-1]
         solved = newton.follow(begin, sides, guesses)
-        if solved is None and not self.is_lost:
+        if solved is None and not self._is_lost:
             if rules.is_nonlinear:
                 solved = self._in_parts(begin, sides, known, instant)
             elif self._may_hold(instant):
                 solved = newton.follow(begin, sides, newton.approach(begin, sides))
         # Where one instant is lost the next ones start from nothing sure: they get no
         # costly search.
-        self.is_lost = self.is_lost or solved is None
+        self.is_stuck = solved is None
+        self._is_lost = self._is_lost or self.is_stuck
         return solved
 
     def _in_parts(

@@ -81,3 +81,13 @@ def test_a_rod_that_friction_alone_does_not_hold_is_told_so() -> None:
     assert run.status.ending is Ending.STALLED
     assert "friction alone seems not to hold what is pulled" in run.status.advice
     assert solve(pulled_rod(1000.0)).is_certified
+
+
+def test_beyond_an_instant_without_solution_nothing_is_sought():
+    problem = discretise(stacked())
+    found = reference_of(problem)
+    lost = int(np.argmin(found.converged))
+    assert 0 < lost < problem.n_instants - 1
+    assert not found.converged[lost:].any()
+    assert found.contact_force[:, lost].any()
+    assert not found.contact_force[:, lost + 1 :].any()
