@@ -182,9 +182,16 @@ class Numbers:
         if not fits and not any(_fits(value.shape, shape) for shape in self.shapes):
             shown = Words(f"of shape {_written(value.shape)}")
             return Flaw(shown, self.allowed, "space comes first, then time")
-        if not value.size:
+        if not value.size or self._has_only_allowed(value):
             return None
-        # Both are NaN if any number is; whole numbers are finite.
+        return self._first_flaw(value)
+
+    def _has_only_allowed(self, value: Any) -> bool:
+        """Check whether all numbers of an array are allowed, in as few passes as do."""
+        if self.low == -math.inf and self.high == math.inf:
+            # Whole numbers are finite.
+            return self.whole or bool(np.isfinite(value).all())
+        # Both are NaN if any number is.
         minimum = float(value.min())
         if self.whole and self.high == math.inf:
             maximum = minimum
@@ -195,9 +202,7 @@ class Numbers:
         else:
             is_above = minimum >= self.low
         is_finite = -math.inf < minimum and maximum < math.inf
-        if is_above and is_finite and maximum <= self.high:
-            return None
-        return self._first_flaw(value)
+        return is_above and is_finite and maximum <= self.high
 
     def _first_flaw(self, value: Any) -> Flaw:
         """Find the flaw of the first wrong number of an array."""

@@ -26,6 +26,14 @@ def check_cover(
     With `once`, refuse numbers that occur more than once, too.
     """
     numbers = np.concatenate([np.zeros(0, dtype=np.intp), *parts])
+    smallest = int(numbers.min(initial=0))
+    if smallest < 0:
+        raise RefusedError(
+            f"Problem.{owners}",
+            Words(f"{what} {smallest}"),
+            f"each {what} from 0 on",
+            "number them anew",
+        )
     largest = int(numbers.max(initial=-1))
     times = np.bincount(numbers, minlength=count)
     if once:

@@ -101,6 +101,9 @@ class Elasticity:
         return dofs, index, self.stiffness[dofs]
 
 
+ELASTICITY = Part(Elasticity)
+
+
 @dataclass(frozen=True)
 class Substructure:
     """A substructure: its operator, degrees of freedom, boundary rows and body forces.
@@ -123,7 +126,8 @@ class Substructure:
     Raises
     ------
     RefusedError
-        For fields that do not fit its elasticity.
+        For fields that do not fit its elasticity. Numbers of degrees of freedom and
+        rows are checked for all substructures together, by their problem.
     """
 
     elasticity: Elasticity
@@ -133,13 +137,13 @@ class Substructure:
     free_force: Array | None = None
 
     def __post_init__(self) -> None:
-        check(self, elasticity=Part(Elasticity))
+        check(self, elasticity=ELASTICITY)
         n_dofs = self.elasticity.stiffness.shape[0]
         n_rows = len(self.elasticity.trace)
         check(
             self,
-            dofs=Numbers(((n_dofs,),), low=0, whole=True),
-            rows=Numbers(((n_rows,),), low=0, whole=True),
+            dofs=Numbers(((n_dofs,),), whole=True),
+            rows=Numbers(((n_rows,),), whole=True),
             free_force=Numbers(((None, None),)),
         )
         if self.body_force is not None:

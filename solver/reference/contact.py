@@ -33,8 +33,9 @@ class IncrementalContact:
 
     Friction may have several solutions for a large mu, or no solution where contact
     alone holds a body. Where several exist one of them is found, and the instant is
-    `ambiguous` if that shows; where no solution is found, the instant is not
-    `converged`, and the contacts stay where they were, by forces that break the laws.
+    `ambiguous` if that shows; where no solution is found, the instant and all after it
+    are not `converged`. The contacts stay where they were at that instant, by forces
+    that break the laws.
 
     Where the normal jump is prescribed, contact may share its force with the support in
     any way: the force is taken as zero, and so is the friction there. Where the
@@ -72,7 +73,9 @@ class IncrementalContact:
         max_systems: int | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Reference:
-        """Solve instant by instant.
+        """Solve instant by instant, up to the first that has no solution.
+
+        Friction depends on the path, so that nothing is known of the instants after it.
 
         Parameters
         ----------
@@ -123,6 +126,11 @@ class IncrementalContact:
             # Beyond a collapse there is no equilibrium to seek.
             if self._collapse is not None and instant >= self._collapse.instant:
                 break
+            # To stay where they were may be the solution, up to rounding.
+            if instants.is_stuck:
+                so_far = self._judged(instants, done, has_others, reached)
+                if not so_far.converged[instant]:
+                    return so_far
         return self._judged(instants, done, has_others, reached)
 
     def _may_hold(self, instant: int, stop: Callable[[], bool] | None) -> bool:

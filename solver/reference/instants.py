@@ -52,10 +52,13 @@ class Instants:
         always does.
     has_others
         Another solution of the last instant was met, which is not stable.
+    is_stuck
+        No solution of the last instant was found: all contacts stay where they were.
     """
 
     jumps_at: int | None = None
     has_others = False
+    is_stuck = False
 
     def __init__(
         self,
@@ -122,6 +125,7 @@ class Instants:
         condensed = self._condensed
         rules = self._rules
         self.has_others = False
+        self.is_stuck = False
         if self._is_at_rest[instant]:
             return self._nothing()
         load = (
@@ -222,7 +226,8 @@ class Instants:
                 solved = newton.follow(begin, sides, newton.approach(begin, sides))
         # Where one instant is lost the next ones start from nothing sure: they get no
         # costly search.
-        self._is_lost = self._is_lost or solved is None
+        self.is_stuck = solved is None
+        self._is_lost = self._is_lost or self.is_stuck
         return solved
 
     def _in_parts(
@@ -246,6 +251,9 @@ class Instants:
             self.jumps_at = instant
         if not self._may_hold(instant):
             return None
+        if not rules.softens:
+            newton = self._newton
+            return newton.follow(at, sides, newton.approach(at, sides))
         return self._beyond(at, (begin.towards(sides, share), sides), known)
 
     def _followed(

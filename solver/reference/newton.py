@@ -156,8 +156,8 @@ class Newton:
         """Yield solutions with softer and softer springs, whose states repeat.
 
         The first is sought from a solution. Nothing is yielded where there are too many
-        jumps, and no states twice where Newton's steps follow from the states alone:
-        bodies that fall have the same ones, whatever the springs.
+        jumps, and none twice on one piece of the laws, from where Newton's steps go the
+        same way: bodies that fall stay on one, whatever the springs.
         """
         condensed = self._condensed
         share = FIRST_SPRING
@@ -165,7 +165,7 @@ class Newton:
             return
         # Springs are relaxed at the deformation that the step before has come to.
         relaxed = np.zeros_like(sides.load)
-        tried = at.states[:0]
+        tried = b""
         for _ in range(SPRING_STEPS):
             springs = share * np.diagonal(condensed.stiffness)
             # A spring at its relaxed length pulls with nothing, so at rest it changes
@@ -177,16 +177,26 @@ class Newton:
                 at = solved
                 relaxed = solved.step.strained
                 share = max(SOFTENING * share, SOFTEST_SPRING)
-                is_new = not np.array_equal(at.states, tried)
-                if np.array_equal(at.states, before.states) and (
-                    is_new or self._rules.is_nonlinear
-                ):
-                    tried = at.states
+                piece = self._piece(at.states, at.slip)
+                repeats = np.array_equal(at.states, before.states)
+                if repeats and piece != tried:
+                    tried = piece
                     yield at
             elif share < STIFFEST_SPRING:
                 share *= STIFFENING
             else:
                 return
+
+    def _piece(self, states: States, slip: Array) -> bytes:
+        """Key of a piece of the laws, on which they are smooth, at states and slips.
+
+        Both have the shape (n,).
+        """
+        piece = states.tobytes()
+        if self._rules.is_nonlinear:
+            slips = self.accumulated_slip + np.abs(slip)
+            piece += self._rules.slip_factor.segment(slips).tobytes()
+        return piece
 
     def _with_springs(self, springs: Array) -> LinearSystem:
         """The linear system with springs at the jumps of the base, (n_base,)."""
@@ -258,13 +268,11 @@ class Newton:
         n_singular = 0
         for _ in range(max(FEWEST_STEPS, len(states))):
             tangent = sides
-            piece = states.tobytes()
             if rules.is_nonlinear:
                 slip = _slip_of_states(states, slip)
+            piece = self._piece(states, slip)
+            if rules.is_nonlinear:
                 tangent, is_capped = self._linearised(system, slip, force, sides)
-                piece += rules.slip_factor.segment(
-                    self.accumulated_slip + slip
-                ).tobytes()
                 piece += is_capped.tobytes()
             if _cycles(pieces, piece, is_nonlinear=rules.is_nonlinear):
                 return None

@@ -31,13 +31,15 @@ from solver.latin import (
     iterations,
     solve,
 )
+from solver.latin.end.status_step import states_of
 from solver.latin.iteration import Iteration
 from solver.latin.stages import coarse, response
 from solver.latin.stages.blocks import Blocks, one_blas_thread
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
+from solver.reference.rules import HELD
 from solver.refusal import RefusedError
-from solver.scenes import discretise
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
@@ -126,11 +128,13 @@ def test_iterates_are_read_only():
 
 
 def test_a_cancelled_and_an_exhausted_run_keep_their_last_iterate():
-    chosen = options(**SMALL)
-    problem = discretise(chosen)
+    problem = discretise(options(**SMALL))
+    # Without an accuracy no status step asks for the answers.
+    latin = Latin(stop=Stop(tolerance=1e-26, iterations=3), finish=None)
+    patient = replace(latin, stop=replace(latin.stop, iterations=100))
     answers = iter([False, False, True])
-    cancelled = solve(problem, method_of(chosen), cancelled=lambda: next(answers))
-    exhausted = solve(problem, method_of(chosen.replace(max_iterations=3)))
+    cancelled = solve(problem, patient, cancelled=lambda: next(answers))
+    exhausted = solve(problem, latin)
     assert cancelled.status.ending is Ending.CANCELLED
     assert exhausted.status.ending is Ending.EXHAUSTED
     for solution in (cancelled, exhausted):
@@ -262,3 +266,16 @@ def test_a_part_refuses_its_own_numbers(make: Callable[[], object], name: str) -
         RefusedError, match=rf"^{name} = .* is refused; allowed: a (whole )?number"
     ):
         make()
+
+
+def test_where_no_first_iterate_moves_the_status_step_is_tried_at_once():
+    sizes = {"elements": 16, "elements_up": 8, "instants": 21, "friction": 2.0}
+    settings = CATALOGUE["fault"].checked(sizes)
+    problem = discretise(settings)
+    method = method_of(settings)
+    first = next(iterations(problem, method))
+    assert (states_of(first) == HELD).all()
+    assert not reference_of(problem).status.any()
+    solution = solve(problem, method)
+    assert solution.is_certified
+    assert solution.iterate.number == 2

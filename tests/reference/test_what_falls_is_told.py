@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from solver import End, Rods, discrete, solve
 from solver.discrete.problem import Problem
@@ -62,6 +63,18 @@ def test_columns_that_lean_are_given_up_without_trying_the_same_states_again() -
     assert found.steps < 400
 
 
+@pytest.mark.parametrize("ratio", [0.8, 1.2])
+def test_friction_that_changes_with_slip_does_not_prolong_the_search(
+    ratio: float,
+) -> None:
+    law = {"friction_law": "slip-dependent", "friction_ratio": ratio}
+    found = reference_of(discretise(CATALOGUE["wall"].checked(STACKED | law)))
+    assert found.is_lost
+    assert found.collapse is None
+    # Springs are softened on no piece of the laws twice: 2500 to 3100 where they were.
+    assert found.steps < 1300
+
+
 def test_a_run_says_where_it_found_no_equilibrium_though_forces_could_balance() -> None:
     settings = stacked()
     problem = discretise(settings)
@@ -81,3 +94,13 @@ def test_a_rod_that_friction_alone_does_not_hold_is_told_so() -> None:
     assert run.status.ending is Ending.STALLED
     assert "friction alone seems not to hold what is pulled" in run.status.advice
     assert solve(pulled_rod(1000.0)).is_certified
+
+
+def test_beyond_an_instant_without_solution_nothing_is_sought():
+    problem = discretise(stacked())
+    found = reference_of(problem)
+    lost = int(np.argmin(found.converged))
+    assert 0 < lost < problem.n_instants - 1
+    assert not found.converged[lost:].any()
+    assert found.contact_force[:, lost].any()
+    assert not found.contact_force[:, lost + 1 :].any()

@@ -366,6 +366,14 @@ def test_two_displacements_of_one_point_contradict_each_other() -> None:
         held(1.1)
 
 
+@pytest.mark.parametrize("name", ["dofs", "rows"])
+def test_a_problem_refuses_negative_numbers_of_its_substructures(name: str) -> None:
+    first, *others = PROBLEM.substructures
+    wrong = replace(first, **{name: getattr(first, name) - 1})
+    with pytest.raises(RefusedError, match=r"^Problem\.substructures = .* -1 "):
+        replace(PROBLEM, substructures=(wrong, *others))
+
+
 @pytest.mark.parametrize(
     ("arguments", "name"),
     [

@@ -28,7 +28,7 @@ from solver.discrete.plane.bodies_refused import (
     check_pairs,
     check_weight,
 )
-from solver.discrete.plane.body import Body, Held, Joint, Load
+from solver.discrete.plane.body import Body, Held, Joint, Load, Shape
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.plane.node_pairs import NodePairs
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
@@ -123,7 +123,20 @@ class Bodies:
     @cached_property
     def nodes(self) -> Array:
         """Coordinates of the nodes of all bodies, shape (n_nodes, 2), m."""
-        return np.concatenate([body.nodes for body in self.bodies])
+        nodes = np.empty((self.first_nodes[-1], 2))
+        by_shape = dict[Shape, list[int]]()
+        for number, body in enumerate(self.bodies):
+            by_shape.setdefault(body.shape, []).append(number)
+        # Bodies of one shape are turned and moved together.
+        for shape, numbers in by_shape.items():
+            of_shape = [self.bodies[number] for number in numbers]
+            rotations = np.array([body.rotation for body in of_shape])
+            origins = np.array([body.origin for body in of_shape])
+            own = np.arange(len(shape.nodes))
+            rows = np.add.outer(self.first_nodes[numbers], own)
+            turned = shape.nodes @ rotations.swapaxes(1, 2)
+            nodes[rows] = turned + origins[:, None]
+        return nodes
 
     @cached_property
     def pairs(self) -> NodePairs:

@@ -143,7 +143,8 @@ class Joint:
 
     def __post_init__(self) -> None:
         size = len(self.nodes)
-        chain = Numbers(((size,),), low=0, whole=True)
+        # Which nodes there are is known to the bodies.
+        chain = Numbers(((size,),), whole=True)
         check(
             self,
             nodes=chain,
