@@ -101,6 +101,22 @@ try {
 """
 
 
+AT_ONCE = """
+export function render({model, view}) {
+  let isHeld = false
+  const hold = (event) => { isHeld = event.type == "pointerdown" }
+  for (const type of ["pointerdown", "pointerup", "pointercancel"]) {
+    addEventListener(type, hold, {capture: true})
+  }
+  view.model.document.on_change((event) => {
+    if (isHeld && event.attr == "value") { model.send_msg("") }
+  })
+}
+"""
+"""Script that sends a message after each value that a pointer drags. Of a key value and
+final value come together, and are one."""
+
+
 class Pulse(DataModel):
     """Number of the newest picture, and of the last one that is on the screen."""
 
@@ -277,6 +293,16 @@ class Browser(DataModel):
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
         document.js_on_event(DocumentReady, CustomJS(args=args, code=TELL))
+
+
+class AtOnce(pn.custom.JSComponent):
+    """Part without a look that has the values of a dragged slider come at once.
+
+    Panel gathers values for 50 ms, but what comes before a message of a component is
+    handed on before it.
+    """
+
+    _esm = AT_ONCE
 
 
 def fade_first(state: PageState, act: Callable[[], None]) -> None:

@@ -9,7 +9,7 @@ import panel_material_ui as pmui
 from panel.io.resources import LOCAL_DIST
 from panel.util import edit_readonly
 
-from app.browser import Browser, linked_to
+from app.browser import AtOnce, Browser, linked_to
 from app.class_dialog import ClassDialog
 from app.classroom import ClassMember, begin_with_class
 from app.controls import Controls
@@ -221,7 +221,12 @@ class Page:
             for title, (icon, action) in actions.items()
         ]
         return pn.Row(
-            tabs, space, *buttons, sizing_mode="stretch_width", align="center"
+            tabs,
+            space,
+            *buttons,
+            AtOnce(),
+            sizing_mode="stretch_width",
+            align="center",
         )
 
     def _present(self) -> None:
