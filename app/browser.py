@@ -252,7 +252,7 @@ class Browser(DataModel):
     is_stale: bool = Bool(default=False)  # type: ignore[assignment]
 
     def tell(self, **values: Any) -> None:
-        """Tell the browser values of properties.
+        """Set properties in the browser.
 
         What Panel hands on may come without the document's lock, as where a person
         types a value and presses a button at once.

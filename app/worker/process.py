@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable
 from multiprocessing import get_context
+from queue import SimpleQueue
 from typing import Any
 
 from app.messages import Order, Report
@@ -46,7 +47,9 @@ class Worker:
         # Else the pipe would outlive the process, as the server holds this end, too.
         theirs.close()
         self._heard = time.monotonic()
-        threading.Thread(target=self._listen, daemon=True).start()
+        self._orders: SimpleQueue[Order | None] = SimpleQueue()
+        for work in (self._listen, self._speak):
+            threading.Thread(target=work, daemon=True).start()
 
     @property
     def hangs(self) -> bool:
@@ -54,16 +57,27 @@ class Worker:
         return time.monotonic() - self._heard > SILENT
 
     def send(self, order: Order) -> None:
-        """Send an order, which a process that has ended ignores."""
-        with contextlib.suppress(OSError):
-            self._connection.send(order)
+        """Send an order, which a process that has ended ignores.
+
+        A process takes none while a long piece of work lasts, and once its pipe is full
+        who writes into it waits: not the server, which all pages share.
+        """
+        self._orders.put(order)
 
     def end(self) -> None:
         """End the process at once; its later reports are dropped."""
         self._hear = None
+        self._orders.put(None)
         self._process.kill()
         self._process.join()
         self._connection.close()
+
+    def _speak(self) -> None:
+        """Write orders into the pipe, until the process is to end."""
+        # A pipe that is closed has no handle: also a TypeError.
+        with contextlib.suppress(OSError, TypeError):
+            while (order := self._orders.get()) is not None:
+                self._connection.send(order)
 
     def _listen(self) -> None:
         """Pass on reports until the pipe ends."""

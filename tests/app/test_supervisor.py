@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from processes import PATIENCE
 
 import app.supervisor
 from app.messages import Began, Order, Start
@@ -111,3 +112,37 @@ def test_an_interrupt_while_workers_are_prepared_is_for_the_server_alone(
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, b"pressed\n", b"")
+
+
+STOPS_A_WORKER = """
+import multiprocessing, os, signal, threading
+from app.messages import Start
+from app.state import default_settings
+from app.worker.process import Worker
+
+reports = threading.Event()
+worker = Worker(lambda worker, report: reports.set())
+reports.wait(60.0)
+(process,) = multiprocessing.active_children()
+os.kill(process.pid, signal.SIGSTOP)
+settings = default_settings("wall")
+for number in range(200):
+    worker.send(Start(number, settings, 0.0))
+worker.end()
+for thread in set(threading.enumerate()) - {threading.current_thread()}:
+    thread.join(60.0)
+print(multiprocessing.active_children(), threading.active_count())
+"""
+
+
+def test_a_worker_that_takes_no_orders_keeps_nobody_waiting_and_leaves_nothing() -> (
+    None
+):
+    done = subprocess.run(
+        [sys.executable, "-c", STOPS_A_WORKER],
+        cwd=Path(__file__).resolve().parents[2],
+        capture_output=True,
+        check=False,
+        timeout=PATIENCE,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"[] 1\n", b"")

@@ -249,3 +249,22 @@ def test_belts_start_from_zero_unless_a_nested_start_is_chosen():
     assert settings_of().start == "zero"
     assert settings_of(method="paper").start == "zero"
     assert settings_of(start="nested").applies("start")
+
+
+def test_a_search_that_hardly_moves_from_a_start_that_is_near_claims_nothing() -> None:
+    settings = settings_of(
+        method="paper",
+        start="nested",
+        substructures=1,
+        instants=2,
+        wrap=60.2,
+        pull=0.0386,
+        tail_force=0.405,
+        elements=222,
+        max_iterations=40,
+    )
+    problem = problem_of(settings)
+    solution = solve(problem, method_of(settings))
+    distance = distance_to(reference_of(problem), problem)
+    assert distance.of_friction_force(solution.iterate) > 0.01
+    assert solution.status.ending is not Ending.CONVERGED

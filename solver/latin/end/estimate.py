@@ -40,8 +40,7 @@ last two ratios, which a power of the iterations has as well as a power of a num
 With 4 one of 880 random runs ended twice as far away as it said, at the beginning
 of a long plateau (measured)."""
 FEW = 10
-"""Iterations up to which changes foretell nothing: a nested start makes them small at
-once."""
+"""Iterations up to which changes foretell nothing."""
 
 
 class ErrorEstimate:
@@ -60,7 +59,8 @@ class ErrorEstimate:
         Relative error that the run asks for; infinite where it asks for none.
     needs_proof
         Whether only a certified solution counts, whatever it costs: bases that are too
-        small converge to something else, which no change shows.
+        small converge to something else, which no change shows, and from a start that
+        is near changes are small also where k is so far off that nothing moves.
     interrupted
         Returns True where a status step is to be given up; it is tried again after the
         next iteration.

@@ -116,6 +116,10 @@ class JudgedMethod(Protocol):
         """Status step that may end the run with a certified solution."""
 
     @property
+    def start(self) -> object:
+        """Start that is near the solution, or None."""
+
+    @property
     def linear(self) -> object:
         """Form in which the linear stage holds its fields."""
 
@@ -163,7 +167,7 @@ class StopState:
         )
         self.estimate = ErrorEstimate(
             self._stop.accuracy,
-            needs_proof=self._has_bases,
+            needs_proof=self._has_bases or latin.start is not None,
             interrupted=interrupted,
         )
         self._next = 1
