@@ -158,7 +158,7 @@ class Instants:
         rules = self._rules
         self._force = step.force
         self._opening += step.jump
-        self._newton.accumulated_slip += np.abs(step.jump)
+        self._newton.friction_law.accumulate(step.jump)
         self._newton.strained += step.strained
         self._motion += step.motion
         # A bond that has opened once carries no friction any more.
@@ -333,11 +333,11 @@ class Instants:
             near = self._newton.near(at, end)
             if near is None:
                 continue
-            if self._newton.is_stable(near, end):
+            if self._newton.stability.is_stable(near, end):
                 return near
             self.has_others = True
             if _are_equal(at.slip, before.slip):
-                at = self._newton.leave(near, end)
+                at = self._newton.stability.leave(near, end)
         return None
 
     def _slid(

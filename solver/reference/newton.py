@@ -22,16 +22,15 @@ from copy import copy
 from dataclasses import replace
 
 import numpy as np
-from numpy.linalg import LinAlgError
-from scipy import sparse
-from scipy.linalg import cholesky, eigh
 
 from solver.arrays import ROUNDING, Array, Flags, Indices
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
+from solver.reference.friction_over_slip import FrictionOverSlip
 from solver.reference.linear_system import LinearSystem
 from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
 from solver.reference.soft_system import system_of
+from solver.reference.stable_solutions import Stability
 
 FEWEST_STEPS = 30
 """Newton steps that every guess of the states may take; a guess of more jumps may take
@@ -71,9 +70,13 @@ class Newton:
     ----------
     system
         The linear system of the states.
-    accumulated_slip, strained
-        Accumulated slip of all jumps, shape (n,), and y of the base, shape (n_base,),
-        at the instant before, scaled; the march through time updates both.
+    friction_law
+        Friction of all jumps over their slips in the instant.
+    stability
+        Stability of solutions; friction falls there as its law says.
+    strained
+        y of the base at the instant before, shape (n_base,), scaled; the march through
+        time updates it, and the slip that friction has accumulated.
     largest_load
         Largest force of the load on a jump, scaled.
     """
@@ -85,7 +88,8 @@ class Newton:
         self._condensed = condensed
         self._rules = condensed.rules
         rules = self._rules
-        self.accumulated_slip = np.zeros_like(rules.gap)
+        self.friction_law = FrictionOverSlip(rules)
+        self.stability = Stability(condensed, self.friction_law)
         self.strained = np.zeros(len(condensed.base))
         self._frictionless: Indices = np.flatnonzero(rules.is_frictionless)
         # Jumps whose friction ends where their contact opens, and its normal jumps.
@@ -94,48 +98,12 @@ class Newton:
         )
         self._carriers: Indices = rules.partner[self._carried]
         self.largest_load = float(np.abs(condensed.load).max(initial=0.0))
-        # Slips that say how far friction has fallen, where it falls no further.
-        self._fallen: Array | None = None
 
     def with_friction_left(self, slip: Array) -> Newton:
-        """The same method, with friction that falls up to given slips and no further.
-
-        Where friction rises with slip it goes on to rise.
-
-        Parameters
-        ----------
-        slip
-            Slips of the instant up to which friction falls, shape (n,), scaled;
-            non-negative.
-        """
+        """The same method, with the friction that is left after slips, (n,), scaled."""
         changed = copy(self)
-        changed._fallen = slip
+        changed.friction_law = self.friction_law.left_after(slip)
         return changed
-
-    @property
-    def _softens(self) -> bool:
-        """Friction falls with slip somewhere."""
-        return self._fallen is None and self._rules.softens
-
-    def _factor(self, slip: Array) -> Array:
-        """Factor on the friction bound at slips >= 0 of the instant, both (n,)."""
-        slip_factor = self._rules.slip_factor
-        if self._fallen is None:
-            return slip_factor(self.accumulated_slip + slip)
-        # The fall is that up to the given slip, the rise that up to the slip itself.
-        fallen = self.accumulated_slip + self._fallen
-        return (
-            slip_factor(fallen)
-            - slip_factor.rise(fallen)
-            + slip_factor.rise(self.accumulated_slip + slip)
-        )
-
-    def _slope(self, slip: Array) -> Array:
-        """Growth of the factor per further slip at slips >= 0, both (n,)."""
-        slope = self._rules.slip_factor.slope(self.accumulated_slip + slip)
-        if self._fallen is None:
-            return slope
-        return np.maximum(slope, 0.0)
 
     def follow(
         self, at: InstantSolution, sides: Sides, guesses: Iterable[InstantSolution]
@@ -148,7 +116,9 @@ class Newton:
             reached = self.seek(self.system, guess, sides)
             if reached is None:
                 continue
-            if not self._softens or self._goes_on(at, reached, sides):
+            if not self.friction_law.softens:
+                return reached
+            if self.stability.continues(at, reached, sides):
                 return reached
         return None
 
@@ -194,8 +164,7 @@ class Newton:
         """
         piece = states.tobytes()
         if self._rules.is_nonlinear:
-            slips = self.accumulated_slip + np.abs(slip)
-            piece += self._rules.slip_factor.segment(slips).tobytes()
+            piece += self.friction_law.segment(slip).tobytes()
         return piece
 
     def _with_springs(self, springs: Array) -> LinearSystem:
@@ -208,50 +177,6 @@ class Newton:
     def near(self, at: InstantSolution, sides: Sides) -> InstantSolution | None:
         """Seek a solution, stable or not, from fields that need not be one."""
         return self.seek(self.system, at, sides)
-
-    def is_stable(self, at: InstantSolution, sides: Sides) -> bool:
-        """Check that no further slip of a solution costs less than it gains."""
-        return self._goes_on(at, at, sides)
-
-    def leave(self, at: InstantSolution, sides: Sides) -> InstantSolution:
-        """Disturb a solution that is not stable, in the direction that it gives way.
-
-        All points that slip go on along the motion that costs least, until half of the
-        slip after which the first of them would stop.
-        """
-        growth, free = self._growth(at, at, sides)
-        direction = self._weakest_direction(at, growth, free)
-        slip = np.abs(at.slip)
-        # An eigenvector has no sign: it is taken such that some points slip on.
-        turns = direction < 0.0
-        if turns.all() or not (direction > 0.0).any():
-            direction = -direction
-            turns = direction < 0.0
-        length = float((slip[turns] / -direction[turns]).min(initial=np.inf))
-        if not np.isfinite(length):
-            length = float(slip.max() / direction.max())
-        further = np.maximum(slip + 0.5 * length * direction, 0.0)
-        return at._replace(slip=further * at.states)
-
-    def _weakest_direction(
-        self, at: InstantSolution, growth: Array | None, free: Indices
-    ) -> Array:
-        """Slip per jump, along its friction, in the motion that costs least, (n,).
-
-        Growth and places are those of `_growth`.
-        """
-        condensed = self._condensed
-        motion = np.zeros(len(condensed.base))
-        if growth is None:
-            motion[free] = self._rules.compliance[condensed.base[free]] > 0.0
-        else:
-            # The lowest eigenvalue is the softest motion: the way down from a ridge.
-            softened = self._softened(growth, free)
-            _, vectors = eigh(softened, subset_by_index=[0, 0], check_finite=False)
-            motion[free] = vectors[:, 0]
-        direction = condensed.ties @ motion * at.states
-        direction[np.abs(at.states) != 1] = 0.0
-        return np.asarray(direction)
 
     def seek(
         self, system: LinearSystem, guess: InstantSolution, sides: Sides
@@ -267,17 +192,19 @@ class Newton:
         pieces: list[bytes] = []
         n_singular = 0
         for _ in range(max(FEWEST_STEPS, len(states))):
-            tangent = sides
+            tangent_sides = sides
             if rules.is_nonlinear:
                 slip = _slip_of_states(states, slip)
             piece = self._piece(states, slip)
             if rules.is_nonlinear:
-                tangent, is_capped = self._linearised(system, slip, force, sides)
-                piece += is_capped.tobytes()
+                tangent = self.friction_law.tangent(sides.bound, force, slip)
+                system.set_friction(tangent.coefficient, tangent.growth)
+                tangent_sides = replace(sides, bound=tangent.constant)
+                piece += tangent.is_capped.tobytes()
             if _cycles(pieces, piece, is_nonlinear=rules.is_nonlinear):
                 return None
             pieces.append(piece)
-            step = system(states, tangent)
+            step = system(states, tangent_sides)
             # Systems with springs cost as much as others, and are counted with them.
             if system is not self.system:
                 self.system.solutions += 1
@@ -286,7 +213,7 @@ class Newton:
                 return None
             rounding = self._rounding(states, step)
             corrected = self._corrected(
-                states, step, tangent, system.friction, rounding
+                states, step, tangent_sides, system.friction, rounding
             )
             if rules.is_nonlinear:
                 slip = np.where(rules.normal, 0.0, step.jump - sides.held)
@@ -297,26 +224,6 @@ class Newton:
                     return reached
             states = corrected
         return None
-
-    def _linearised(
-        self, system: LinearSystem, slip: Array, force: Array, sides: Sides
-    ) -> tuple[Sides, Flags]:
-        """Replace the friction bound by its tangent at slips and forces, (n,) each.
-
-        Returns
-        -------
-        Right sides with the constant part of the tangent, whose other parts `system`
-        gets; and at which jumps the bound is capped, shape (n,).
-        """
-        rules = self._rules
-        bound = rules.before_slip(sides.bound, force)
-        is_capped = bound >= rules.cap
-        factor = self._factor(slip)
-        growth = self._slope(slip) * bound
-        system.set_friction(np.where(is_capped, 0.0, rules.friction * factor), growth)
-        # What of the tangent depends neither on the normal force nor on the slip.
-        constant = np.where(is_capped, rules.cap, sides.bound) * factor - growth * slip
-        return replace(sides, bound=constant), is_capped
 
     def _obeys(
         self, system: LinearSystem, at: InstantSolution, sides: Sides, slack: float
@@ -333,94 +240,13 @@ class Newton:
         if not rules.is_nonlinear:
             return True
         force = at.step.force
-        bound = rules.before_slip(sides.bound, force)
-        bound = self._factor(np.abs(at.slip)) * bound
+        bound = self.friction_law.bound(sides.bound, force, np.abs(at.slip))
         sticks = (at.states == HELD) & ~rules.normal
         slips = np.abs(at.states) == 1
         excess = np.where(sticks, np.abs(force) - bound - slack, 0.0)
         violation = np.where(slips, np.abs(force + at.states * bound), excess)
         largest = max(self.largest_load, np.abs(force).max())
         return bool(violation.max(initial=0.0) <= FRICTION_TOLERANCE * largest)
-
-    def _goes_on(
-        self, at: InstantSolution, reached: InstantSolution, sides: Sides
-    ) -> bool:
-        """Check that a solution continues the branch of another.
-
-        The solution does if the structure is stable however far the contacts that slip
-        in either have softened in between, whatever else slips: then no other solution
-        slips there alone.
-        """
-        growth, free = self._growth(at, reached, sides)
-        if growth is None:
-            return False
-        if not len(free):
-            return True
-        try:
-            # Cholesky's factors exist exactly where the matrix is positive definite.
-            cholesky(self._softened(growth, free), overwrite_a=True, check_finite=False)
-        except LinAlgError:
-            return False
-        return True
-
-    def _growth(
-        self, at: InstantSolution, reached: InstantSolution, sides: Sides
-    ) -> tuple[Array | None, Indices]:
-        """Stiffness of contacts, as far as they soften between two solutions, scaled.
-
-        Returns
-        -------
-        The stiffness, shape (n,), and the places in the base of the jumps that may
-        move, shape (n_free,); no places where nothing softens. The stiffness is None
-        where a spring in series snaps by itself: the places are then those of such
-        springs.
-        """
-        rules = self._rules
-        base = self._condensed.base
-        slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        slopes = self._lowest_slopes(at, reached, sides)
-        growth = np.where(slips, slopes, 0.0)
-        # Stiffness without softening is positive, so the solution is the only one
-        # nearby.
-        if not np.any(growth < 0.0):
-            return growth, np.zeros(0, dtype=np.intp)
-        # A contact and a spring in series with it share the motion.
-        sprung = rules.compliance > 0.0
-        stiffness = 1.0 + growth * rules.compliance
-        if np.any(stiffness <= 0.0):
-            return None, np.flatnonzero(stiffness[base] <= 0.0)
-        growth /= stiffness
-        stays_held = sprung & (at.states == HELD) & (reached.states == HELD)
-        growth[stays_held] += 1.0 / rules.compliance[stays_held]
-        stays_open = (at.states == OPEN) & (reached.states == OPEN)
-        is_free = slips | stays_open | sprung
-        return growth, np.flatnonzero(is_free[base])
-
-    def _lowest_slopes(
-        self, at: InstantSolution, reached: InstantSolution, sides: Sides
-    ) -> Array:
-        """Lowest growth of the friction force per slip between two solutions, (n,)."""
-        rules = self._rules
-        begin = np.abs(at.slip)
-        end = np.abs(reached.slip)
-        slope = rules.slip_factor.lowest_slope(
-            self.accumulated_slip + np.minimum(begin, end),
-            self.accumulated_slip + np.maximum(begin, end),
-        )
-        before = rules.before_slip(sides.bound, at.step.force)
-        after = rules.before_slip(sides.bound, reached.step.force)
-        return np.asarray(slope * np.maximum(before, after))
-
-    def _softened(self, growth: Array, free: Indices) -> Array:
-        """Stiffness of structure and contacts at places of the base, (n_free, n_free).
-
-        `growth` is the stiffness of the contacts, shape (n,), scaled, and `free` are
-        the places, shape (n_free,).
-        """
-        tied = self._condensed.ties[:, free]
-        softened = self._condensed.stiffness[np.ix_(free, free)]
-        softened += tied.T @ sparse.diags_array(growth) @ tied
-        return np.asarray(softened)
 
     def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
         """Forces that rounding may make, scaled.
