@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,7 @@ from solver.arrays import Array, Flags, Indices
 from solver.checks import FUNCTION, check
 from solver.discrete.problem import Problem
 from solver.latin.end.certified import balance_of_rows, known_forces
-from solver.laws import Contact
+from solver.laws import Component, Contact
 from solver.reference.assembly import (
     Interrupted,
     NoReferenceError,
@@ -204,19 +204,31 @@ def _contact_forces(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
     known, _ = known_forces(coarse, solution.contact_force / fine.scales.force)
     force = np.zeros((fine.n_rows, known.shape[1]))
     is_open = np.ones(fine.n_rows, dtype=bool)
-    for name, target in fine.rubbing.items():
-        law = coarse.rubbing[name]
-        places = _places(fine, target), _places(coarse, law)
-        for component, carried in zip(law.components, target.components, strict=True):
-            nodal = law.by_point(known[component.above])
-            # Per length, as nodal forces depend on the mesh.
-            density = nodal / law.by_point(law.weights)[:, None]
-            spread = _interpolated(*places, density)
-            shared = spread[target.points] * target.weights[:, None]
+    for name in fine.rubbing:
+        for carried, shared in _shared_forces(coarse, known, fine, name):
             for rows, sign in zip(carried.sides, (1.0, -1.0), strict=False):
                 force[rows] = sign * shared
                 is_open[rows] = False
     return force, is_open
+
+
+def _shared_forces(
+    coarse: Problem, force: Array, fine: Problem, name: str
+) -> Iterator[tuple[Component, Array]]:
+    """Components of a finer mesh's interface, with the forces carried to its points.
+
+    `force` is that of the rows of the coarser mesh, shape (n_coarse_rows, n_instants),
+    scaled; those carried have shape (n_pairs, n_instants).
+    """
+    law = coarse.rubbing[name]
+    target = fine.rubbing[name]
+    places = _places(fine, target), _places(coarse, law)
+    for component, carried in zip(law.components, target.components, strict=True):
+        nodal = law.by_point(force[component.above])
+        # Per length, as nodal forces depend on the mesh.
+        density = nodal / law.by_point(law.weights)[:, None]
+        spread = _interpolated(*places, density)
+        yield carried, spread[target.points] * target.weights[:, None]
 
 
 def _bodies(problem: Problem) -> Indices:
