@@ -19,6 +19,7 @@ from solver.discrete.problem import Problem
 from solver.latin.indicators import contact_status
 from solver.latin.iterate import Iterate
 from solver.laws import OPEN
+from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Incremental
 from solver.reference.rules import HELD, States
@@ -36,10 +37,6 @@ CERTIFIED = 1e-7
 """Largest KKT residual of a certified solution, relative to the contact force. Its
 statuses agree with it exactly; on four wires of 320 elements the linear systems leave
 1e-8 (measured)."""
-ROUNDED = 1e-3
-"""The same where no more is left than rounding leaves: of forces in elements, 1e7 times
-those of contact in slender bodies, and of a slide, 1e11 times the elongation of the
-spring that ends it. A run that asks for less takes only less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +118,7 @@ def status_step(
     residual = whole / distance.force_size
     largest = CERTIFIED
     if solution.unbalanced <= solution.rounding:
-        largest = ROUNDED
+        largest = BLURRED
     if not 0.0 <= residual <= largest:
         return solution, None
     return solution, Certificate(solution, distance, float(residual))
