@@ -50,8 +50,6 @@ class Live:
         self.display = Display(state, document, self._write)
         document.add_root(self.display.pulse)
         document.add_periodic_callback(self.display.catch_up, LOOK)
-        # While the browser loads.
-        document.add_next_tick_callback(self.prepare)
         self._above = wrapped(
             self.transport.view,
             self._status,
@@ -87,8 +85,9 @@ class Live:
         )
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
-    def prepare(self) -> None:
-        """Make the figures in sight."""
+    def prepare(self, kinds: Kinds | None) -> None:
+        """Make the figures that will be in sight, while the browser loads."""
+        self._choose_cards(kinds)
         for card in self._cards:
             card.fit()
         for view in self._in_sight():

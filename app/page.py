@@ -111,6 +111,7 @@ class Page:
         self._make_dialogs()
         self._controls = Controls(state, is_open=self._has_controls)
         self.template = self._framed()
+        document.add_next_tick_callback(self._fill)
         follow_itself(self.template)
         keys = transport.keys() | {"p": self._present, "?": self._help}
         self._browser.listen(state, document, keys)
@@ -138,10 +139,7 @@ class Page:
         """The template, with header, controls and main area."""
         return pmui.Page(
             title="Slipfront",
-            sidebar=[self._controls.view],
             sidebar_width=320,
-            header=[self._header()],
-            main=[self._main],
             sidebar_open=self._has_controls,
             sidebar_variant="persistent",
             raw_css=[LOADING],
@@ -151,6 +149,13 @@ class Page:
             sx=COMPACT,
             theme_config=HEADINGS,
         )
+
+    def _fill(self) -> None:
+        """Put the parts on the page, while the browser loads its programs."""
+        self.template.param.update(
+            sidebar=[self._controls.view], header=[self._header()], main=[self._main]
+        )
+        self._live.prepare(kinds_beside(self.state))
 
     def _follow_state(self) -> None:
         """Have the page follow the state, and the line of the class."""
