@@ -109,12 +109,13 @@ export function render({model, view}) {
     addEventListener(type, hold, {capture: true})
   }
   view.model.document.on_change((event) => {
-    if (isHeld && event.attr == "value") { model.send_msg("") }
+    const isFinal = event.attr == "value_throttled"
+    if (isFinal || (isHeld && event.attr == "value")) { model.send_msg("") }
   })
 }
 """
-"""Script that sends a message after each value that a pointer drags. Of a key value and
-final value come together, and are one."""
+"""Script that sends a message after each value that a pointer drags, and after each final
+one. Of a key value and final value come together, and are one."""
 
 
 class Pulse(DataModel):
