@@ -114,8 +114,8 @@ export function render({model, view}) {
   })
 }
 """
-"""Script that sends a message after each value that a pointer drags, and after each final
-one. Of a key value and final value come together, and are one."""
+"""Script that sends a message after each value that a pointer drags, and after each
+final one. Of a key value and final value come together, and are one."""
 
 
 class Pulse(DataModel):

@@ -10,7 +10,6 @@ import numpy as np
 from app.frame import DeformedGeometry, Floats, Geometry
 from app.messages import Needs
 from app.worker.cells import (
-    NONE,
     cells_of,
     drawings_of_grids,
     drawings_of_shapes,
@@ -26,7 +25,6 @@ from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate
-from solver.laws.contact import Contact
 from solver.settings.scene import Settings
 
 THICKNESS = 0.08
@@ -59,8 +57,8 @@ class Drawn:
         mesh: dict[str, Any],
         positions: Array,
     ) -> None:
-        # Numbers of the shown contact points among all, their degrees of freedom along
-        # and across the interface, and numbers of their interfaces.
+        # Numbers of the shown contact points among all, a degree of freedom of the node
+        # at each, and numbers of their interfaces.
         contacts = problem.rubbing
         kept = [thinned(size, MOST_POINTS) for size in contacts.sizes.tolist()]
         chains = np.repeat(np.arange(len(kept)), [len(some) for some in kept])
@@ -68,12 +66,11 @@ class Drawn:
         dofs = []
         for law in contacts.laws.values():
             _, pairs = np.unique(law.points, return_index=True)
-            dofs.append(_dofs_of(problem, law, pairs))
-        self._problem = problem
+            dofs.append(problem.row_dofs[law.tangent.above[pairs]])
         self._columns = columns
         self._points = firsts[chains] + np.concatenate(kept)
         self._dofs = contacts.of_points(dofs)[self._points]
-        points = floats(positions[self._dofs[:, 0]])
+        points = floats(positions[self._dofs])
         self.geometry = Geometry(
             description=description,
             points=points,
@@ -83,28 +80,12 @@ class Drawn:
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """Displacements of nodes and points, and the status, at the shown instants."""
-        absolute = iterate.problem.absolute(iterate.displacement)
-        moved = absolute[self._dofs][:, :, self._columns]
-        moved[self._dofs == NONE] = 0.0
         status = iterate.status[np.ix_(self._points, self._columns)]
-        return DeformedGeometry(self._nodes_moved(iterate), floats(moved), status)
+        return DeformedGeometry(*self._moved(iterate), status)
 
-    def _nodes_moved(self, iterate: Iterate) -> Floats:
+    def _moved(self, iterate: Iterate) -> tuple[Floats, Floats]:
+        """Displacements of drawn nodes and points, as of `DeformedGeometry`."""
         raise NotImplementedError
-
-
-def _dofs_of(problem: Problem, law: Contact, pairs: Indices) -> Indices:
-    """Degrees of freedom of pairs of an interface, along and across it, (n_points, 2).
-
-    Where bodies do not open, the degree of freedom across is `NONE`.
-    """
-    components = [law.tangent]
-    if law.normal:
-        components.append(law.normal.component)
-    rows = np.stack([component.above[pairs] for component in components], axis=1)
-    missing = 2 - len(components)
-    dofs = problem.row_dofs[rows]
-    return np.pad(dofs, ((0, 0), (0, missing)), constant_values=NONE)
 
 
 class DrawnRods(Drawn):
@@ -167,11 +148,11 @@ class DrawnRods(Drawn):
         """Axial forces in all elements, shape (n_elements, n_instants), N."""
         return self._force(iterate.displacement[:, self._columns])
 
-    def _nodes_moved(self, iterate: Iterate) -> Floats:
-        """Displacement of the nodes, which move along the rods, m."""
-        moved = iterate.problem.absolute(iterate.displacement)
-        along = moved[np.ix_(self._along, self._columns)]
-        return floats(np.stack([along, np.zeros_like(along)], axis=1))
+    def _moved(self, iterate: Iterate) -> tuple[Floats, Floats]:
+        """Displacements of nodes and points, which move along the rods."""
+        moved = iterate.problem.absolute(iterate.displacement)[:, self._columns]
+        vectors = np.stack([moved, np.zeros_like(moved)], axis=1)
+        return floats(vectors[self._along]), floats(vectors[self._dofs])
 
 
 def _rectangles(
@@ -238,7 +219,7 @@ class DrawnMesh(Drawn):
     def _stress(self, iterate: Iterate, needs: Needs) -> StressField:
         """Von Mises' equivalent stress, its mean in every cell."""
         means = []
-        for moved in np.moveaxis(self._moved(iterate), -1, 0):
+        for moved in np.moveaxis(self._inside_moved(iterate), -1, 0):
             stress = self._inside.stress(moved)
             shown = von_mises(stress, self._poisson, self._state)
             means.append(
@@ -253,10 +234,13 @@ class DrawnMesh(Drawn):
         still = self._inside.displacement(np.zeros((len(displacement), 1)), [0])
         return floats((moved - still)[self._nodes, :, 0])
 
-    def _moved(self, iterate: Iterate) -> Array:
+    def _inside_moved(self, iterate: Iterate) -> Array:
         """Displacement of all nodes at the shown instants, (n_nodes, 2, n_shown), m."""
         moved = self._inside.displacement(iterate.displacement, slice(None))
         return moved[:, :, self._columns]
 
-    def _nodes_moved(self, iterate: Iterate) -> Floats:
-        return floats(self._moved(iterate)[self._nodes])
+    def _moved(self, iterate: Iterate) -> tuple[Floats, Floats]:
+        """Displacements of nodes and points, whatever frames the nodes have."""
+        moved = self._inside_moved(iterate)
+        points = moved[self._inside.nodes_of_dofs[self._dofs]]
+        return floats(moved[self._nodes]), floats(points)

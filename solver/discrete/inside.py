@@ -35,9 +35,11 @@ class Inside:
         (n_rows, n_columns), of others in any order, (n_nodes,).
     dofs
         Degrees of freedom of the problem that each substructure keeps, (n_kept,) each.
+    nodes_of_dofs
+        Number of the node of every degree of freedom of the problem, (n_dofs,).
     positions, directions
-        Position of every degree of freedom of the problem, (n_dofs, 2), scaled, and its
-        motion along x and y and its turn, (n_dofs, 3): a unit vector.
+        Its position, (n_dofs, 2), scaled, and its motion along x and y and its turn,
+        (n_dofs, 3): a unit vector.
     """
 
     def __init__(
@@ -62,7 +64,8 @@ class Inside:
         self.dofs: list[Indices] = [places[start:end] for start, end in ends]
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
-        self.positions = positions[skeleton // N_AXES]
+        self.nodes_of_dofs: Indices = skeleton // N_AXES
+        self.positions = positions[self.nodes_of_dofs]
         corners = [part.nodes.ravel()[part.mesh.elements] for part in parts]
         self.elements: Indices = np.concatenate(corners)
         sizes = [len(elements) for elements in corners]

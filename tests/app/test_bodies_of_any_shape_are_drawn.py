@@ -12,6 +12,7 @@ import pytest
 import shaped
 from pictures import boxes_of_words, meet, shown
 from scipy.spatial import Delaunay
+from small_scenes import SMALL
 
 from app.frame import Frame, Selection
 from app.lessons.catalogue import CASES
@@ -29,6 +30,7 @@ from app.worker.cells import (
     joined,
 )
 from solver.discrete import Bodies, Body, Held, Mesh, discretise
+from solver.scenes import CATALOGUE
 from solver.settings.scene import Settings
 
 
@@ -223,14 +225,15 @@ def test_the_selected_joint_is_named_beside_it(spread: Frame) -> None:
     view = Scene(state)
     _ = view.figure
     view.update(spread, Selection(0.5, interface="crown"), None)
-    words = view.sources["words"].data
-    place = words["text"].index("crown")
     picture = view.picture
     assert picture is not None
+    low, high = dict(boxes_of_words(view))["crown"]
     halo = picture.page(picture.halo)
-    assert abs(words["x"][place] - halo[:, 0].mean()) < 12.0
-    # Above the ring: below it the weight has its arrow.
-    assert words["y"][place] > halo[:, 1].max()
+    assert low[0] < halo[:, 0].mean() < high[0]
+    assert not meet((low, high), halo.min(axis=0), halo.max(axis=0))
+    (weight,) = [each for each in picture.arrows if each.act.where == "body"]
+    shaft = picture.page(np.concatenate(weight.lines))
+    assert not meet((low, high), shaft.min(axis=0), shaft.max(axis=0))
 
 
 def test_hatches_of_a_round_support_lie_behind_it() -> None:
@@ -382,6 +385,28 @@ def test_the_name_of_a_joint_lies_on_no_body_where_one_end_is_free() -> None:
         corners = picture.page(picture.nodes[frame.run.geometry.cells])
         box = dict(boxes_of_words(view))[name]
         assert not meet(box, corners.min(axis=1), corners.max(axis=1)), name
+
+
+@pytest.mark.parametrize(
+    "scene", ["arch", "belt", "block", "bundle", "fault", "incline", "mesh", "wall"]
+)
+def test_the_points_of_a_contact_move_with_their_body(scene: str) -> None:
+    frame = ran(CATALOGUE[scene].checked(SMALL[scene]), ends=True)
+    nodes = frame.run.geometry.nodes
+    size = np.ptp(nodes, axis=0).max()
+    largest = np.abs(frame.deformed.nodes).max()
+    found = 0
+    for place, moved in zip(
+        frame.run.geometry.points, frame.deformed.points, strict=True
+    ):
+        is_there = np.hypot(*(nodes - place).T) < 1e-6 * size
+        # Of the bodies that meet there it is on one, of which it may be no drawn node:
+        # the other moves as it does but for slip and gap.
+        aside = np.abs(frame.deformed.nodes[is_there] - moved).max(axis=(1, 2))
+        assert np.min(aside, initial=np.inf) < 0.1 * largest or not is_there.any()
+        found += is_there.any()
+    assert found >= 2
+    assert largest > 0.0
 
 
 def test_a_side_that_is_held_is_not_moved_during_the_search() -> None:
