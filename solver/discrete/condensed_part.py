@@ -147,15 +147,6 @@ class CondensedPart:
         return self.operator.condensed
 
     @property
-    def dofs(self) -> Indices:
-        """Numbers of its degrees of freedom among those of all nodes, shape (n,).
-
-        Each node has `N_AXES` of these numbers, whether it uses them or not.
-        """
-        axes = np.arange(self.mesh.n_axes)
-        return np.add.outer(N_AXES * self.nodes.ravel(), axes).ravel()
-
-    @property
     def directions(self) -> Array:
         """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
         if self.frames is None:

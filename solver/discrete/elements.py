@@ -311,13 +311,15 @@ class SchurComplement:
         return nbytes
 
     def condense(self, force: Array) -> Array:
-        """Condense forces, shape (n, n_columns), to shape (n_kept, n_columns)."""
+        """Condense forces, (..., n, n_columns), to (..., n_kept, n_columns)."""
         if self._before is not None:
             force = self._before.condense(force)
-        if not len(self._rest):
-            return np.asarray(force[self._positions])
-        carried = self._signs[:, None] * (self._response.T @ force[self._rest])
-        return np.asarray(force[self._positions] - carried)
+        on_kept = force.take(self._positions, axis=-2)
+        if len(self._rest):
+            carried = self._response.T @ force.take(self._rest, axis=-2)
+            carried *= self._signs[:, None]
+            on_kept -= carried
+        return on_kept
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all degrees of freedom, shape (n, n_columns).

@@ -306,7 +306,8 @@ class CutBodies:
         force = own.force(self.structure.bodies[bodies[0]].weight, load)
         turned: Array | list[None] = [None] * len(owners)
         if force is not None:
-            on_nodes = frames[..., :2] @ force / (self.young * self.length)
+            on_nodes = frames[..., :2] @ force
+            on_nodes /= self.young * self.length
             turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
         of_parts = zip(nodes, frames, turned, strict=True)
         return [_PartNodes(*of_part) for of_part in of_parts]
