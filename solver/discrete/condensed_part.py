@@ -71,18 +71,37 @@ class Operator:
         return self.condensed.nbytes
 
 
+class TraceRows(NamedTuple):
+    """Numbers of boundary rows at some nodes of a part, which follow each other.
+
+    Attributes
+    ----------
+    first
+        Number of the first row.
+    shape
+        Number of nodes and of components; all rows of a node are together.
+    """
+
+    first: int
+    shape: tuple[int, int]
+
+    @property
+    def numbers(self) -> Indices:
+        """Numbers of the rows, shape (n_nodes, n_components)."""
+        n_nodes, n_components = self.shape
+        last = self.first + n_nodes * n_components
+        return np.arange(self.first, last).reshape(self.shape)
+
+
 def numbered(
     traces: Mapping[Hashable, Trace], first: int
-) -> tuple[dict[Hashable, Indices], int]:
-    """Row numbers of each trace, (n_nodes, n_components), counted from `first`.
-
-    Beside them the number after the last.
-    """
-    rows = dict[Hashable, Indices]()
+) -> tuple[dict[Hashable, TraceRows], int]:
+    """Rows of each trace, counted from `first`, and the number after the last."""
+    rows = dict[Hashable, TraceRows]()
     for name, trace in traces.items():
-        last = first + trace.dofs.size
-        rows[name] = np.arange(first, last).reshape(trace.dofs.shape)
-        first = last
+        n_nodes, n_components = trace.dofs.shape
+        rows[name] = TraceRows(first, (n_nodes, n_components))
+        first += n_nodes * n_components
     return rows, first
 
 
@@ -121,7 +140,7 @@ class CondensedPart:
     body
         Number of its body.
     rows
-        Boundary rows by what has them, shape (n_nodes, n_components) each.
+        Boundary rows by what has them; those of parts follow each other, part by part.
     force
         Forces on its degrees of freedom, (n, n_instants), scaled, or None.
     frames
@@ -136,7 +155,7 @@ class CondensedPart:
     operator: Operator
     nodes: Indices
     body: int
-    rows: Mapping[Hashable, Indices]
+    rows: Mapping[Hashable, TraceRows]
     force: Array | None
     frames: Array | None = None
     rotation: Array | None = None

@@ -93,18 +93,16 @@ class Inside:
         self.directions: Array = np.concatenate(directions)[along[first]]
 
     def substructures(self) -> tuple[Substructure, ...]:
-        """Substructures of the problem, part by part."""
+        """Substructures of the problem, part by part, and so are their rows."""
         forces = self._condensed_forces()
+        operators = [part.operator.elasticity for part in self._parts]
+        ends = np.cumsum([len(operator.trace) for operator in operators])
+        every = np.split(np.arange(ends[-1]), ends[:-1])
         substructures = list[Substructure]()
-        for number, part in enumerate(self._parts):
-            rows = [of_trace.ravel() for of_trace in part.rows.values()]
-            substructure = Substructure(
-                elasticity=part.operator.elasticity,
-                dofs=self.dofs[number],
-                rows=np.concatenate(rows),
-                body_force=forces.get((part.condensed, id(part.force))),
-            )
-            substructures.append(substructure)
+        fields = zip(self._parts, operators, self.dofs, every, strict=True)
+        for part, elasticity, dofs, rows in fields:
+            force = forces.get((part.condensed, id(part.force)))
+            substructures.append(Substructure(elasticity, dofs, rows, force))
         return tuple(substructures)
 
     def _condensed_forces(self) -> dict[tuple[SchurComplement, int], Array]:

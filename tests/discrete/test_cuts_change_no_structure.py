@@ -252,7 +252,7 @@ def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
     areas = [len(part.mesh.elements) for part in cut.parts]
     assert sum(areas) == 2 * 6 * 4
     sides = chain.from_iterable(part.rows.values() for part in cut.parts)
-    rows = np.concatenate([rows.ravel() for rows in sides])
+    rows = np.concatenate([rows.numbers.ravel() for rows in sides])
     assert np.array_equal(np.sort(rows), np.arange(len(rows)))
     lengths: dict[str, float] = {}
     for piece in cut.pieces:

@@ -97,8 +97,8 @@ def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
     Macro forces are polynomials along the seam in both directions of the body's axes.
     """
     first, second = [cut.parts[cut.owner(body, part)] for part in seam.parts]
-    rows = first.rows["first", body, number]
-    opposite = second.rows["second", body, number]
+    rows = first.rows["first", body, number].numbers
+    opposite = second.rows["second", body, number].numbers
     if rows.shape[1] > 2:
         # Beams are cut at a node, whose three components all balance.
         return glued(rows, opposite, np.ones((1, 1)))
@@ -122,7 +122,7 @@ def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
     for part in range(cut.structure.bodies[held.body].substructures):
         own = cut.parts[cut.owner(held.body, part)]
         if ("held", number) in own.rows:
-            rows.append(own.rows["held", number].ravel())
+            rows.append(own.rows["held", number].numbers.ravel())
             values.append(
                 scaled[
                     np.isin(

@@ -124,7 +124,8 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
 
 def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
     """Perfect interface of two substructures of one body."""
-    above, below = [cut.parts[number].rows[joint] for number, _ in joint.sides]
+    sides = [cut.parts[number].rows[joint] for number, _ in joint.sides]
+    above, below = [rows.numbers for rows in sides]
     return glued(below, above, cut.macro_basis_of_cut(joint))
 
 
@@ -245,7 +246,7 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
     (number,) = [
         number for number, part in enumerate(cut.parts) if "spring" in part.rows
     ]
-    rows = cut.parts[number].rows["spring"]
+    rows = cut.parts[number].rows["spring"].numbers
     areas = cut.mesh(number).edge_weights("right")
     return Contact(
         normal=Unilateral(
@@ -277,7 +278,7 @@ def _prescribed(
                 moved = values_along(cut.rectangles, number, span, given[component])
                 if side in ("left", "right"):
                     _move_corners(cut, number, side, component, moved)
-                rows.append(of_span[:, column])
+                rows.append(of_span.numbers[:, column])
                 values.append(moved / cut.stack.length)
     if rows:
         yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
