@@ -31,6 +31,14 @@ POISSON = Number(-1.0, MOST_POISSON, above=True)
 POINT = Numbers(((2,),))
 
 
+def turned_by(angles: Array) -> Array:
+    """Matrices that turn counter-clockwise, (n, 2, 2), by angles, (n,), rad."""
+    c = np.cos(angles)
+    s = np.sin(angles)
+    rows = np.stack([c, -s], axis=1), np.stack([s, c], axis=1)
+    return np.stack(rows, axis=1)
+
+
 @dataclass(frozen=True, eq=False)
 class Body:
     """An elastic body: its shape, turned by the angle and put at the origin.
@@ -95,9 +103,7 @@ class Body:
     @cached_property
     def rotation(self) -> Array:
         """Matrix from the axes of the shape to the global ones, shape (2, 2)."""
-        c = np.cos(self.angle)
-        s = np.sin(self.angle)
-        return np.array([[c, -s], [s, c]])
+        return turned_by(np.array([self.angle]))[0]
 
     @cached_property
     def nodes(self) -> Array:

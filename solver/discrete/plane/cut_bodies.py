@@ -79,7 +79,10 @@ class CutBodies:
                 shapes[key] = CutShape(body.shape, body.substructures)
         self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
         self.frames = NodeFrames(
-            bodies, structure.first_nodes, structure.pairs, structure.held
+            structure.rotations,
+            structure.first_nodes,
+            structure.pairs,
+            structure.held,
         )
         self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
@@ -139,9 +142,9 @@ class CutBodies:
     @cached_property
     def _own_frames(self) -> Array:
         """Directions at all nodes in the axes of their bodies, (n_nodes, 2, 2)."""
-        rotations = np.array([body.rotation for body in self.structure.bodies])
         sizes = np.diff(self.structure.first_nodes)
-        own = self.frames.frames @ np.repeat(rotations, sizes, axis=0)
+        rotations = np.repeat(self.structure.rotations, sizes, axis=0)
+        own = self.frames.frames @ rotations
         return snapped(own.reshape(-1, 2)).reshape(-1, 2, 2)
 
     def _of_shapes(self) -> list[ShapePart]:
@@ -260,7 +263,7 @@ class CutBodies:
                 rows=rows,
                 force=force,
                 frames=frames,
-                rotation=of_body.rotation,
+                rotation=self.structure.rotations[body],
             )
 
     def _nodes_of_parts(self) -> list[_PartNodes]:

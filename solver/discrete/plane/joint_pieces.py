@@ -32,7 +32,7 @@ def snapped(vectors: Array) -> Array:
 class NodeFrames:
     """Directions of the degrees of freedom of the nodes of all bodies.
 
-    Nodes of a joint have its tangent and normal, held ones the global axes, others the
+    `rotations` are those of the bodies, (n_bodies, 2, 2). Nodes of a joint have its tangent and normal, held ones the global axes, others the
     axes of their body. Nodes of all bodies follow each other.
 
     Attributes
@@ -50,14 +50,14 @@ class NodeFrames:
 
     def __init__(
         self,
-        bodies: Sequence[Body],
+        rotations: Array,
         first_nodes: Indices,
         pairs: NodePairs,
         held: Sequence[Held],
     ) -> None:
         self.first_nodes = first_nodes
         sizes = np.diff(first_nodes)
-        turned = np.array([body.rotation.T for body in bodies])
+        turned = rotations.swapaxes(1, 2)
         axes = snapped(turned.reshape(-1, 2)).reshape(-1, 2, 2)
         self.frames = np.repeat(axes, sizes, axis=0)
         self._held = np.zeros((len(self.frames), 2), dtype=bool)
@@ -169,7 +169,8 @@ def _of_joint(
         first_parts[body] + part
         for (body, _), part in zip(joint.sides, piece.parts, strict=False)
     ]
-    return piece._replace(joint=number, parts=tuple(numbers))
+    parts = tuple(numbers)
+    return JointPiece(number, parts, piece.places, piece.weights, piece.along)
 
 
 def _pieces_of_joint(
