@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
-
 import numpy as np
 
 from solver.arrays import Array, Indices
@@ -17,27 +15,9 @@ from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.plane.shared_operators import SharedOperators
+from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
 from solver.discrete.scales import Scales
 from solver.refusal import RefusedError, Words
-
-
-class _PartNodes(NamedTuple):
-    """Nodes of a part, and the forces there.
-
-    Attributes
-    ----------
-    nodes
-        Numbers of its nodes among those of all bodies, (n_nodes,).
-    frames
-        Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3).
-    force
-        Forces on these, (n_nodes n_axes, n_instants), scaled, or None.
-    """
-
-    nodes: Indices
-    frames: Array
-    force: Array | None
 
 
 class CutBodies:
@@ -242,7 +222,7 @@ class CutBodies:
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
-        for owner, (nodes, frames, force) in enumerate(self._nodes_of_parts()):
+        for owner, on_nodes in enumerate(self._nodes_of_parts()):
             body = self._body_of_parts[owner]
             of_body = self.structure.bodies[body]
             if not self._traces[owner]:
@@ -257,20 +237,20 @@ class CutBodies:
             mesh = self.shape_parts[owner]
             yield CondensedPart(
                 mesh=mesh,
-                operator=self._operators.of(mesh, nodes, traces, force is not None),
-                nodes=nodes,
+                operator=self._operators.of(mesh, on_nodes, traces),
+                nodes=on_nodes.nodes,
                 body=body,
                 rows=rows,
-                force=force,
-                frames=frames,
+                force=on_nodes.force,
+                frames=on_nodes.frames,
                 rotation=self.structure.rotations[body],
             )
 
-    def _nodes_of_parts(self) -> list[_PartNodes]:
+    def _nodes_of_parts(self) -> list[PartNodes]:
         """Nodes, motions and forces of every part; parts alike are made together."""
         loads = self._loads()
         motions = self._motions()
-        found = dict[int, _PartNodes]()
+        found = dict[int, PartNodes]()
         for owners in self._alike_in_force(loads):
             of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0]))
             found.update(zip(owners, of_parts, strict=True))
@@ -296,7 +276,7 @@ class CutBodies:
 
     def _nodes_of_alike(
         self, owners: Sequence[int], motions: Array, load: Array | None
-    ) -> list[_PartNodes]:
+    ) -> list[PartNodes]:
         """Nodes, motions and forces of parts alike, by their numbers.
 
         `motions` are those of all nodes, (n_nodes, N_AXES, 3), `load` the forces on the
@@ -305,6 +285,7 @@ class CutBodies:
         own = self.shape_parts[owners[0]]
         bodies = [self._body_of_parts[owner] for owner in owners]
         nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
+        keys = self._operators.turned(nodes)
         frames = motions[nodes, : own.n_axes]
         force = own.force(self.structure.bodies[bodies[0]].weight, load)
         turned: Array | list[None] = [None] * len(owners)
@@ -312,8 +293,8 @@ class CutBodies:
             on_nodes = frames[..., :2] @ force
             on_nodes /= self.young * self.length
             turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
-        of_parts = zip(nodes, frames, turned, strict=True)
-        return [_PartNodes(*of_part) for of_part in of_parts]
+        of_parts = zip(nodes, keys, frames, turned, strict=True)
+        return [PartNodes(*of_part) for of_part in of_parts]
 
     def _loads(self) -> Mapping[int, Array]:
         """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.

@@ -80,18 +80,19 @@ class NodeFrames:
         """Turn nodes, (n,), into the frame of their first joint; normals are (n, 2)."""
         tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
         wanted = np.stack([tangents, normals], axis=1)
-        known, first = np.unique(nodes, return_index=True)
-        self.frames[known] = wanted[first]
+        # What is written last stays.
+        self.frames[nodes[::-1]] = wanted[::-1]
         differs = np.abs(self.frames[nodes] - wanted).max(axis=(1, 2)) > ALIKE
         self._unlike[nodes[differs]] = True
         self._of_joint[nodes] = True
 
     def _hold(self) -> None:
         """Turn held nodes back to the global axes, unless theirs are axes already."""
-        is_axis = np.abs(self.frames).max(axis=1) == 1.0
-        is_skew = (self._held & ~is_axis).any(axis=1)
-        self._unlike |= is_skew & self._of_joint
-        turned_back = is_skew | (self._unlike & self._held.any(axis=1))
+        held = np.flatnonzero(self._held.any(axis=1))
+        is_axis = np.abs(self.frames[held]).max(axis=1) == 1.0
+        is_skew = (self._held[held] & ~is_axis).any(axis=1)
+        self._unlike[held] |= is_skew & self._of_joint[held]
+        turned_back = held[is_skew | self._unlike[held]]
         self.frames[turned_back] = np.eye(2)
 
     def _pairs_there(self, above: Indices, below: Indices, normals: Array) -> Flags:
@@ -140,8 +141,8 @@ def pieces_of(
     for number, (joint, has_pair) in enumerate(
         zip(joints, frames.has_pair, strict=True)
     ):
-        sides = tuple((id(cuts[body]), chain.tobytes()) for body, chain in joint.sides)
-        key = sides, has_pair.tobytes()
+        sides = [(id(cuts[body]), chain.tobytes()) for body, chain in joint.sides]
+        key = *sides, has_pair.tobytes()
         if key not in known:
             whole = _pieces_of_joint(bodies, number, joint, cuts)
             known[key] = [
