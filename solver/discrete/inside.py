@@ -96,13 +96,14 @@ class Inside:
         """Substructures of the problem, part by part, and so are their rows."""
         forces = self._condensed_forces()
         operators = [part.operator.elasticity for part in self._parts]
-        ends = np.cumsum([len(operator.trace) for operator in operators])
-        every = np.split(np.arange(ends[-1]), ends[:-1])
+        ends = np.cumsum([0, *[len(operator.trace) for operator in operators]])
+        every = np.arange(ends[-1])
         substructures = list[Substructure]()
-        fields = zip(self._parts, operators, self.dofs, every, strict=True)
-        for part, elasticity, dofs, rows in fields:
+        fields = zip(self._parts, operators, self.dofs, pairwise(ends.tolist()), strict=True)
+        for part, elasticity, dofs, (first, last) in fields:
             force = forces.get((part.condensed, id(part.force)))
-            substructures.append(Substructure(elasticity, dofs, rows, force))
+            substructure = Substructure(elasticity, dofs, every[first:last], force)
+            substructures.append(substructure)
         return tuple(substructures)
 
     def _condensed_forces(self) -> dict[tuple[SchurComplement, int], Array]:
