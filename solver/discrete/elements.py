@@ -286,7 +286,8 @@ class SchurComplement:
                 self._factor_nbytes = ENTRY * factor.nnz
             self._response = self._solve(coupling)
             condensed -= coupling.T @ self._response
-        self.stiffness: Array = 0.5 * (condensed + condensed.T)
+        self.stiffness: Array = condensed + condensed.T
+        self.stiffness *= 0.5
 
     def turned_round(self, signs: Array) -> SchurComplement:
         """Make the same stiffness with some directions turned round.
@@ -297,7 +298,9 @@ class SchurComplement:
         assert self._before is None
         turned = copy(self)
         turned._signs = self._signs * signs
-        turned.stiffness = signs[:, None] * self.stiffness * signs
+        if np.any(signs < 0.0):
+            turned.stiffness = signs[:, None] * self.stiffness
+            turned.stiffness *= signs
         return turned
 
     @property
@@ -346,4 +349,4 @@ def _dense(block: sparse.csc_array | Array) -> Array:
     """A block of a stiffness as a dense array, of the same shape."""
     if isinstance(block, np.ndarray):
         return np.asarray(block, order="C")
-    return np.asarray(block.toarray(), order="C")
+    return np.asarray(block.toarray(order="C"))
