@@ -150,7 +150,8 @@ class Bodies:
     @cached_property
     def box(self) -> tuple[Array, Array]:
         """Lower left corner of all bodies, and their size, shape (2,) both, m."""
-        return self.nodes.min(axis=0), np.ptp(self.nodes, axis=0)
+        lower = self.nodes.min(axis=0)
+        return lower, self.nodes.max(axis=0) - lower
 
     @property
     def _given(self) -> list[Held | Load]:

@@ -45,7 +45,7 @@ def problem_of(structure: Bodies) -> Problem:
         instants=structure.instants,
         scales=scales,
         inside=inside,
-        has_short_joints=not all(pairs.all() for pairs in cut.frames.has_pair),
+        has_short_joints=not cut.frames.has_pair.all(),
         order=tuple(cut.joint_names),
     )
     loose = loose_bodies(problem)

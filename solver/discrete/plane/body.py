@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from solver.checks import (
     ROWS,
     Count,
     Either,
+    Kind,
     Number,
     Numbers,
     Part,
@@ -116,6 +117,18 @@ class Body:
         return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
+@cache
+def _kinds_of_joint(size: int) -> dict[str, Kind]:
+    """Kinds of the fields of a joint of so many pairs."""
+    return {
+        # Which nodes there are is known to the bodies.
+        "nodes": Numbers(((size,),), whole=True),
+        "normals": Numbers(((size, 2),)),
+        "gap": Either(ANY_NUMBER, Numbers(((size,),))),
+        "friction": Either(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
+    }
+
+
 @dataclass(frozen=True, eq=False)
 class Joint:
     """Pairs of nodes of two bodies in contact, or of a body and a rigid support.
@@ -148,18 +161,10 @@ class Joint:
     friction: Array | float = 0.0
 
     def __post_init__(self) -> None:
-        size = len(self.nodes)
-        # Which nodes there are is known to the bodies.
-        chain = Numbers(((size,),), whole=True)
-        check(
-            self,
-            nodes=chain,
-            normals=Numbers(((size, 2),)),
-            gap=Either(ANY_NUMBER, Numbers(((size,),))),
-            friction=Either(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
-        )
+        kinds = _kinds_of_joint(len(self.nodes))
+        check(self, **kinds)
         if self.below is not None:
-            check(self, nodes_below=chain)
+            check(self, nodes_below=kinds["nodes"])
 
     def __str__(self) -> str:
         return f"Joint {self.name!r}"

@@ -42,10 +42,12 @@ class NodeFrames:
     frames
         The first and the second direction at every node, in global axes, (n_nodes, 2,
         2).
+    first_pairs
+        Number of the first pair of each joint, (n_joints + 1,).
     has_pair
-        Of each joint its pairs that there are, (n,). None where directions differ, and
-        where both sides are held across the joint, so that any pressing force would be
-        a solution.
+        Which pairs of the joints there are, (n_pairs,). None where directions differ,
+        and where both sides are held across the joint, so that any pressing force would
+        be a solution.
     """
 
     def __init__(
@@ -72,9 +74,8 @@ class NodeFrames:
         nodes = np.concatenate([pairs.above, pairs.below[has_below]])
         self._turn(nodes, np.concatenate([normals, normals[has_below]]))
         self._hold()
-        has_pair = self._pairs_there(pairs.above, pairs.below, normals)
-        ends = pairwise(pairs.first.tolist())
-        self.has_pair = [has_pair[first:last] for first, last in ends]
+        self.first_pairs = pairs.first
+        self.has_pair = self._pairs_there(pairs.above, pairs.below, normals)
 
     def _turn(self, nodes: Indices, normals: Array) -> None:
         """Turn nodes, (n,), into the frame of their first joint; normals are (n, 2)."""
@@ -138,9 +139,9 @@ def pieces_of(
     known = dict[Hashable, list[JointPiece]]()
     counts = [len(cut.elements) for cut in cuts]
     first_parts = np.cumsum([0, *counts]).tolist()
-    for number, (joint, has_pair) in enumerate(
-        zip(joints, frames.has_pair, strict=True)
-    ):
+    ends = frames.first_pairs.tolist()
+    for number, joint in enumerate(joints):
+        has_pair = frames.has_pair[ends[number] : ends[number + 1]]
         sides = [(id(cuts[body]), chain.tobytes()) for body, chain in joint.sides]
         key = *sides, has_pair.tobytes()
         if key not in known:
