@@ -95,15 +95,19 @@ class Inside:
     def substructures(self) -> tuple[Substructure, ...]:
         """Substructures of the problem, part by part, and so are their rows."""
         forces = self._condensed_forces()
-        operators = [part.operator.elasticity for part in self._parts]
-        ends = np.cumsum([0, *[len(operator.trace) for operator in operators]])
-        every = np.arange(ends[-1])
+        sizes = [len(part.operator.elasticity.trace) for part in self._parts]
+        rows = np.arange(sum(sizes))
+        first = 0
         substructures = list[Substructure]()
-        fields = zip(self._parts, operators, self.dofs, pairwise(ends.tolist()), strict=True)
-        for part, elasticity, dofs, (first, last) in fields:
-            force = forces.get((part.condensed, id(part.force)))
-            substructure = Substructure(elasticity, dofs, every[first:last], force)
+        for part, dofs, size in zip(self._parts, self.dofs, sizes, strict=True):
+            substructure = Substructure(
+                elasticity=part.operator.elasticity,
+                dofs=dofs,
+                rows=rows[first : first + size],
+                body_force=forces.get((part.condensed, id(part.force))),
+            )
             substructures.append(substructure)
+            first += size
         return tuple(substructures)
 
     def _condensed_forces(self) -> dict[tuple[SchurComplement, int], Array]:
@@ -118,12 +122,9 @@ class Inside:
                 alike.setdefault(part.condensed, {})[id(part.force)] = part.force
         found = dict[tuple[SchurComplement, int], Array]()
         for condensed, forces in alike.items():
-            owners = list(forces)
-            for first in range(0, len(owners), TOGETHER):
-                some = owners[first : first + TOGETHER]
-                stacked = np.stack([forces[owner] for owner in some])
-                for owner, on_kept in zip(some, condensed.condense(stacked), strict=True):
-                    found[condensed, owner] = on_kept
+            on_kept = _condensed_by(condensed, list(forces.values()))
+            for owner, of_part in zip(forces, on_kept, strict=True):
+                found[condensed, owner] = of_part
         return found
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
@@ -277,6 +278,18 @@ class Inside:
         # A turn is an angle, not over the unit of length as displacements are.
         rotation = x * along_y - y * along_x + turn / self._length
         return np.stack([along_x, along_y, rotation], axis=1)
+
+
+def _condensed_by(condensed: SchurComplement, forces: Sequence[Array]) -> list[Array]:
+    """Forces on what equal parts keep, (n_kept, n_instants) each, scaled.
+
+    `forces` are those on the degrees of freedom of each, (n, n_instants), scaled.
+    """
+    on_kept = list[Array]()
+    for first in range(0, len(forces), TOGETHER):
+        some = np.stack(forces[first : first + TOGETHER])
+        on_kept.extend(condensed.condense(some))
+    return on_kept
 
 
 def _firsts(sizes: Sequence[int]) -> Indices:

@@ -37,7 +37,7 @@ def turned_by(angles: Array) -> Array:
     c = np.cos(angles)
     s = np.sin(angles)
     rows = np.stack([c, -s], axis=1), np.stack([s, c], axis=1)
-    return np.stack(rows, axis=1)
+    return np.asarray(np.stack(rows, axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,8 @@ class Body:
     @cached_property
     def rotation(self) -> Array:
         """Matrix from the axes of the shape to the global ones, shape (2, 2)."""
-        return turned_by(np.array([self.angle]))[0]
+        (rotation,) = turned_by(np.array([self.angle]))
+        return np.asarray(rotation)
 
     @cached_property
     def nodes(self) -> Array:

@@ -32,8 +32,9 @@ def snapped(vectors: Array) -> Array:
 class NodeFrames:
     """Directions of the degrees of freedom of the nodes of all bodies.
 
-    `rotations` are those of the bodies, (n_bodies, 2, 2). Nodes of a joint have its tangent and normal, held ones the global axes, others the
-    axes of their body. Nodes of all bodies follow each other.
+    Nodes of a joint have its tangent and normal, held ones the global axes, others the
+    axes of their body. Nodes of all bodies follow each other. `rotations` are those of
+    the bodies, (n_bodies, 2, 2).
 
     Attributes
     ----------

@@ -39,7 +39,8 @@ class NodePairs(NamedTuple):
         nodes_below = np.full(sizes.sum(), -1)
         nodes_below[np.repeat(has_below, sizes)] = _nodes_of(below, first_nodes)
         # There may be no joint at all.
-        normals = [np.zeros((0, 2)), *[joint.normals for joint in joints]]
+        normals = [np.zeros((0, 2))]
+        normals += [joint.normals for joint in joints]
         return cls(
             first=np.cumsum([0, *sizes]),
             above=_nodes_of(above, first_nodes),
@@ -60,7 +61,8 @@ def _nodes_of(sides: Sequence[tuple[int, Indices]], first_nodes: Indices) -> Ind
     """
     bodies = np.array([body for body, _ in sides], dtype=np.intp)
     sizes = np.array([len(nodes) for _, nodes in sides], dtype=np.intp)
-    nodes = [np.zeros(0, dtype=np.intp), *[nodes for _, nodes in sides]]
+    nodes = [np.zeros(0, dtype=np.intp)]
+    nodes += [of_side for _, of_side in sides]
     return np.repeat(first_nodes[bodies], sizes) + np.concatenate(nodes)
 
 
