@@ -71,38 +71,15 @@ class Operator:
         return self.condensed.nbytes
 
 
-class TraceRows(NamedTuple):
-    """Numbers of boundary rows at some nodes of a part, which follow each other.
-
-    Attributes
-    ----------
-    first
-        Number of the first row.
-    shape
-        Number of nodes and of components; all rows of a node are together.
-    """
-
-    first: int
-    shape: tuple[int, int]
-
-    @property
-    def numbers(self) -> Indices:
-        """Numbers of the rows, shape (n_nodes, n_components)."""
-        n_nodes, n_components = self.shape
-        last = self.first + n_nodes * n_components
-        return np.arange(self.first, last).reshape(self.shape)
-
-
 def numbered(
     traces: Mapping[Hashable, Trace], first: int
-) -> tuple[dict[Hashable, TraceRows], int]:
-    """Rows of each trace, counted from `first`, and the number after the last."""
-    rows = dict[Hashable, TraceRows]()
+) -> tuple[dict[Hashable, int], int]:
+    """First row of each trace, counted from `first`, and the number after the last."""
+    first_rows = dict[Hashable, int]()
     for name, trace in traces.items():
-        n_nodes, n_components = trace.dofs.shape
-        rows[name] = TraceRows(first, (n_nodes, n_components))
-        first += n_nodes * n_components
-    return rows, first
+        first_rows[name] = first
+        first += trace.dofs.size
+    return first_rows, first
 
 
 class PartMesh(Protocol):
@@ -139,8 +116,9 @@ class CondensedPart:
         n_columns), of others (n_nodes,).
     body
         Number of its body.
-    rows
-        Boundary rows by what has them; those of parts follow each other, part by part.
+    traces, first_rows
+        Boundary rows by what has them, and the number of the first row of each. Rows of
+        a trace follow each other, node by node, and so do those of parts.
     force
         Forces on its degrees of freedom, (n, n_instants), scaled, or None.
     frames
@@ -155,7 +133,8 @@ class CondensedPart:
     operator: Operator
     nodes: Indices
     body: int
-    rows: Mapping[Hashable, TraceRows]
+    traces: Mapping[Hashable, Trace]
+    first_rows: Mapping[Hashable, int]
     force: Array | None
     frames: Array | None = None
     rotation: Array | None = None
@@ -164,6 +143,11 @@ class CondensedPart:
     def condensed(self) -> SchurComplement:
         """Stiffness condensed onto the degrees of freedom at its boundary rows."""
         return self.operator.condensed
+
+    def rows(self, name: Hashable) -> Indices:
+        """Numbers of the rows of a trace, shape (n_nodes, n_components)."""
+        dofs = self.traces[name].dofs
+        return self.first_rows[name] + np.arange(dofs.size).reshape(dofs.shape)
 
     @property
     def directions(self) -> Array:

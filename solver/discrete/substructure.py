@@ -110,6 +110,7 @@ def _kinds_of_fields(n_dofs: int, n_rows: int) -> dict[str, Kind]:
     return {
         "dofs": Numbers(((n_dofs,),), whole=True),
         "rows": Numbers(((n_rows,),), whole=True),
+        "body_force": Numbers(((n_dofs, None),)),
         "free_force": Numbers(((None, None),)),
     }
 
@@ -143,7 +144,7 @@ class Substructure:
     elasticity: Elasticity
     dofs: Indices
     rows: Indices
-    body_force: Array | None
+    body_force: Array | None = None
     free_force: Array | None = None
 
     def __post_init__(self) -> None:
@@ -151,9 +152,6 @@ class Substructure:
         n_dofs = self.elasticity.stiffness.shape[0]
         kinds = _kinds_of_fields(n_dofs, len(self.elasticity.trace))
         check(self, **kinds)
-        if self.body_force is not None:
-            fits = Numbers(((n_dofs, None),))
-            check_value("Substructure.body_force", self.body_force, fits)
 
 
 def tributary(elements: int) -> Array:

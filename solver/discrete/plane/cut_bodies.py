@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.condensed_part import N_AXES, CondensedPart, Trace, numbered
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
@@ -78,9 +78,11 @@ class CutBodies:
         self._operators = SharedOperators(self._own_frames)
         self.parts = list(self._parts())
 
-    def is_mesh(self, number: int) -> bool:
-        """Check whether a body is a mesh, not a line of beams."""
-        return isinstance(self.structure.bodies[number].shape, Mesh)
+    @cached_property
+    def is_mesh(self) -> Flags:
+        """Mask of bodies that are meshes, not lines of beams, (n_bodies,)."""
+        bodies = self.structure.bodies
+        return np.array([isinstance(body.shape, Mesh) for body in bodies])
 
     @cached_property
     def moduli(self) -> Array:
@@ -233,15 +235,16 @@ class CutBodies:
                     "bodies that something holds",
                     "join it to another body, or hold some of its nodes",
                 )
-            rows, n_rows = numbered(self._traces[owner], n_rows)
-            traces = list(self._traces[owner].values())
+            traces = self._traces[owner]
+            first_rows, n_rows = numbered(traces, n_rows)
             mesh = self.shape_parts[owner]
             yield CondensedPart(
                 mesh=mesh,
-                operator=self._operators.of(mesh, on_nodes, traces),
+                operator=self._operators.of(mesh, on_nodes, list(traces.values())),
                 nodes=on_nodes.nodes,
                 body=body,
-                rows=rows,
+                traces=traces,
+                first_rows=first_rows,
                 force=on_nodes.force,
                 frames=on_nodes.frames,
                 rotation=self.structure.rotations[body],

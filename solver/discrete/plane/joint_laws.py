@@ -134,13 +134,13 @@ def _components(
     tangential = list[Indices]()
     across = list[Indices]()
     for side, name in enumerate(JOINT_SIDES[: len(pieces[0].parts)]):
+        parts = [cut.parts[piece.parts[side]] for piece in pieces]
         of_pieces = [
-            cut.parts[piece.parts[side]].rows[name, number]
-            for number, piece in zip(numbers, pieces, strict=True)
+            part.first_rows[name, number]
+            for number, part in zip(numbers, parts, strict=True)
         ]
-        _, n_components = of_pieces[0].shape
-        firsts = np.repeat([rows.first for rows in of_pieces], counts)
-        rows = firsts + n_components * within
+        _, n_components = parts[0].traces[name, numbers[0]].dofs.shape
+        rows = np.repeat(of_pieces, counts) + n_components * within
         tangential.append(rows + along)
         if n_components > 1:
             across.append(rows + 1 - along)

@@ -140,13 +140,14 @@ class CutStack:
                 name: self._trace(trace, mesh, modulus)
                 for name, trace in traces.items()
             }
-            rows, n_rows = numbered(of_mesh, n_rows)
+            first_rows, n_rows = numbered(of_mesh, n_rows)
             yield CondensedPart(
                 mesh=mesh,
                 operator=self._operator(mesh, modulus, kinds, has_force),
                 nodes=self._own_nodes(number, nodes[body]),
                 body=body,
-                rows=rows,
+                traces=of_mesh,
+                first_rows=first_rows,
                 force=force,
             )
 
