@@ -153,7 +153,8 @@ class CondensedPart:
     def directions(self) -> Array:
         """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
         if self.frames is None:
-            return np.tile(np.eye(2, N_AXES), (self.nodes.size, 1))
+            of_nodes = np.broadcast_to(np.eye(2, N_AXES), (self.nodes.size, 2, N_AXES))
+            return of_nodes.reshape(-1, N_AXES)
         return self.frames.reshape(-1, N_AXES)
 
     def motion(self, moved: Array) -> Array:

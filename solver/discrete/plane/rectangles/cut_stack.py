@@ -118,10 +118,11 @@ class CutStack:
         height = rows * (stack.height / stack.length) / stack.elements[1]
         x = np.linspace(0.0, width, columns + 1)
         y = np.linspace(0.0, height, rows + 1)
+        lattice = np.stack(np.meshgrid(x, y), axis=-1)
         grids = list[Array]()
         for brick in stack.rectangles:
             along, up = brick.nodes()
-            grids.append(np.stack(np.meshgrid(x[along], y[up]), axis=-1))
+            grids.append(lattice[up, along])
         return grids
 
     def _parts(self, nodes: Sequence[Indices]) -> Iterator[CondensedPart]:
