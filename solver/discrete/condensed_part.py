@@ -73,17 +73,13 @@ class Operator:
 
 def numbered(
     traces: Mapping[Hashable, Trace], first: int
-) -> tuple[dict[Hashable, Indices], int]:
-    """Row numbers of each trace, (n_nodes, n_components), counted from `first`.
-
-    Beside them the number after the last.
-    """
-    rows = dict[Hashable, Indices]()
+) -> tuple[dict[Hashable, int], int]:
+    """First row of each trace, counted from `first`, and the number after the last."""
+    first_rows = dict[Hashable, int]()
     for name, trace in traces.items():
-        last = first + trace.dofs.size
-        rows[name] = np.arange(first, last).reshape(trace.dofs.shape)
-        first = last
-    return rows, first
+        first_rows[name] = first
+        first += trace.dofs.size
+    return first_rows, first
 
 
 class PartMesh(Protocol):
@@ -120,8 +116,9 @@ class CondensedPart:
         n_columns), of others (n_nodes,).
     body
         Number of its body.
-    rows
-        Boundary rows by what has them, shape (n_nodes, n_components) each.
+    traces, first_rows
+        Boundary rows by what has them, and the number of the first row of each. Rows of
+        a trace follow each other, node by node, and so do those of parts.
     force
         Forces on its degrees of freedom, (n, n_instants), scaled, or None.
     frames
@@ -136,7 +133,8 @@ class CondensedPart:
     operator: Operator
     nodes: Indices
     body: int
-    rows: Mapping[Hashable, Indices]
+    traces: Mapping[Hashable, Trace]
+    first_rows: Mapping[Hashable, int]
     force: Array | None
     frames: Array | None = None
     rotation: Array | None = None
@@ -146,20 +144,17 @@ class CondensedPart:
         """Stiffness condensed onto the degrees of freedom at its boundary rows."""
         return self.operator.condensed
 
-    @property
-    def dofs(self) -> Indices:
-        """Numbers of its degrees of freedom among those of all nodes, shape (n,).
-
-        Each node has `N_AXES` of these numbers, whether it uses them or not.
-        """
-        axes = np.arange(self.mesh.n_axes)
-        return np.add.outer(N_AXES * self.nodes.ravel(), axes).ravel()
+    def rows(self, name: Hashable) -> Indices:
+        """Numbers of the rows of a trace, shape (n_nodes, n_components)."""
+        dofs = self.traces[name].dofs
+        return self.first_rows[name] + np.arange(dofs.size).reshape(dofs.shape)
 
     @property
     def directions(self) -> Array:
         """Motion of each degree of freedom along x and y, and its turn, (n, 3)."""
         if self.frames is None:
-            return np.tile(np.eye(2, N_AXES), (self.nodes.size, 1))
+            of_nodes = np.broadcast_to(np.eye(2, N_AXES), (self.nodes.size, 2, N_AXES))
+            return of_nodes.reshape(-1, N_AXES)
         return self.frames.reshape(-1, N_AXES)
 
     def motion(self, moved: Array) -> Array:

@@ -72,19 +72,23 @@ def check_instants(
     substructures: Sequence[Substructure],
 ) -> None:
     """Refuse laws and body forces with values for another number of instants."""
-    counts = {
-        f"interfaces[{name!r}]": law.n_instants for name, law in interfaces.items()
-    }
+    for name, law in interfaces.items():
+        if law.n_instants not in (None, n_instants):
+            raise _other_instants(f"interfaces[{name!r}]", law.n_instants, n_instants)
     for number, part in enumerate(substructures):
-        if part.body_force is not None:
-            counts[f"substructures[{number}].body_force"] = part.body_force.shape[1]
-    for name, count in counts.items():
-        if count not in (None, n_instants):
-            allowed = f"as many as Problem.instants has, {n_instants}"
-            shown = Words(f"of {count} instants")
-            raise RefusedError(
-                f"Problem.{name}", shown, allowed, "give one value an instant"
-            )
+        if part.body_force is not None and part.body_force.shape[1] != n_instants:
+            where = f"substructures[{number}].body_force"
+            raise _other_instants(where, part.body_force.shape[1], n_instants)
+
+
+def _other_instants(where: str, count: int | None, n_instants: int) -> RefusedError:
+    """Refusal of values for another number of instants."""
+    return RefusedError(
+        f"Problem.{where}",
+        Words(f"of {count} instants"),
+        f"as many as Problem.instants has, {n_instants}",
+        "give one value an instant",
+    )
 
 
 def check_prescribed(given: Sequence[PrescribedRows], row_dofs: Indices) -> None:

@@ -286,7 +286,8 @@ class SchurComplement:
                 self._factor_nbytes = ENTRY * factor.nnz
             self._response = self._solve(coupling)
             condensed -= coupling.T @ self._response
-        self.stiffness: Array = 0.5 * (condensed + condensed.T)
+        self.stiffness: Array = condensed + condensed.T
+        self.stiffness *= 0.5
 
     def turned_round(self, signs: Array) -> SchurComplement:
         """Make the same stiffness with some directions turned round.
@@ -297,7 +298,9 @@ class SchurComplement:
         assert self._before is None
         turned = copy(self)
         turned._signs = self._signs * signs
-        turned.stiffness = signs[:, None] * self.stiffness * signs
+        if np.any(signs < 0.0):
+            turned.stiffness = signs[:, None] * self.stiffness
+            turned.stiffness *= signs
         return turned
 
     @property
@@ -311,13 +314,15 @@ class SchurComplement:
         return nbytes
 
     def condense(self, force: Array) -> Array:
-        """Condense forces, shape (n, n_columns), to shape (n_kept, n_columns)."""
+        """Condense forces, (..., n, n_columns), to (..., n_kept, n_columns)."""
         if self._before is not None:
             force = self._before.condense(force)
-        if not len(self._rest):
-            return np.asarray(force[self._positions])
-        carried = self._signs[:, None] * (self._response.T @ force[self._rest])
-        return np.asarray(force[self._positions] - carried)
+        on_kept = force.take(self._positions, axis=-2)
+        if len(self._rest):
+            carried = self._response.T @ force.take(self._rest, axis=-2)
+            carried *= self._signs[:, None]
+            on_kept -= carried
+        return on_kept
 
     def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement of all degrees of freedom, shape (n, n_columns).
@@ -344,4 +349,4 @@ def _dense(block: sparse.csc_array | Array) -> Array:
     """A block of a stiffness as a dense array, of the same shape."""
     if isinstance(block, np.ndarray):
         return np.asarray(block, order="C")
-    return np.asarray(block.toarray(), order="C")
+    return np.asarray(block.toarray(order="C"))

@@ -10,12 +10,16 @@ import numpy as np
 
 from solver.arrays import Array, Indices, read_only
 from solver.discrete.condensed_part import N_AXES, CondensedPart
+from solver.discrete.elements import SchurComplement
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
 that of a translation."""
+TOGETHER = 16
+"""Number of parts whose forces are condensed together: few enough that what is made on
+the way takes little memory again and again, not much of it once."""
 MOVES = 1e-6
 """Smallest share in a free motion, over its size, of a body that moves."""
 
@@ -50,49 +54,81 @@ class Inside:
         n_instants: int,
     ) -> None:
         length = scales.displacement
-        kept = [part.dofs[part.condensed.kept] for part in parts]
-        along = [part.directions[part.condensed.kept] for part in parts]
-        skeleton, first, places = np.unique(
-            np.concatenate(kept), return_index=True, return_inverse=True
-        )
-        counts = [len(dofs) for dofs in kept]
-        ends = pairwise(np.cumsum([0, *counts]).tolist())
         self._parts = parts
         self._length = length
         self._young = scales.force / length
-        self._size = len(skeleton), n_instants
-        self.dofs: list[Indices] = [places[start:end] for start, end in ends]
         self.nodes: Array = positions * length
         self.grids: list[Indices] = [part.nodes for part in parts]
-        self.nodes_of_dofs: Indices = skeleton // N_AXES
+        nodes = np.concatenate([part.nodes.ravel() for part in parts])
+        first_nodes = _firsts([part.nodes.size for part in parts])
+        self._find_skeleton(nodes, first_nodes)
         self.positions = positions[self.nodes_of_dofs]
-        corners = [part.nodes.ravel()[part.mesh.elements] for part in parts]
-        self.elements: Indices = np.concatenate(corners)
-        sizes = [len(elements) for elements in corners]
+        self._size = len(self.nodes_of_dofs), n_instants
+        elements = [part.mesh.elements for part in parts]
+        sizes = [len(of_part) for of_part in elements]
+        corners = np.concatenate(elements) + np.repeat(first_nodes, sizes)[:, None]
+        self.elements: Indices = nodes[corners]
         self.bodies: Indices = np.repeat([part.body for part in parts], sizes)
         self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
-        self.directions: Array = np.concatenate(along)[first]
+
+    def _find_skeleton(self, nodes: Indices, first_nodes: Indices) -> None:
+        """Number the degrees of freedom that any part keeps.
+
+        `nodes` are those of all parts, part by part, and `first_nodes` the places of
+        the first of each part.
+        """
+        parts = self._parts
+        kept = [part.condensed.kept for part in parts]
+        counts = [len(of_part) for of_part in kept]
+        n_axes = np.repeat([part.mesh.n_axes for part in parts], counts)
+        of_parts = np.concatenate(kept)
+        places, axes = np.divmod(of_parts, n_axes)
+        own = nodes[np.repeat(first_nodes, counts) + places]
+        skeleton, first, numbers = np.unique(
+            N_AXES * own + axes, return_index=True, return_inverse=True
+        )
+        self.nodes_of_dofs: Indices = skeleton // N_AXES
+        ends = pairwise(np.cumsum([0, *counts]).tolist())
+        self.dofs: list[Indices] = [numbers[start:end] for start, end in ends]
+        directions = [part.directions for part in parts]
+        first_dofs = _firsts([len(of_part) for of_part in directions])
+        along = np.repeat(first_dofs, counts) + of_parts
+        self.directions: Array = np.concatenate(directions)[along[first]]
 
     def substructures(self) -> tuple[Substructure, ...]:
-        """Substructures of the problem, part by part."""
+        """Substructures of the problem, part by part, and so are their rows."""
+        forces = self._condensed_forces()
+        sizes = [len(part.operator.elasticity.trace) for part in self._parts]
+        rows = np.arange(sum(sizes))
+        first = 0
         substructures = list[Substructure]()
-        # Equal parts with the very same forces share what is condensed of these.
-        known = dict[tuple[int, int], Array]()
-        for part, dofs in zip(self._parts, self.dofs, strict=True):
-            body_force = None
-            if part.force is not None:
-                key = id(part.condensed), id(part.force)
-                if key not in known:
-                    known[key] = part.condensed.condense(part.force)
-                body_force = known[key]
+        for part, dofs, size in zip(self._parts, self.dofs, sizes, strict=True):
             substructure = Substructure(
                 elasticity=part.operator.elasticity,
                 dofs=dofs,
-                rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
-                body_force=body_force,
+                rows=rows[first : first + size],
+                body_force=forces.get((part.condensed, id(part.force))),
             )
             substructures.append(substructure)
+            first += size
         return tuple(substructures)
+
+    def _condensed_forces(self) -> dict[tuple[SchurComplement, int], Array]:
+        """Forces on what is kept, (n_kept, n_instants), scaled.
+
+        They are by what condenses them and the identity of the forces on the part: the
+        very same ones are condensed once, those of equal parts some together.
+        """
+        alike = dict[SchurComplement, dict[int, Array]]()
+        for part in self._parts:
+            if part.force is not None:
+                alike.setdefault(part.condensed, {})[id(part.force)] = part.force
+        found = dict[tuple[SchurComplement, int], Array]()
+        for condensed, forces in alike.items():
+            on_kept = _condensed_by(condensed, list(forces.values()))
+            for owner, of_part in zip(forces, on_kept, strict=True):
+                found[condensed, owner] = of_part
+        return found
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Displacement of all nodes at n instants, (n_nodes, 2, n), m.
@@ -170,8 +206,9 @@ class Inside:
     def body_of_dofs(self) -> Indices:
         """Number of the body of every degree of freedom of the problem, (n_dofs,)."""
         bodies = np.empty(len(self.directions), dtype=np.intp)
-        for part, dofs in zip(self._parts, self.dofs, strict=True):
-            bodies[dofs] = part.body
+        counts = [len(dofs) for dofs in self.dofs]
+        of_parts = [part.body for part in self._parts]
+        bodies[np.concatenate(self.dofs)] = np.repeat(of_parts, counts)
         return bodies
 
     def rigid_motions(self, fixed: Indices) -> Array | None:
@@ -244,3 +281,20 @@ class Inside:
         # A turn is an angle, not over the unit of length as displacements are.
         rotation = x * along_y - y * along_x + turn / self._length
         return np.stack([along_x, along_y, rotation], axis=1)
+
+
+def _condensed_by(condensed: SchurComplement, forces: Sequence[Array]) -> list[Array]:
+    """Forces on what equal parts keep, (n_kept, n_instants) each, scaled.
+
+    `forces` are those on the degrees of freedom of each, (n, n_instants), scaled.
+    """
+    on_kept = list[Array]()
+    for first in range(0, len(forces), TOGETHER):
+        some = np.stack(forces[first : first + TOGETHER])
+        on_kept.extend(condensed.condense(some))
+    return on_kept
+
+
+def _firsts(sizes: Sequence[int]) -> Indices:
+    """Place of the first entry of each of some lists that follow each other, (n,)."""
+    return np.cumsum(sizes) - sizes

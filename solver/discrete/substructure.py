@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.checks import ALIKE, Numbers, Part, check, check_value
+from solver.checks import ALIKE, Kind, Numbers, Part, check, check_value
 from solver.refusal import RefusedError, Words
 
 
@@ -104,6 +104,17 @@ class Elasticity:
 ELASTICITY = Part(Elasticity)
 
 
+@cache
+def _kinds_of_fields(n_dofs: int, n_rows: int) -> dict[str, Kind]:
+    """Kinds of the fields of a substructure of an operator of this size."""
+    return {
+        "dofs": Numbers(((n_dofs,),), whole=True),
+        "rows": Numbers(((n_rows,),), whole=True),
+        "body_force": Numbers(((n_dofs, None),)),
+        "free_force": Numbers(((None, None),)),
+    }
+
+
 @dataclass(frozen=True)
 class Substructure:
     """A substructure: its operator, degrees of freedom, boundary rows and body forces.
@@ -133,22 +144,14 @@ class Substructure:
     elasticity: Elasticity
     dofs: Indices
     rows: Indices
-    body_force: Array | None
+    body_force: Array | None = None
     free_force: Array | None = None
 
     def __post_init__(self) -> None:
         check(self, elasticity=ELASTICITY)
         n_dofs = self.elasticity.stiffness.shape[0]
-        n_rows = len(self.elasticity.trace)
-        check(
-            self,
-            dofs=Numbers(((n_dofs,),), whole=True),
-            rows=Numbers(((n_rows,),), whole=True),
-            free_force=Numbers(((None, None),)),
-        )
-        if self.body_force is not None:
-            fits = Numbers(((n_dofs, None),))
-            check_value("Substructure.body_force", self.body_force, fits)
+        kinds = _kinds_of_fields(n_dofs, len(self.elasticity.trace))
+        check(self, **kinds)
 
 
 def tributary(elements: int) -> Array:

@@ -284,12 +284,14 @@ class ArchSettings(PlaneSettings):
     def _above(self) -> Iterator[Act]:
         """Fill and load on the back, as drawings show them, at positions in m."""
         ring = self.ring
-        backs = ring.backs.reshape(-1, 2)
-        shown = np.linspace(0, len(backs) - 1, SHOWN).round().astype(np.intp)
-        heights = ring.crown + self.cover - backs[shown, 1]
-        pressures = np.multiply.outer(self.fill * heights, self._hold)
-        yield Act("top fill", "σ", backs[shown], DOWN, pressures, "Pa")
+        if self.fill:
+            backs = ring.backs.reshape(-1, 2)
+            shown = np.linspace(0, len(backs) - 1, SHOWN).round().astype(np.intp)
+            heights = ring.crown + self.cover - backs[shown, 1]
+            pressures = np.multiply.outer(self.fill * heights, self._hold)
+            yield Act("top fill", "σ", backs[shown], DOWN, pressures, "Pa")
         if self.has_live:
+            backs = ring.backs.reshape(-1, 2)
             shares = ring.under_load(self.path("place_load")).reshape(len(backs), -1)
             places = np.einsum("nt,na->at", shares, backs)
             force = self.path("live_load")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -251,8 +250,11 @@ def test_parts_tile_their_bodies_and_pairs_their_joints() -> None:
     cut = CutStack(pressed((3, 2), bodies=2))
     areas = [len(part.mesh.elements) for part in cut.parts]
     assert sum(areas) == 2 * 6 * 4
-    sides = chain.from_iterable(part.rows.values() for part in cut.parts)
-    rows = np.concatenate([rows.ravel() for rows in sides])
+    of_parts = [
+        np.concatenate([part.rows(name).ravel() for name in part.traces])
+        for part in cut.parts
+    ]
+    rows = np.concatenate(of_parts)
     assert np.array_equal(np.sort(rows), np.arange(len(rows)))
     lengths: dict[str, float] = {}
     for piece in cut.pieces:

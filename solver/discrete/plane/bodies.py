@@ -28,7 +28,7 @@ from solver.discrete.plane.bodies_refused import (
     check_pairs,
     check_weight,
 )
-from solver.discrete.plane.body import Body, Held, Joint, Load, Shape
+from solver.discrete.plane.body import Body, Held, Joint, Load, Shape, turned_by
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.plane.node_pairs import NodePairs
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
@@ -105,7 +105,8 @@ class Bodies:
             check_weight(body, instants)
         check_chains(self.bodies, self.joints)
         if self.joints:
-            check_pairs(self.bodies, self.joints, self.pairs, self.nodes)
+            turns = self.rotations
+            check_pairs(self.bodies, turns, self.joints, self.pairs, self.nodes)
         for held in self.held:
             check_held(self.bodies, held, instants)
         for load in self.loads:
@@ -121,6 +122,11 @@ class Bodies:
         return np.cumsum([0, *sizes])
 
     @cached_property
+    def rotations(self) -> Array:
+        """Matrices from the axes of shapes to the global ones, (n_bodies, 2, 2)."""
+        return turned_by(np.array([body.angle for body in self.bodies]))
+
+    @cached_property
     def nodes(self) -> Array:
         """Coordinates of the nodes of all bodies, shape (n_nodes, 2), m."""
         nodes = np.empty((self.first_nodes[-1], 2))
@@ -129,12 +135,10 @@ class Bodies:
             by_shape.setdefault(body.shape, []).append(number)
         # Bodies of one shape are turned and moved together.
         for shape, numbers in by_shape.items():
-            of_shape = [self.bodies[number] for number in numbers]
-            rotations = np.array([body.rotation for body in of_shape])
-            origins = np.array([body.origin for body in of_shape])
+            origins = np.array([self.bodies[number].origin for number in numbers])
             own = np.arange(len(shape.nodes))
             rows = np.add.outer(self.first_nodes[numbers], own)
-            turned = shape.nodes @ rotations.swapaxes(1, 2)
+            turned = shape.nodes @ self.rotations[numbers].swapaxes(1, 2)
             nodes[rows] = turned + origins[:, None]
         return nodes
 
@@ -146,7 +150,8 @@ class Bodies:
     @cached_property
     def box(self) -> tuple[Array, Array]:
         """Lower left corner of all bodies, and their size, shape (2,) both, m."""
-        return self.nodes.min(axis=0), np.ptp(self.nodes, axis=0)
+        lower = self.nodes.min(axis=0)
+        return lower, self.nodes.max(axis=0) - lower
 
     @property
     def _given(self) -> list[Held | Load]:

@@ -45,7 +45,7 @@ def problem_of(structure: Bodies) -> Problem:
         instants=structure.instants,
         scales=scales,
         inside=inside,
-        has_short_joints=not all(pairs.all() for pairs in cut.frames.has_pair),
+        has_short_joints=not cut.frames.has_pair.all(),
         order=tuple(cut.joint_names),
     )
     loose = loose_bodies(problem)
@@ -97,8 +97,8 @@ def _glued(cut: CutBodies, body: int, number: int, seam: Seam) -> Perfect:
     Macro forces are polynomials along the seam in both directions of the body's axes.
     """
     first, second = [cut.parts[cut.owner(body, part)] for part in seam.parts]
-    rows = first.rows["first", body, number]
-    opposite = second.rows["second", body, number]
+    rows = first.rows(("first", body, number))
+    opposite = second.rows(("second", body, number))
     if rows.shape[1] > 2:
         # Beams are cut at a node, whose three components all balance.
         return glued(rows, opposite, np.ones((1, 1)))
@@ -121,8 +121,8 @@ def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
     scaled = signs[:, None] * given / cut.length
     for part in range(cut.structure.bodies[held.body].substructures):
         own = cut.parts[cut.owner(held.body, part)]
-        if ("held", number) in own.rows:
-            rows.append(own.rows["held", number].ravel())
+        if ("held", number) in own.traces:
+            rows.append(own.rows(("held", number)).ravel())
             values.append(
                 scaled[
                     np.isin(

@@ -117,14 +117,19 @@ def _check_nodes(body: Body, owner: str, nodes: Indices) -> None:
 
 
 def check_pairs(
-    bodies: Sequence[Body], joints: Sequence[Joint], pairs: NodePairs, nodes: Array
+    bodies: Sequence[Body],
+    rotations: Array,
+    joints: Sequence[Joint],
+    pairs: NodePairs,
+    nodes: Array,
 ) -> None:
     """Refuse normals of other lengths or out of bodies, and pairs that are far apart.
 
-    `nodes` are the positions of the nodes of all bodies, (n_nodes, 2), m.
+    `rotations` are those of all bodies, (n_bodies, 2, 2), `nodes` the positions of
+    their nodes, (n_nodes, 2), m.
     """
     _check_lengths(joints, pairs)
-    _check_directions(bodies, joints, pairs)
+    _check_directions(bodies, rotations, joints, pairs)
     _check_opposite(joints, pairs, nodes)
 
 
@@ -143,7 +148,10 @@ def _check_lengths(joints: Sequence[Joint], pairs: NodePairs) -> None:
 
 
 def _check_directions(
-    bodies: Sequence[Body], joints: Sequence[Joint], pairs: NodePairs
+    bodies: Sequence[Body],
+    rotations: Array,
+    joints: Sequence[Joint],
+    pairs: NodePairs,
 ) -> None:
     """Refuse normals that point out of the body above, if it is a mesh."""
     # Normals in the axes of a shape are the same at equal chains of nodes.
@@ -160,8 +168,8 @@ def _check_directions(
                 sizes = np.linalg.norm(normals, axis=1, keepdims=True)
                 known[key] = normals / sizes
         outward.append(known[key])
-    rotations = np.array([bodies[joint.above].rotation for joint in joints])
-    turned = rotations[pairs.joints]
+    above = np.array([joint.above for joint in joints])
+    turned = rotations[above[pairs.joints]]
     along = np.einsum("nab,nb,na->n", turned, np.concatenate(outward), pairs.normals)
     is_mesh = np.array([isinstance(bodies[each.above].shape, Mesh) for each in joints])
     is_refused = (along >= 0.0) & is_mesh[pairs.joints]

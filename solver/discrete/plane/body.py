@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from solver.checks import (
     ROWS,
     Count,
     Either,
+    Kind,
     Number,
     Numbers,
     Part,
@@ -29,6 +30,14 @@ Shape = Mesh | Beam
 SHAPE = Part(Mesh, Beam)
 POISSON = Number(-1.0, MOST_POISSON, above=True)
 POINT = Numbers(((2,),))
+
+
+def turned_by(angles: Array) -> Array:
+    """Matrices that turn counter-clockwise, (n, 2, 2), by angles, (n,), rad."""
+    c = np.cos(angles)
+    s = np.sin(angles)
+    rows = np.stack([c, -s], axis=1), np.stack([s, c], axis=1)
+    return np.asarray(np.stack(rows, axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,9 +104,8 @@ class Body:
     @cached_property
     def rotation(self) -> Array:
         """Matrix from the axes of the shape to the global ones, shape (2, 2)."""
-        c = np.cos(self.angle)
-        s = np.sin(self.angle)
-        return np.array([[c, -s], [s, c]])
+        (rotation,) = turned_by(np.array([self.angle]))
+        return np.asarray(rotation)
 
     @cached_property
     def nodes(self) -> Array:
@@ -108,6 +116,18 @@ class Body:
         """Unit normals out of the body along a chain of nodes, shape (n, 2)."""
         normals = self.shape.outward(chain) @ self.rotation.T
         return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
+
+
+@cache
+def _kinds_of_joint(size: int) -> dict[str, Kind]:
+    """Kinds of the fields of a joint of so many pairs."""
+    return {
+        # Which nodes there are is known to the bodies.
+        "nodes": Numbers(((size,),), whole=True),
+        "normals": Numbers(((size, 2),)),
+        "gap": Either(ANY_NUMBER, Numbers(((size,),))),
+        "friction": Either(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,18 +162,10 @@ class Joint:
     friction: Array | float = 0.0
 
     def __post_init__(self) -> None:
-        size = len(self.nodes)
-        # Which nodes there are is known to the bodies.
-        chain = Numbers(((size,),), whole=True)
-        check(
-            self,
-            nodes=chain,
-            normals=Numbers(((size, 2),)),
-            gap=Either(ANY_NUMBER, Numbers(((size,),))),
-            friction=Either(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
-        )
+        kinds = _kinds_of_joint(len(self.nodes))
+        check(self, **kinds)
         if self.below is not None:
-            check(self, nodes_below=chain)
+            check(self, nodes_below=kinds["nodes"])
 
     def __str__(self) -> str:
         return f"Joint {self.name!r}"

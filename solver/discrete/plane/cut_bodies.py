@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.condensed_part import N_AXES, CondensedPart, Trace, numbered
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
@@ -17,27 +16,9 @@ from solver.discrete.plane.cut_shapes import CutShape
 from solver.discrete.plane.joint_laws import JOINT_SIDES
 from solver.discrete.plane.joint_pieces import NodeFrames, pieces_of, snapped
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.plane.shared_operators import SharedOperators
+from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
 from solver.discrete.scales import Scales
 from solver.refusal import RefusedError, Words
-
-
-class _PartNodes(NamedTuple):
-    """Nodes of a part, and the forces there.
-
-    Attributes
-    ----------
-    nodes
-        Numbers of its nodes among those of all bodies, (n_nodes,).
-    frames
-        Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3).
-    force
-        Forces on these, (n_nodes n_axes, n_instants), scaled, or None.
-    """
-
-    nodes: Indices
-    frames: Array
-    force: Array | None
 
 
 class CutBodies:
@@ -79,7 +60,10 @@ class CutBodies:
                 shapes[key] = CutShape(body.shape, body.substructures)
         self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
         self.frames = NodeFrames(
-            bodies, structure.first_nodes, structure.pairs, structure.held
+            structure.rotations,
+            structure.first_nodes,
+            structure.pairs,
+            structure.held,
         )
         self.joint_names = [joint.name for joint in structure.joints]
         self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
@@ -94,9 +78,11 @@ class CutBodies:
         self._operators = SharedOperators(self._own_frames)
         self.parts = list(self._parts())
 
-    def is_mesh(self, number: int) -> bool:
-        """Check whether a body is a mesh, not a line of beams."""
-        return isinstance(self.structure.bodies[number].shape, Mesh)
+    @cached_property
+    def is_mesh(self) -> Flags:
+        """Mask of bodies that are meshes, not lines of beams, (n_bodies,)."""
+        bodies = self.structure.bodies
+        return np.array([isinstance(body.shape, Mesh) for body in bodies])
 
     @cached_property
     def moduli(self) -> Array:
@@ -139,9 +125,9 @@ class CutBodies:
     @cached_property
     def _own_frames(self) -> Array:
         """Directions at all nodes in the axes of their bodies, (n_nodes, 2, 2)."""
-        rotations = np.array([body.rotation for body in self.structure.bodies])
         sizes = np.diff(self.structure.first_nodes)
-        own = self.frames.frames @ np.repeat(rotations, sizes, axis=0)
+        rotations = np.repeat(self.structure.rotations, sizes, axis=0)
+        own = self.frames.frames @ rotations
         return snapped(own.reshape(-1, 2)).reshape(-1, 2, 2)
 
     def _of_shapes(self) -> list[ShapePart]:
@@ -239,7 +225,7 @@ class CutBodies:
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
-        for owner, (nodes, frames, force) in enumerate(self._nodes_of_parts()):
+        for owner, on_nodes in enumerate(self._nodes_of_parts()):
             body = self._body_of_parts[owner]
             of_body = self.structure.bodies[body]
             if not self._traces[owner]:
@@ -249,25 +235,26 @@ class CutBodies:
                     "bodies that something holds",
                     "join it to another body, or hold some of its nodes",
                 )
-            rows, n_rows = numbered(self._traces[owner], n_rows)
-            traces = list(self._traces[owner].values())
+            traces = self._traces[owner]
+            first_rows, n_rows = numbered(traces, n_rows)
             mesh = self.shape_parts[owner]
             yield CondensedPart(
                 mesh=mesh,
-                operator=self._operators.of(mesh, nodes, traces, force is not None),
-                nodes=nodes,
+                operator=self._operators.of(mesh, on_nodes, list(traces.values())),
+                nodes=on_nodes.nodes,
                 body=body,
-                rows=rows,
-                force=force,
-                frames=frames,
-                rotation=of_body.rotation,
+                traces=traces,
+                first_rows=first_rows,
+                force=on_nodes.force,
+                frames=on_nodes.frames,
+                rotation=self.structure.rotations[body],
             )
 
-    def _nodes_of_parts(self) -> list[_PartNodes]:
+    def _nodes_of_parts(self) -> list[PartNodes]:
         """Nodes, motions and forces of every part; parts alike are made together."""
         loads = self._loads()
         motions = self._motions()
-        found = dict[int, _PartNodes]()
+        found = dict[int, PartNodes]()
         for owners in self._alike_in_force(loads):
             of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0]))
             found.update(zip(owners, of_parts, strict=True))
@@ -293,7 +280,7 @@ class CutBodies:
 
     def _nodes_of_alike(
         self, owners: Sequence[int], motions: Array, load: Array | None
-    ) -> list[_PartNodes]:
+    ) -> list[PartNodes]:
         """Nodes, motions and forces of parts alike, by their numbers.
 
         `motions` are those of all nodes, (n_nodes, N_AXES, 3), `load` the forces on the
@@ -302,14 +289,16 @@ class CutBodies:
         own = self.shape_parts[owners[0]]
         bodies = [self._body_of_parts[owner] for owner in owners]
         nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
+        keys = self._operators.turned(nodes)
         frames = motions[nodes, : own.n_axes]
         force = own.force(self.structure.bodies[bodies[0]].weight, load)
         turned: Array | list[None] = [None] * len(owners)
         if force is not None:
-            on_nodes = frames[..., :2] @ force / (self.young * self.length)
+            on_nodes = frames[..., :2] @ force
+            on_nodes /= self.young * self.length
             turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
-        of_parts = zip(nodes, frames, turned, strict=True)
-        return [_PartNodes(*of_part) for of_part in of_parts]
+        of_parts = zip(nodes, keys, frames, turned, strict=True)
+        return [PartNodes(*of_part) for of_part in of_parts]
 
     def _loads(self) -> Mapping[int, Array]:
         """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.

@@ -52,7 +52,7 @@ class CutShape:
             # A line may wind back beside itself, and is cut along itself.
             places = shape.laid_out
         self.labels = bisected(places, count)
-        if isinstance(shape, Mesh):
+        if isinstance(shape, Mesh) and count > 1:
             self.labels = in_one_piece(shape, self.labels)
         numbers = range(count)
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]

@@ -129,18 +129,21 @@ def _components(
     """
     pieces = [cut.pieces[number] for number in numbers]
     along = np.repeat([piece.along for piece in pieces], counts)
-    every = np.arange(len(along))
+    # Numbers of the pairs of each piece within it.
+    within = np.arange(len(along)) - np.repeat(np.cumsum(counts) - counts, counts)
     tangential = list[Indices]()
     across = list[Indices]()
     for side, name in enumerate(JOINT_SIDES[: len(pieces[0].parts)]):
+        parts = [cut.parts[piece.parts[side]] for piece in pieces]
         of_pieces = [
-            cut.parts[piece.parts[side]].rows[name, number]
-            for number, piece in zip(numbers, pieces, strict=True)
+            part.first_rows[name, number]
+            for number, part in zip(numbers, parts, strict=True)
         ]
-        rows = np.concatenate(of_pieces)
-        tangential.append(rows[every, along])
-        if rows.shape[1] > 1:
-            across.append(rows[every, 1 - along])
+        _, n_components = parts[0].traces[name, numbers[0]].dofs.shape
+        rows = np.repeat(of_pieces, counts) + n_components * within
+        tangential.append(rows + along)
+        if n_components > 1:
+            across.append(rows + 1 - along)
     if not across:
         return Component(*tangential), None
     return Component(*tangential), Component(*across)

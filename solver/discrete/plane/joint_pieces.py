@@ -33,7 +33,8 @@ class NodeFrames:
     """Directions of the degrees of freedom of the nodes of all bodies.
 
     Nodes of a joint have its tangent and normal, held ones the global axes, others the
-    axes of their body. Nodes of all bodies follow each other.
+    axes of their body. Nodes of all bodies follow each other. `rotations` are those of
+    the bodies, (n_bodies, 2, 2).
 
     Attributes
     ----------
@@ -42,22 +43,24 @@ class NodeFrames:
     frames
         The first and the second direction at every node, in global axes, (n_nodes, 2,
         2).
+    first_pairs
+        Number of the first pair of each joint, (n_joints + 1,).
     has_pair
-        Of each joint its pairs that there are, (n,). None where directions differ, and
-        where both sides are held across the joint, so that any pressing force would be
-        a solution.
+        Which pairs of the joints there are, (n_pairs,). None where directions differ,
+        and where both sides are held across the joint, so that any pressing force would
+        be a solution.
     """
 
     def __init__(
         self,
-        bodies: Sequence[Body],
+        rotations: Array,
         first_nodes: Indices,
         pairs: NodePairs,
         held: Sequence[Held],
     ) -> None:
         self.first_nodes = first_nodes
         sizes = np.diff(first_nodes)
-        turned = np.array([body.rotation.T for body in bodies])
+        turned = rotations.swapaxes(1, 2)
         axes = snapped(turned.reshape(-1, 2)).reshape(-1, 2, 2)
         self.frames = np.repeat(axes, sizes, axis=0)
         self._held = np.zeros((len(self.frames), 2), dtype=bool)
@@ -72,26 +75,26 @@ class NodeFrames:
         nodes = np.concatenate([pairs.above, pairs.below[has_below]])
         self._turn(nodes, np.concatenate([normals, normals[has_below]]))
         self._hold()
-        has_pair = self._pairs_there(pairs.above, pairs.below, normals)
-        ends = pairwise(pairs.first.tolist())
-        self.has_pair = [has_pair[first:last] for first, last in ends]
+        self.first_pairs = pairs.first
+        self.has_pair = self._pairs_there(pairs.above, pairs.below, normals)
 
     def _turn(self, nodes: Indices, normals: Array) -> None:
         """Turn nodes, (n,), into the frame of their first joint; normals are (n, 2)."""
         tangents = np.stack([normals[:, 1], -normals[:, 0]], axis=1)
         wanted = np.stack([tangents, normals], axis=1)
-        known, first = np.unique(nodes, return_index=True)
-        self.frames[known] = wanted[first]
+        # What is written last stays.
+        self.frames[nodes[::-1]] = wanted[::-1]
         differs = np.abs(self.frames[nodes] - wanted).max(axis=(1, 2)) > ALIKE
         self._unlike[nodes[differs]] = True
         self._of_joint[nodes] = True
 
     def _hold(self) -> None:
         """Turn held nodes back to the global axes, unless theirs are axes already."""
-        is_axis = np.abs(self.frames).max(axis=1) == 1.0
-        is_skew = (self._held & ~is_axis).any(axis=1)
-        self._unlike |= is_skew & self._of_joint
-        turned_back = is_skew | (self._unlike & self._held.any(axis=1))
+        held = np.flatnonzero(self._held.any(axis=1))
+        is_axis = np.abs(self.frames[held]).max(axis=1) == 1.0
+        is_skew = (self._held[held] & ~is_axis).any(axis=1)
+        self._unlike[held] |= is_skew & self._of_joint[held]
+        turned_back = held[is_skew | self._unlike[held]]
         self.frames[turned_back] = np.eye(2)
 
     def _pairs_there(self, above: Indices, below: Indices, normals: Array) -> Flags:
@@ -137,11 +140,11 @@ def pieces_of(
     known = dict[Hashable, list[JointPiece]]()
     counts = [len(cut.elements) for cut in cuts]
     first_parts = np.cumsum([0, *counts]).tolist()
-    for number, (joint, has_pair) in enumerate(
-        zip(joints, frames.has_pair, strict=True)
-    ):
-        sides = tuple((id(cuts[body]), chain.tobytes()) for body, chain in joint.sides)
-        key = sides, has_pair.tobytes()
+    ends = frames.first_pairs.tolist()
+    for number, joint in enumerate(joints):
+        has_pair = frames.has_pair[ends[number] : ends[number + 1]]
+        sides = [(id(cuts[body]), chain.tobytes()) for body, chain in joint.sides]
+        key = *sides, has_pair.tobytes()
         if key not in known:
             whole = _pieces_of_joint(bodies, number, joint, cuts)
             known[key] = [
@@ -169,7 +172,8 @@ def _of_joint(
         first_parts[body] + part
         for (body, _), part in zip(joint.sides, piece.parts, strict=False)
     ]
-    return piece._replace(joint=number, parts=tuple(numbers))
+    parts = tuple(numbers)
+    return JointPiece(number, parts, piece.places, piece.weights, piece.along)
 
 
 def _pieces_of_joint(

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Sequence
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
+from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.joint_laws import JointPairs, Surface, contact_of
@@ -77,7 +77,7 @@ def _stiffness_beside(
         along = of_joints[of_joint] * share
         # Across beams k is at least that along them, as their tension presses them.
         tension = np.maximum(local[:, 1, side], np.sqrt(along * local[:, 0, side]))
-        is_beam = ~_is_mesh(cut, bodies)[of_joint]
+        is_beam = ~cut.is_mesh[bodies][of_joint]
         local[is_beam, 1, side] = tension[is_beam]
         whole[:, 0, side] = along
         whole[:, 1, side] = np.where(is_beam, tension, along)
@@ -92,11 +92,6 @@ def _rows_of(pairs: JointPairs) -> Indices:
     return np.stack([np.stack(each.sides, axis=1) for each in components], axis=1)
 
 
-def _is_mesh(cut: CutBodies, bodies: Sequence[int]) -> Flags:
-    """Check which bodies, by number, are meshes, (n,)."""
-    return np.array([cut.is_mesh(number) for number in bodies])
-
-
 def _whole_joints(
     cut: CutBodies, bodies: Sequence[int], lengths: Array, *, on_support: bool
 ) -> tuple[Array, Array]:
@@ -105,7 +100,7 @@ def _whole_joints(
     `bodies` are their numbers, joint by joint, `lengths` those of the joints, m; shape
     (n_joints,) all, the stiffnesses scaled.
     """
-    is_mesh = _is_mesh(cut, bodies)
+    is_mesh = cut.is_mesh[bodies]
     modulus = cut.moduli[bodies] / np.where(is_mesh, 1.0, lengths)
     depth = np.where(is_mesh, cut.volumes[bodies] / lengths, lengths)
     of_mesh = of_whole_mesh(depth, lengths, on_support=on_support)

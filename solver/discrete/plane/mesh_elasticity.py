@@ -5,23 +5,23 @@ from __future__ import annotations
 import numpy as np
 import skfem
 from scipy import sparse
+from skfem.quadrature import get_quadrature
 
 from solver.arrays import Array, Indices
 from solver.discrete.elements import dofs_of
 from solver.discrete.plane.meshes import Mesh
 
 EXACT = {
-    3: 2,
-    4: 4,
+    3: get_quadrature(skfem.ElementTriP2.refdom, 2),
+    4: get_quadrature(skfem.ElementQuad2.refdom, 4),
 }
-"""Order of integration that is exact for the stiffness of elements with parallel edges,
-by their number of corners."""
+"""Points and weights of the integration that is exact for the stiffness of elements
+with parallel edges, by their number of corners."""
 
 
 def quadratic_basis(mesh: Mesh, elements: Indices) -> skfem.Basis:
     """Quadratic functions of some elements of a mesh, at points of integration."""
-    order = EXACT[mesh.elements.shape[1]]
-    return skfem.Basis(mesh.grid, _element(mesh), elements=elements, intorder=order)
+    return _basis(mesh, elements, EXACT[mesh.elements.shape[1]])
 
 
 def mesh_stiffness(
@@ -45,7 +45,9 @@ def mesh_stiffness(
 
 def mesh_volumes(basis: skfem.Basis) -> Array:
     """Area that belongs to each node of a mesh, of a basis of it, (n_nodes,), m^2."""
-    return np.asarray(skfem.asm(skfem.LinearForm(lambda v, _: 1.0 * v), basis))
+    shares = [(each[0] * basis.dx).sum(axis=1) for each in basis.basis]
+    nodes = basis.element_dofs.ravel()
+    return np.bincount(nodes, np.concatenate(shares), minlength=basis.N)
 
 
 def mesh_strains(mesh: Mesh, elements: Indices, nodes: Indices) -> sparse.csr_array:
@@ -58,12 +60,7 @@ def mesh_strains(mesh: Mesh, elements: Indices, nodes: Indices) -> sparse.csr_ar
     middle = np.full((2, 1), 1.0 / 3.0)
     if mesh.elements.shape[1] == 4:
         middle[:] = 0.5
-    basis = skfem.Basis(
-        mesh.grid,
-        _element(mesh),
-        elements=elements,
-        quadrature=(middle, np.ones(1)),
-    )
+    basis = _basis(mesh, elements, (middle, np.ones(1)))
     strains = _strains(basis)[..., 0].swapaxes(1, 2)
     size = len(elements)
     rows = np.arange(3 * size).reshape(size, 3).T[:, :, None]
@@ -88,8 +85,18 @@ def _strains(basis: skfem.Basis) -> Array:
     return strains.reshape(3, -1, *along_x.shape[1:])
 
 
-def _element(mesh: Mesh) -> skfem.Element:
-    """Quadratic element of a mesh."""
+def _basis(
+    mesh: Mesh, elements: Indices, quadrature: tuple[Array, Array]
+) -> skfem.Basis:
+    """Quadratic functions of some elements at points with weights in the element."""
+    kind = skfem.ElementTriP2
     if mesh.elements.shape[1] == 4:
-        return skfem.ElementQuad2()
-    return skfem.ElementTriP2()
+        kind = skfem.ElementQuad2
+    # Positions of degrees of freedom are those of the nodes of the mesh.
+    return skfem.Basis(
+        mesh.grid,
+        kind(),
+        elements=elements,
+        quadrature=quadrature,
+        disable_doflocs=True,
+    )

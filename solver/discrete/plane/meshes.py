@@ -98,12 +98,12 @@ class Mesh:
         twice = x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y
         return np.asarray(0.5 * twice.sum(axis=1))
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Side of a square of the same area, m."""
         return float(np.sqrt(self.areas.sum()))
 
-    @property
+    @cached_property
     def volume(self) -> float:
         """Volume for a metre of thickness, m^3."""
         return float(self.areas.sum())

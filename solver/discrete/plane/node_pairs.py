@@ -32,22 +32,19 @@ class NodePairs(NamedTuple):
     @classmethod
     def of(cls, joints: Sequence[Joint], first_nodes: Indices) -> NodePairs:
         """Pairs of joints; `first_nodes` are those of the bodies, (n_bodies + 1,)."""
+        sizes = np.array([len(joint.nodes) for joint in joints], dtype=np.intp)
+        above = [joint.sides[0] for joint in joints]
+        below = [joint.sides[1] for joint in joints if len(joint.sides) > 1]
+        has_below = np.array([len(joint.sides) > 1 for joint in joints], dtype=bool)
+        nodes_below = np.full(sizes.sum(), -1)
+        nodes_below[np.repeat(has_below, sizes)] = _nodes_of(below, first_nodes)
         # There may be no joint at all.
-        above = [np.zeros(0, dtype=np.intp)]
-        below = [np.zeros(0, dtype=np.intp)]
         normals = [np.zeros((0, 2))]
-        for joint in joints:
-            above.append(first_nodes[joint.above] + joint.nodes)
-            if joint.below is not None and joint.nodes_below is not None:
-                below.append(first_nodes[joint.below] + joint.nodes_below)
-            else:
-                below.append(np.full(len(joint.nodes), -1))
-            normals.append(joint.normals)
-        sizes = [len(joint.nodes) for joint in joints]
+        normals += [joint.normals for joint in joints]
         return cls(
             first=np.cumsum([0, *sizes]),
-            above=np.concatenate(above),
-            below=np.concatenate(below),
+            above=_nodes_of(above, first_nodes),
+            below=nodes_below,
             normals=np.concatenate(normals),
         )
 
@@ -55,6 +52,18 @@ class NodePairs(NamedTuple):
     def joints(self) -> Indices:
         """Number of the joint of each pair, ascending, (n_pairs,)."""
         return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
+
+
+def _nodes_of(sides: Sequence[tuple[int, Indices]], first_nodes: Indices) -> Indices:
+    """Nodes of sides of joints, (n_nodes,), among those of all bodies.
+
+    Sides are numbers of bodies and of nodes of these.
+    """
+    bodies = np.array([body for body, _ in sides], dtype=np.intp)
+    sizes = np.array([len(nodes) for _, nodes in sides], dtype=np.intp)
+    nodes = [np.zeros(0, dtype=np.intp)]
+    nodes += [of_side for _, of_side in sides]
+    return np.repeat(first_nodes[bodies], sizes) + np.concatenate(nodes)
 
 
 def along_joints(values: Sequence[Array | float], sizes: Sequence[int]) -> Array:

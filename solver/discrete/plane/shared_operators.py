@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,27 @@ from solver.kept import KEPT, content_of
 
 DIGITS = 9
 """Decimal digits to which parts agree that share an operator."""
+
+
+class PartNodes(NamedTuple):
+    """Nodes of a part, and the forces there.
+
+    Attributes
+    ----------
+    nodes
+        Numbers of its nodes among those of all bodies, (n_nodes,).
+    turned
+        Key of the directions of its degrees of freedom in the axes of its body.
+    frames
+        Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3).
+    force
+        Forces on these, (n_nodes n_axes, n_instants), scaled, or None.
+    """
+
+    nodes: Indices
+    turned: bytes
+    frames: Array
+    force: Array | None
 
 
 class SharedOperators:
@@ -33,17 +55,16 @@ class SharedOperators:
         self._stiffnesses = dict[Hashable, SchurComplement]()
 
     def of(
-        self, part: ShapePart, nodes: Indices, traces: Sequence[Trace], has_force: bool
+        self, part: ShapePart, on_nodes: PartNodes, traces: Sequence[Trace]
     ) -> Operator:
         """Operator of a part with boundary rows, the same for parts alike.
 
-        `nodes` are numbers of its nodes among those of all bodies, (n_nodes,). Members
-        of a group of parts have forces inside all or none of them.
+        Members of a group of parts have forces inside all or none of them.
         """
-        turned = self._rounded[nodes].tobytes()
+        has_force = on_nodes.force is not None
         # Most parts that are alike have the very same traces.
-        of_traces = tuple(id(trace) for trace in traces)
-        same = id(part), of_traces, turned, has_force
+        of_traces = [id(trace) for trace in traces]
+        same = id(part), on_nodes.turned, has_force, *of_traces
         if same in self._operators:
             return self._operators[same]
         dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
@@ -52,16 +73,20 @@ class SharedOperators:
             id(part),
             dofs.tobytes(),
             _rounded(direction / direction.max()).tobytes(),
-            turned,
+            on_nodes.turned,
             tuple(trace.has_macro for trace in traces),
             has_force,
         )
         if alike not in self._operators:
-            frames = self._frames[nodes]
+            frames = self._frames[on_nodes.nodes]
             condensed = self._condensed(part, frames, kept_by(traces))
             self._operators[alike] = Operator(condensed, traces)
         self._operators[same] = self._operators[alike]
         return self._operators[alike]
+
+    def turned(self, nodes: Indices) -> list[bytes]:
+        """Directions at nodes of parts, (n_parts, n_nodes), as keys of the parts."""
+        return [of_part.tobytes() for of_part in self._rounded[nodes]]
 
     def _condensed(
         self, part: ShapePart, frames: Array, kept: Indices

@@ -118,10 +118,11 @@ class CutStack:
         height = rows * (stack.height / stack.length) / stack.elements[1]
         x = np.linspace(0.0, width, columns + 1)
         y = np.linspace(0.0, height, rows + 1)
+        lattice = np.stack(np.meshgrid(x, y), axis=-1)
         grids = list[Array]()
         for brick in stack.rectangles:
             along, up = brick.nodes()
-            grids.append(np.stack(np.meshgrid(x[along], y[up]), axis=-1))
+            grids.append(lattice[up, along])
         return grids
 
     def _parts(self, nodes: Sequence[Indices]) -> Iterator[CondensedPart]:
@@ -140,13 +141,14 @@ class CutStack:
                 name: self._trace(trace, mesh, modulus)
                 for name, trace in traces.items()
             }
-            rows, n_rows = numbered(of_mesh, n_rows)
+            first_rows, n_rows = numbered(of_mesh, n_rows)
             yield CondensedPart(
                 mesh=mesh,
                 operator=self._operator(mesh, modulus, kinds, has_force),
                 nodes=self._own_nodes(number, nodes[body]),
                 body=body,
-                rows=rows,
+                traces=of_mesh,
+                first_rows=first_rows,
                 force=force,
             )
 

@@ -124,7 +124,7 @@ def _interfaces(cut: CutStack) -> Iterator[tuple[str, Interface]]:
 
 def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
     """Perfect interface of two substructures of one body."""
-    above, below = [cut.parts[number].rows[joint] for number, _ in joint.sides]
+    above, below = [cut.parts[number].rows(joint) for number, _ in joint.sides]
     return glued(below, above, cut.macro_basis_of_cut(joint))
 
 
@@ -243,9 +243,9 @@ def _spring(cut: CutStack, spring: Spring) -> Contact:
     """Contact of a spring, which pushes the foot to the right as if from the left."""
     stack = cut.stack
     (number,) = [
-        number for number, part in enumerate(cut.parts) if "spring" in part.rows
+        number for number, part in enumerate(cut.parts) if "spring" in part.traces
     ]
-    rows = cut.parts[number].rows["spring"]
+    rows = cut.parts[number].rows("spring")
     areas = cut.mesh(number).edge_weights("right")
     return Contact(
         normal=Unilateral(
@@ -270,14 +270,14 @@ def _prescribed(
     values = list[Array]()
     components = [number for number, each in enumerate(given) if each.prescribed]
     for number, part in enumerate(cut.parts):
-        for span, of_span in part.rows.items():
+        for span in part.traces:
             if not isinstance(span, Span) or span.side != side:
                 continue
             for column, component in enumerate(components):
                 moved = values_along(cut.rectangles, number, span, given[component])
                 if side in ("left", "right"):
                     _move_corners(cut, number, side, component, moved)
-                rows.append(of_span[:, column])
+                rows.append(part.rows(span)[:, column])
                 values.append(moved / cut.stack.length)
     if rows:
         yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
@@ -297,7 +297,7 @@ def _move_corners(
     m.
     """
     sign = 1.0 if side == "right" else -1.0
-    spans = [name for name in cut.parts[number].rows if isinstance(name, Span)]
+    spans = [name for name in cut.parts[number].traces if isinstance(name, Span)]
     for level, corner in (("bottom", 0), ("top", -1)):
         given = cut.stack.sides[level][component]
         on_level = [span for span in spans if span.side == level]
