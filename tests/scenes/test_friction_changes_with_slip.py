@@ -84,7 +84,7 @@ def bound_of(law: Contact, moved: Array, force: Array, slip: Array) -> Array:
     return bound
 
 
-@settings(max_examples=300)
+@settings(max_examples=120)
 @given(
     st.integers(0, 2**31),
     st.booleans(),
@@ -218,7 +218,7 @@ def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(
     length, displaced
 ):
     found = []
-    for steps in (5, 20):
+    for steps in (5, 10):
         end = np.linspace(0.0, 1.0, steps + 1) * (
             6e-4 * STIFFNESS if displaced else 800.0
         )
@@ -230,7 +230,7 @@ def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(
         assert found[-1].converged.all()
         assert found[-1].jumps_at is None
     few, many = (one.displacement for one in found)
-    assert np.allclose(few, many[:, ::4], rtol=0.0, atol=1e-9 * np.abs(many).max())
+    assert np.allclose(few, many[:, ::2], rtol=0.0, atol=1e-9 * np.abs(many).max())
 
 
 STRIP = {
