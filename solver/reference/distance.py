@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices, largest_size
 from solver.discrete.problem import Problem
