@@ -300,7 +300,7 @@ def test_margins_in_a_flat_valley_are_those_of_the_valley() -> None:
 def test_a_fit_leaves_a_valley_that_is_not_the_deepest() -> None:
     """A front of few elements makes a valley for each of them."""
     true = {"friction": 0.233, "young": 2.71e11}
-    sizes = {**FLAT, "elements": 25, "instants": 41, "peak": 233.0}
+    sizes = FLAT | {"elements": 12, "substructures": 1, "peak": 233.0}
     start = scene_settings("bar").checked({**sizes, "friction": 0.162, "young": 2.5e11})
     measured = made(true, start, 0.01, seed=16)
     found = fit(start, measured, list(true))
