@@ -65,7 +65,7 @@ contrasts = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(contrasts)
 def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
     values = InclineSettings.checked(SMALL | values)

@@ -74,7 +74,7 @@ def driven(size: float) -> dict[str, tuple[str, dict[str, Any]]]:
     }
 
 
-@settings(max_examples=24)
+@settings(max_examples=14)
 @given(
     st.sampled_from(sorted(driven(1.0))),
     st.floats(-14.0, 0.0).map(lambda power: 10.0**power),

@@ -314,7 +314,7 @@ def test_a_fault_that_softens_is_solved_and_jumps_only_where_its_elements_are_to
         assert ("jumps" in run.status.advice) is expected
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(
     st.integers(0, 2**31),
     st.sampled_from(["block", "layers", "fault", "incline", "bar", "strand"]),

@@ -26,7 +26,7 @@ from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 
 STIFFNESS = 659_400.0
-DRAWN = settings(max_examples=25)
+DRAWN = settings(max_examples=15)
 FACTORS = st.lists(st.floats(0.05, 1.0), min_size=8, max_size=8)
 
 

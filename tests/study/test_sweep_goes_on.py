@@ -256,7 +256,7 @@ def test_a_sweep_that_is_killed_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = sweep_of_bars(24)
-    asked += ["--on", "processes:2", "--out", str(tmp_path)]
+    asked += ["--on", "processes:1", "--out", str(tmp_path)]
     table = tmp_path / "sweep.csv"
     with started([sys.executable, "-m", "solver", *asked]):
         wait_for(lambda: rows_in_table(table) > 3)
