@@ -187,7 +187,7 @@ def test_the_method_meets_the_incremental_solver_whatever_holds_the_ends(
     reference = reference_of(problem)
     assert reference.converged.all()
     distance = distance_to(reference, problem)
-    solution = solve(problem, method_of(settings), distance=distance)
+    solution = solve(problem, method_of(settings), distance=distance, watch=False)
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-2
 
