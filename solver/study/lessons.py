@@ -153,7 +153,7 @@ def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
     Claims with equal settings share a run.
     """
     # Claims often test several quantities of one run, which has what all of them read.
-    reads: dict[str, set[str]] = {}
+    reads: dict[str, set[str | None]] = {}
     for claim in lesson.checkpoints:
         reads.setdefault(dump(claim.settings), set()).add(claim.quantity.reads)
     runs: dict[str, FinishedRun] = {}
