@@ -152,18 +152,16 @@ def check(lesson: Lesson) -> Iterator[tuple[bool, str]]:
 
     Claims with equal settings share a run.
     """
-    # Claims often test several quantities of one run, which has what all of them read.
-    reads: dict[str, set[str | None]] = {}
-    for claim in lesson.checkpoints:
-        reads.setdefault(dump(claim.settings), set()).add(claim.quantity.reads)
+    reads = {claim.quantity.reads for claim in lesson.checkpoints}
+    errors = "errors" in reads
+    indicators = "indicators" in reads
+    # Claims often test several quantities of one run.
     runs: dict[str, FinishedRun] = {}
     for claim in lesson.checkpoints:
         key = dump(claim.settings)
         if key not in runs:
             runs[key] = finished_run(
-                claim.settings,
-                errors="errors" in reads[key],
-                indicators="indicators" in reads[key],
+                claim.settings, errors=errors, indicators=indicators
             )
         holds, words = claim.tested(runs[key], lesson.instant)
         mark = "-"
