@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices, largest_size
 from solver.discrete.problem import Problem
@@ -214,13 +213,19 @@ def determinate_forces(problem: Problem) -> Flags:
     all_jumps = jumps(problem)
     rules = rules_of(problem)
     moves = abs(all_jumps) @ free > 0.0
-    slips = np.diff(all_jumps[:, dofs] @ displacement, axis=1, prepend=0.0) != 0.0
+    slips = np.zeros((len(moves), problem.n_instants), dtype=bool)
+    # Mostly what is prescribed is held: such a jump never slips.
+    if displacement.any():
+        jumped = all_jumps[:, dofs] @ displacement
+        slips = np.diff(jumped, axis=1, prepend=0.0) != 0.0
     slips[rules.normal] = False
     slips &= (moves | ~rules.normal)[rules.partner][:, None]
     moves &= (moves | ~rules.normal)[rules.partner]
     # Jumps with a spring in series have a force of their own even in a ring.
     moving = np.flatnonzero(moves)
-    free_jumps = (all_jumps @ sparse.diags_array(free))[moving]
+    free_jumps = all_jumps[moving]
+    free_jumps.data = free_jumps.data * free[free_jumps.indices]
+    free_jumps.eliminate_zeros()
     ring = np.any(
         self_stresses(free_jumps, rules.compliance[moving] == 0.0) != 0.0, axis=1
     )

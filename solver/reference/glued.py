@@ -14,8 +14,8 @@ determinate.
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from scipy import sparse
-from scipy.cluster.hierarchy import DisjointSet
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from solver.arrays import Array, Flags, Indices, sparse_factor
@@ -202,7 +202,7 @@ def base_of(jumps: sparse.csr_array, rigid: Flags) -> tuple[Indices, sparse.csr_
 def _spanning(jumps: sparse.csr_array, rigid: Flags) -> Indices:
     """Jumps that join all points to trees, rigid ones preferred, (n_tree_jumps,)."""
     first, last = graph_of(jumps)
-    forest = DisjointSet(range(jumps.shape[1] + 1))
+    forest = scipy.cluster.hierarchy.DisjointSet(range(jumps.shape[1] + 1))
     chosen = []
     # Kruskal's algorithm, with the rigid jumps as the lightest edges.
     for jump in np.argsort(~rigid, kind="stable").tolist():

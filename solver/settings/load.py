@@ -79,15 +79,22 @@ class LoadSettings(FrictionSettings):
         """Number of nodes of all bodies."""
         return self.n_bodies * (self.elements + 1)
 
-    @property
-    def paths(self) -> tuple[str, ...]:
-        """Names of the curves over time that do something."""
+    @classmethod
+    @cache
+    def _curves(cls) -> tuple[str, ...]:
+        """Names of the curves over time."""
         names = []
-        for name, definition in self.definitions().items():
+        for name, definition in cls.definitions().items():
             is_curve = isinstance(definition, CurveParameter)
-            if is_curve and definition.abscissa == "time" and self.applies(name):
+            if is_curve and definition.abscissa == "time":
                 names.append(name)
         return tuple(names)
+
+    @cached_property
+    def paths(self) -> tuple[str, ...]:
+        """Names of the curves over time that do something."""
+        # Settings stay, and their instants ask for the paths again and again.
+        return tuple(name for name in self._curves() if self.applies(name))
 
     @classmethod
     @cache
@@ -175,7 +182,7 @@ class LoadSettings(FrictionSettings):
         instants.flags.writeable = False
         return instants
 
-    @property
+    @cached_property
     def _tables(self) -> tuple[str, ...]:
         """Names of the paths over time that are tables."""
         return tuple(name for name in self.paths if self.preset(name) is None)

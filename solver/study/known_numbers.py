@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import erfc
+import scipy
 
 from solver.arrays import Array
 from solver.discrete.contacts import NO_SLIP
@@ -236,7 +236,7 @@ def _known_front(settings: Any) -> float:
     """
     reserve = settings.normal_stress - settings.shear_stress / settings.friction
     positions = np.linspace(0.0, 20.0, 20_001)
-    strength = reserve / settings.overpressure - erfc(positions)
+    strength = reserve / settings.overpressure - scipy.special.erfc(positions)
     (front,) = fronts(positions, strength[:, None])
     return float(front)
 

@@ -203,7 +203,7 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
     """Singular values of the friction force in every substructure."""
     parts = runs.friction_forces
     largest = max(part.values[0] for part in parts)
-    noise = runs.five.records[-1].error_force
+    noise = runs.noise
     orders = np.arange(1.0, len(parts[-1].values) + 1.0)
     curves = []
     for number, part in enumerate(parts, start=1):

@@ -34,7 +34,7 @@ from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import fdtri, ndtr
+import scipy
 
 from solver.arrays import Array
 from solver.study.compared_runs import ComparedRuns
@@ -45,7 +45,7 @@ LIMIT = math.log(FACTOR)
 """The same distance in z."""
 WALK = math.log(3.0)
 """Distance in z along the floor of a valley that is searched for a lower place."""
-TWO = float(2.0 * ndtr(2.0) - 1.0)
+TWO = math.erf(math.sqrt(2.0))
 """Probability of a normal value within two standard errors."""
 BROAD = 1e-2
 """Step, in z, of the finite differences that tell the direction of a valley."""
@@ -202,7 +202,7 @@ class Valley:
         rows = len(runs.first.differences)
         free = rows - len(z)
         self.deviation = max(math.sqrt(self.minimum / free), SILENT)
-        quantile = float(fdtri(1, free, TWO))
+        quantile = float(scipy.special.fdtri(1, free, TWO))
         change = runs.of_mesh(z)
         self.mesh = change / math.sqrt(rows)
         self.noise = quantile * self.deviation**2

@@ -336,7 +336,7 @@ def test_latin_comes_to_the_answer_of_the_incremental_solver(kind: str) -> None:
     }
     problem = discretise(structures[kind])
     reference = reference_of(problem)
-    solution = solve(problem, Latin())
+    solution = solve(problem, Latin(), watch=False)
     assert solution.is_certified
     assert whole_force_error(reference, solution.iterate) < 1e-8
     distance = distance_to(reference, problem)

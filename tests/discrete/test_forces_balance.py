@@ -202,7 +202,7 @@ def test_the_answer_of_a_run_balances(scene: str) -> None:
 LAW = st.sampled_from([*LAWS, "general"])
 
 
-@examples(max_examples=20)
+@examples(max_examples=12)
 @given(
     left=END, right=END, law=LAW, seed=st.integers(0, 10**6), parts=st.integers(1, 3)
 )
@@ -238,7 +238,7 @@ def test_a_rod_balances_whatever_is_at_its_ends(
     assert_balance(settings, reference, problem)
 
 
-@examples(max_examples=16)
+@examples(max_examples=10)
 @given(left=SIDE, right=SIDE, top=HELD_TOP, law=LAW, seed=st.integers(0, 10**6))
 def test_a_block_balances_whatever_is_at_its_sides(
     left: str, right: str, top: str, law: str, seed: int

@@ -74,8 +74,8 @@ def test_rules_and_search_directions_are_equal_to_the_bit(wall: Problem) -> None
 @pytest.mark.parametrize("scene", SCENES)
 def test_a_run_is_equal_to_the_bit_and_so_are_its_fields(scene: str) -> None:
     problem = problem_of(scene)
-    found = solve(problem, Latin()).iterate
-    wanted = solve(apart(problem), Latin()).iterate
+    found = solve(problem, Latin(), watch=False).iterate
+    wanted = solve(apart(problem), Latin(), watch=False).iterate
     assert found.number == wanted.number
     assert np.array_equal(found.outgoing, wanted.outgoing)
     assert np.array_equal(found.status, wanted.status)
@@ -107,8 +107,8 @@ def test_an_order_without_all_interfaces_is_refused(wall: Problem) -> None:
 
 def test_the_order_may_be_another(wall: Problem) -> None:
     other = replace(wall, order=wall.order[::-1])
-    found = solve(other, Latin()).iterate
-    wanted = solve(wall, Latin()).iterate
+    found = solve(other, Latin(), watch=False).iterate
+    wanted = solve(wall, Latin(), watch=False).iterate
     for name in wall.rubbing:
         one = found.contact(name).tangential_force
         size = np.abs(wanted.contact_force).max()

@@ -144,7 +144,7 @@ def test_a_body_that_never_touches_moves_as_a_whole_and_the_run_converges(depth)
             "elements": 16,
         }
     )
-    solution = solve(discretise(settings), method_of(settings))
+    solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.status.ending is Ending.CONVERGED
     fields = solution.iterate.contact("support")
     assert np.all(fields.status == 2)

@@ -84,7 +84,7 @@ def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(element
     bound = settings.largest_friction(contact.positions) * contact.weights[:, None]
     friction = found.contact("support").tangential_force
     np.testing.assert_allclose(np.abs(friction)[slips], bound[slips], rtol=1e-9)
-    assert solve(problem, method_of(settings)).is_certified
+    assert solve(problem, method_of(settings), watch=False).is_certified
 
 
 THIN = {
@@ -112,7 +112,7 @@ def test_such_a_run_goes_on_from_any_checkpoint_to_the_bit(place):
 
 def test_what_nowhere_slips_is_solved_by_a_status_step_soon():
     settings = settings_of("layers", **{**THIN, "instants": 81, "finish": "at-once"})
-    solution = solve(discretise(settings), method_of(settings))
+    solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.is_certified
     assert solution.iterate.number <= 12
 

@@ -65,7 +65,7 @@ contrasts = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(contrasts)
 def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
     values = InclineSettings.checked(SMALL | values)
@@ -154,7 +154,7 @@ def test_the_iteration_itself_does_not_see_how_soft_the_spring_is(method):
 def test_a_run_that_rigid_motion_hides_from_says_what_to_do_and_that_helps(finish):
     hidden = {**SMALL, "young": STEEL, "spring": 2.0, "method": "paper"}
     values = InclineSettings.checked({**hidden, "accuracy": 1e-4, "finish": finish})
-    run = solve(discretise(values), method_of(values))
+    run = solve(discretise(values), method_of(values), watch=False)
     assert run.is_certified == (finish == "at-once")
     if finish == "none":
         assert run.status.ending is Ending.STALLED

@@ -185,7 +185,7 @@ def test_two_sides_that_move_a_pile_carry_the_friction_of_its_ground() -> None:
         sides={"top": Side(moved, pressed), "left": Side(moved, Given(False, 0.0 * T))},
     )
     problem = discrete.discretise(pile)
-    run = solve(problem)
+    run = solve(problem, watch=False)
     shear = pile.loop(problem).force(run.iterate)
     carried = sum(
         reaction(problem, side, 0).of(run.iterate) for side in ("top", "left")

@@ -195,7 +195,7 @@ def read(
 
 
 @given(files())
-@settings(max_examples=120)
+@settings(max_examples=70)
 def test_points_are_those_that_were_given(file: Written) -> None:
     read_points, message = read(file.data)
     points = np.array(read_points)
@@ -312,7 +312,7 @@ def test_the_command_says_what_it_understood(tmp_path: Path, capsys: Any) -> Non
 
 
 @given(st.binary(max_size=60) | st.text('0159.,; \t\n"#xtN[]()/_-eE', max_size=60))
-@settings(max_examples=300)
+@settings(max_examples=150)
 def test_anything_else_is_read_or_refused_in_words(data: bytes | str) -> None:
     try:
         points = read(data)[0]

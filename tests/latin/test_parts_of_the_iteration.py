@@ -463,7 +463,7 @@ def test_a_start_refuses_bodies_in_the_plane_and_what_is_another_structure() -> 
     block = discretise(CATALOGUE["block"].checked(SMALL["block"]))
     method = Latin(start=Nested(lambda: [block]))
     with pytest.raises(RefusedError, match="bodies in the plane is refused"):
-        solve(block, method)
+        solve(block, method, watch=False)
     bar = scene_problem("bar")
     with pytest.raises(RefusedError, match="other interfaces"):
         prolong(reference_of(bar), scene_problem("strand"), bar.direction)

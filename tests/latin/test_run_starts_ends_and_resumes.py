@@ -47,7 +47,7 @@ from solver.scenes.method import method_of
 @pytest.mark.parametrize("multiscale", [True, False])
 def test_without_load_the_run_stops_at_once(multiscale):
     chosen = options(peak=0.0, multiscale=multiscale)
-    solution = solve(discretise(chosen), method_of(chosen))
+    solution = solve(discretise(chosen), method_of(chosen), watch=False)
     assert solution.status.ending is Ending.CONVERGED
     assert solution.iterate.number == 1
     assert solution.records[-1].indicator == 0.0
@@ -83,6 +83,7 @@ def test_started_at_the_reference_the_run_stops_at_once(change):
         method_of(chosen.replace(tolerance=1e-20)),
         start=start,
         distance=distance_to(reference, problem),
+        watch=False,
     )
     assert solution.status.ending is Ending.CONVERGED
     assert solution.iterate.number == 1
@@ -150,7 +151,7 @@ def test_a_run_whose_numbers_overflow_says_where_and_keeps_the_last_good_iterate
     start = next(iterations(problem, method_of(chosen))).checkpoint
     huge = replace(start, outgoing=start.outgoing * 1e160)
     with np.errstate(over="ignore", invalid="ignore"):
-        solution = solve(problem, method_of(chosen), start=huge)
+        solution = solve(problem, method_of(chosen), start=huge, watch=False)
     assert solution.status.ending is Ending.DIVERGED
     assert "at iteration 2" in solution.status.advice
 
@@ -276,6 +277,6 @@ def test_where_no_first_iterate_moves_the_status_step_is_tried_at_once():
     first = next(iterations(problem, method))
     assert (states_of(first) == HELD).all()
     assert not reference_of(problem).status.any()
-    solution = solve(problem, method)
+    solution = solve(problem, method, watch=False)
     assert solution.is_certified
     assert solution.iterate.number == 2

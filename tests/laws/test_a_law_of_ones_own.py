@@ -82,7 +82,7 @@ def test_a_damper_is_solved_and_ends_by_estimate(
     law: type[Interface], damping: float
 ) -> None:
     of = damped(law, damping)
-    solution = solve(of, EXACT)
+    solution = solve(of, EXACT, watch=False)
     assert is_honest(solution)
     assert solution.status.ending is Ending.CONVERGED
     assert law.__name__ in solution.status.advice
@@ -95,8 +95,8 @@ def test_a_damper_is_solved_and_ends_by_estimate(
 def test_an_estimate_is_no_smaller_than_the_error(damping: float) -> None:
     """For friction and for the damper's force, at the default accuracy."""
     of = damped(Dashpot, damping)
-    rough = solve(of).iterate
-    exact = solve(of, EXACT).iterate
+    rough = solve(of, watch=False).iterate
+    exact = solve(of, EXACT, watch=False).iterate
     law: Any = of.interfaces["load"]
     for rows in (of.friction.tangent.above, law.rows):
         found = rough.boundary_force[rows]
@@ -112,7 +112,7 @@ def test_a_support_of_dampers_alone_needs_no_contact() -> None:
     damping = 3.0 * friction.weights
     force = np.zeros((len(damping), len(T)))
     law = Dashpot(friction.tangent.above, damping, force)
-    solution = solve(with_law(of, "friction", law), EXACT)
+    solution = solve(with_law(of, "friction", law), EXACT, watch=False)
     assert solution.status.ending is Ending.CONVERGED
     assert is_honest(solution)
     dampers = friction.by_point(damping)
@@ -124,7 +124,7 @@ def test_a_support_of_dampers_alone_needs_no_contact() -> None:
 
 
 def test_a_contact_with_a_local_stage_of_its_own_is_solved_as_that() -> None:
-    solution = solve(as_contact(HalfContact), EXACT)
+    solution = solve(as_contact(HalfContact), EXACT, watch=False)
     assert is_honest(solution)
     assert solution.status.ending is Ending.CONVERGED
     expected = reference_of(bar(strength=150.0)).displacement
@@ -160,7 +160,7 @@ def test_two_contacts_of_one_kind_keep_their_own_local_stages() -> None:
         of,
         interfaces={**others, "a": part(Contact, left), "b": part(HalfContact, right)},
     )
-    solution = solve(halved, EXACT)
+    solution = solve(halved, EXACT, watch=False)
     assert is_honest(solution)
     bound = np.where(np.arange(9) < 5, 300.0, 150.0)
     expected = reference_of(bar(bound)).displacement
@@ -173,7 +173,7 @@ def test_bases_that_nothing_can_prove_do_not_converge() -> None:
     method = Latin(
         linear=PGD(modes=2), stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=40)
     )
-    solution = solve(damped(Dashpot), method)
+    solution = solve(damped(Dashpot), method, watch=False)
     assert is_honest(solution)
     assert solution.status.ending is not Ending.CONVERGED
     assert "Dashpot" in solution.status.advice

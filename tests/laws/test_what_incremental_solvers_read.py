@@ -43,7 +43,7 @@ from solver.scenes import CATALOGUE, discretise
 
 
 def test_a_subclass_that_says_its_form_is_certified() -> None:
-    solution = solve(as_contact(SameContact))
+    solution = solve(as_contact(SameContact), watch=False)
     assert solution.is_certified
     expected = reference_of(bar()).displacement
     shown = solution.iterate.displacement
@@ -133,7 +133,9 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
         with pytest.raises(NoReferenceError, match=words) as refused:
             judge(of)
         assert "judge the run by its estimate" in str(refused.value)
-    solution = solve(of, Latin(stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=60)))
+    solution = solve(
+        of, Latin(stop=Stop(accuracy=0.01, tolerance=1e-3, iterations=60)), watch=False
+    )
     assert is_honest(solution)
     assert solution.iterate.friction_force.shape[1] == of.n_instants
     assert run_cost(of, Latin(), 100, with_reference=True).reference == 0.0
@@ -142,7 +144,7 @@ def test_what_no_incremental_solver_reads_has_neither_reference_nor_certificate(
 def test_a_residual_of_fields_is_not_claimed_where_a_law_is_not_read() -> None:
     of = damped(Dashpot)
     with pytest.raises(NoReferenceError, match="Dashpot"):
-        kkt_residual(solve(of).iterate, of)
+        kkt_residual(solve(of, watch=False).iterate, of)
 
 
 def test_something_may_act_where_a_law_is_not_known() -> None:
@@ -178,7 +180,7 @@ def test_a_cap_on_friction_of_known_bound_is_kept_by_both() -> None:
     of = with_law(of, "friction", capped)
     size = 1e-6 * np.abs(expected).max()
     assert reference_of(of).displacement == pytest.approx(expected, abs=size)
-    searched = solve(of, replace(EXACT, finish=None)).iterate.displacement
+    searched = solve(of, replace(EXACT, finish=None), watch=False).iterate.displacement
     assert searched == pytest.approx(expected, abs=1e3 * size)
 
 
@@ -201,7 +203,7 @@ def test_a_body_that_slides_as_a_whole_is_not_shifted_where_something_else_pulls
 )
 def test_without_contact_an_estimate_is_no_smaller_than_the_error(stop: Stop) -> None:
     """All that acts is a force at the end: u = F x / ES."""
-    solution = solve(without_contact(), Latin(stop=stop))
+    solution = solve(without_contact(), Latin(stop=stop), watch=False)
     expected = np.outer(np.linspace(0.0, 1.0, 9), PULL) / 1e6
     shown = solution.iterate.displacement
     assert solution.status.ending is Ending.CONVERGED

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import settings as examples
 from hypothesis import strategies as st
 from runs import assert_goes_on, distance_of, errors, sample, settings_of, solved
 from small_scenes import SMALL
@@ -99,6 +100,7 @@ def random_basis(
     return SeparatedBasis.of_field(field, k, weights, 0.0, 100), field
 
 
+@examples(max_examples=40)
 @given(fields)
 def test_downsizing_drops_no_more_than_its_tolerance(drawn):
     rows, columns, seed, power = drawn
@@ -113,6 +115,7 @@ def test_downsizing_drops_no_more_than_its_tolerance(drawn):
     assert np.all(np.diff(kept) <= 0.0)
 
 
+@examples(max_examples=40)
 @given(fields)
 def test_the_modes_of_a_field_are_orthonormal_and_hold_it(drawn):
     rows, columns, seed, _ = drawn

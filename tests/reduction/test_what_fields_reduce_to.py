@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import settings as examples
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from runs import sample, settings_of
@@ -61,6 +62,7 @@ def constant_speed_front(n_points, n_instants):
     return decompose(field, weights, np.full(n_instants, 1.0 / n_instants), positions)
 
 
+@examples(max_examples=40)
 @given(weighted_fields())
 def test_modes_are_orthonormal_in_their_own_inner_products(case):
     field, space, time = case
@@ -75,6 +77,7 @@ def test_modes_are_orthonormal_in_their_own_inner_products(case):
     assert np.all(np.diff(found.values) <= 0.0)
 
 
+@examples(max_examples=40)
 @given(weighted_fields())
 def test_the_error_of_every_rank_is_the_distance_to_its_approximation_and_falls(case):
     field, space, time = case
@@ -193,6 +196,7 @@ def pulled_rods(draw):
     return load / draw(st.sampled_from([5.0, 10.0, 40.0])), bound
 
 
+@examples(max_examples=40)
 @given(pulled_rods())
 def test_any_load_on_any_bound_is_a_clip(case):
     load, bound = case
@@ -202,6 +206,7 @@ def test_any_load_on_any_bound_is_a_clip(case):
     assert np.all(np.abs(clips.field) <= bound[:, None] * (1.0 + EXACT))
 
 
+@examples(max_examples=40)
 @given(arrays.arrays(float, st.integers(1, 30), elements=st.integers(-3, 3)))
 def test_branches_go_one_way_and_are_as_few_as_can_be(load):
     found = list(monotone(load))

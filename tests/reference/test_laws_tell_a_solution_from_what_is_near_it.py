@@ -240,7 +240,7 @@ def test_prescribed_displacements_are_to_be_there():
 def test_cuts_are_to_agree_in_displacement_and_force(scene):
     settings = CATALOGUE[scene].checked(SMALL[scene])
     problem = discretise(settings)
-    iterate = solve(problem, method_of(settings)).iterate
+    iterate = solve(problem, method_of(settings), watch=False).iterate
     displacement = iterate.boundary_displacement
     force = iterate.boundary_force
     whole = law_residuals(iterate, problem, RowFields(displacement, force))
@@ -323,7 +323,7 @@ def test_a_run_whose_body_flies_away_is_not_called_solved():
         "body_force_y": 622301449.6919417,
     }
     settings = CATALOGUE["block"].checked(values)
-    run = solve(discretise(settings), method_of(settings))
+    run = solve(discretise(settings), method_of(settings), watch=False)
     assert run.status.ending is not Ending.CONVERGED
     assert not run.is_certified
 
@@ -343,6 +343,6 @@ def test_rounding_of_forces_in_a_spring_far_softer_than_its_body_breaks_no_law()
         }
     )
     problem = discretise(settings)
-    answer = solve(problem, method_of(settings))
+    answer = solve(problem, method_of(settings), watch=False)
     assert answer.is_certified
     assert law_residuals(answer.iterate, problem).largest < 1e-8

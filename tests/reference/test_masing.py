@@ -13,7 +13,7 @@ from solver.reference.closed_forms.masing import masing
 STIFFNESS = np.array([3.0, 2.0, 1.0, 0.5])
 BOUNDS = np.array([0.5, 1.0, 2.0, 6.0])
 PATHS = st.lists(st.floats(-5.0, 5.0), min_size=1, max_size=25)
-ANY = settings(max_examples=60)
+ANY = settings(max_examples=40)
 
 
 def grown(displacement: float) -> float:

@@ -107,7 +107,7 @@ def test_incremental_displacement_converges_with_order_two(profile, load, peak):
     assert errors[-1] < 1e-4
 
 
-EVERY = settings(max_examples=60)
+EVERY = settings(max_examples=30)
 EPS = float(np.finfo(float).eps)
 SHARES = st.floats(-1.0, 1.0).map(lambda share: share if abs(share) > 1e-200 else 0.0)
 """Of the peak load; what is smaller leaves no digits once it is scaled."""

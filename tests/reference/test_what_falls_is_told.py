@@ -79,7 +79,7 @@ def test_a_run_says_where_it_found_no_equilibrium_though_forces_could_balance() 
     settings = stacked()
     problem = discretise(settings)
     assert collapse_of(problem) is None
-    run = solve(problem, method_of(settings))
+    run = solve(problem, method_of(settings), watch=False)
     assert run.status.ending is not Ending.CONVERGED
     assert not run.is_certified
     lost = int(np.argmin(reference_of(problem).converged))
@@ -90,10 +90,10 @@ def test_a_run_says_where_it_found_no_equilibrium_though_forces_could_balance() 
 
 
 def test_a_rod_that_friction_alone_does_not_hold_is_told_so() -> None:
-    run = solve(pulled_rod(10.0))
+    run = solve(pulled_rod(10.0), watch=False)
     assert run.status.ending is Ending.STALLED
     assert "friction alone seems not to hold what is pulled" in run.status.advice
-    assert solve(pulled_rod(1000.0)).is_certified
+    assert solve(pulled_rod(1000.0), watch=False).is_certified
 
 
 def test_beyond_an_instant_without_solution_nothing_is_sought():

@@ -346,7 +346,7 @@ def test_a_known_bound_in_the_plane_is_obeyed_and_presses_nothing(substructures)
     problem = discrete.discretise(loosened(substructures))
     reference = reference_of(problem)
     method = Latin(direction=Auto(), stop=Stop(accuracy=1e-4, iterations=300))
-    solution = solve(problem, method)
+    solution = solve(problem, method, watch=False)
     assert reference.converged.all()
     assert solution.status.ending is Ending.CONVERGED
     law = problem.rubbing["support"]

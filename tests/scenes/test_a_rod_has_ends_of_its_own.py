@@ -159,7 +159,7 @@ def test_a_bar_between_two_clamps_holds_all_of_its_heat():
 ENDS = st.sampled_from(["held", "spring", "pulled", "free"])
 
 
-@examples(max_examples=25)
+@examples(max_examples=12)
 @given(left=ENDS, right=ENDS, seed=st.integers(0, 1000), parts=st.integers(1, 9))
 def test_the_method_meets_the_incremental_solver_whatever_holds_the_ends(
     left, right, seed, parts
@@ -187,7 +187,7 @@ def test_the_method_meets_the_incremental_solver_whatever_holds_the_ends(
     reference = reference_of(problem)
     assert reference.converged.all()
     distance = distance_to(reference, problem)
-    solution = solve(problem, method_of(settings), distance=distance)
+    solution = solve(problem, method_of(settings), distance=distance, watch=False)
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-2
 

@@ -67,7 +67,7 @@ def test_its_first_bending_and_its_cycle_meet_the_closed_form() -> None:
 def test_latin_certifies_it_near_a_clamp() -> None:
     clamped = {"bending": "clamp", "elements": 24, "instants": 31, "substructures": 4}
     settings = settings_of(construction=OWN, tension=3e4, **clamped)
-    solution = solve(discretise(settings), method_of(settings))
+    solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.is_certified
     assert len(solution.iterate.problem.rubbing) == 17
 

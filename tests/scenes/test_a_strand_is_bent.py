@@ -133,7 +133,7 @@ def test_by_itself_latin_tends_to_the_reference(changes: dict[str, Any]) -> None
     method = Latin(
         direction=Auto(), finish=None, stop=Stop(accuracy=1e-4, iterations=3000)
     )
-    found = solve(problem, method).iterate
+    found = solve(problem, method, watch=False).iterate
     exact = reference_of(problem)
     scale = np.abs(exact.contact_force).max()
     assert np.abs(found.contact_force - exact.contact_force).max() < 0.02 * scale
@@ -149,7 +149,7 @@ def test_many_supports_of_known_bound_are_solved_as_rods_with_every_wire() -> No
     special = reference_of(general.problem)
     np.testing.assert_array_equal(general.status, special.status)
     np.testing.assert_allclose(general.displacement, special.displacement, atol=1e-12)
-    arrays = result_arrays(settings, solve(problem, method_of(settings)))
+    arrays = result_arrays(settings, solve(problem, method_of(settings), watch=False))
     shape = (settings.elements - 1, settings.instants)
     for wire in settings.structure().wires:
         assert arrays[f"interface/{wire.name}/slip"].shape == shape

@@ -84,7 +84,7 @@ def bound_of(law: Contact, moved: Array, force: Array, slip: Array) -> Array:
     return bound
 
 
-@settings(max_examples=300)
+@settings(max_examples=120)
 @given(
     st.integers(0, 2**31),
     st.booleans(),
@@ -144,7 +144,9 @@ def test_a_point_on_a_spring_moves_as_in_closed_form(ratio):
     np.testing.assert_allclose(
         found.displacement[-1], expected, atol=1e-12 * expected.max()
     )
-    run = solve(problem, Latin(finish=None), distance=distance_to(found, problem))
+    run = solve(
+        problem, Latin(finish=None), distance=distance_to(found, problem), watch=False
+    )
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.01
 
@@ -206,7 +208,7 @@ def test_beyond_the_largest_load_the_bar_jumps_and_the_run_says_so():
     found = reference_of(problem)
     assert found.jumps_at is not None
     assert force[found.jumps_at] == pytest.approx(largest, rel=0.03)
-    run = solve(problem, Latin())
+    run = solve(problem, Latin(), watch=False)
     assert run.is_certified
     assert f"At {problem.instants[found.jumps_at]:.4g} s" in run.status.advice
     assert "jumps" in run.status.advice
@@ -218,7 +220,7 @@ def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(
     length, displaced
 ):
     found = []
-    for steps in (5, 20):
+    for steps in (5, 10):
         end = np.linspace(0.0, 1.0, steps + 1) * (
             6e-4 * STIFFNESS if displaced else 800.0
         )
@@ -230,7 +232,7 @@ def test_the_size_of_a_load_step_does_not_change_which_solution_is_taken(
         assert found[-1].converged.all()
         assert found[-1].jumps_at is None
     few, many = (one.displacement for one in found)
-    assert np.allclose(few, many[:, ::4], rtol=0.0, atol=1e-9 * np.abs(many).max())
+    assert np.allclose(few, many[:, ::2], rtol=0.0, atol=1e-9 * np.abs(many).max())
 
 
 STRIP = {
@@ -283,7 +285,7 @@ def test_a_strip_held_by_friction_goes_along_its_loading_path_until_it_jumps(
     }
     chosen = CATALOGUE["block"].checked(values)
     problem = discretise(chosen)
-    run = solve(problem, method_of(chosen))
+    run = solve(problem, method_of(chosen), watch=False)
     assert run.status.ending is Ending.CONVERGED
     assert run.is_certified
     assert kkt_residual(run.iterate, problem) < 1e-9
@@ -309,12 +311,12 @@ def test_a_fault_that_softens_is_solved_and_jumps_only_where_its_elements_are_to
     values = {**CHANGING, "friction_ratio": ratio, "slip_length": 2e-3}
     for elements, expected in ((48, jumps), (96, False)):
         chosen = CATALOGUE["fault"].checked({**values, "elements": elements})
-        run = solve(discretise(chosen), method_of(chosen))
+        run = solve(discretise(chosen), method_of(chosen), watch=False)
         assert run.is_certified
         assert ("jumps" in run.status.advice) is expected
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(
     st.integers(0, 2**31),
     st.sampled_from(["block", "layers", "fault", "incline", "bar", "strand"]),
@@ -391,19 +393,24 @@ def test_a_block_that_slips_carries_cohesion_and_friction_until_it_is_lifted(
 ):
     problem = pressed_block(law, lifted=lifted)
     reference = reference_of(problem)
-    run = solve(problem, Latin(), distance=distance_to(reference, problem))
+    run = solve(problem, Latin(), distance=distance_to(reference, problem), watch=False)
     assert run.is_certified
     assert run.records[-1].error_force < 1e-12
     assert kkt_residual(run.iterate, problem) < 1e-11
     stress = -run.iterate.contact("support").tangential_force.sum(axis=0) / 0.1
     assert stress[20] == pytest.approx(first, rel=1e-9)
     assert stress[-1] == pytest.approx(last if lifted else first, rel=1e-9)
-    alone = solve(problem, Latin(finish=None), distance=distance_to(reference, problem))
+    alone = solve(
+        problem,
+        Latin(finish=None),
+        distance=distance_to(reference, problem),
+        watch=False,
+    )
     assert alone.records[-1].error_force < 0.01
 
 
 def test_contact_that_gives_way_across_is_in_series_with_the_body():
-    run = solve(pressed_block(FrictionLaw(normal_stiffness=1e13)), Latin())
+    run = solve(pressed_block(FrictionLaw(normal_stiffness=1e13)), Latin(), watch=False)
     assert run.is_certified
     pressed = run.iterate.contact("support").normal_force.sum(axis=0)[10]
     assert pressed / 0.1 == pytest.approx(4e-6 / (0.02 / 210e9 + 1e-13), rel=1e-9)

@@ -80,7 +80,7 @@ def test_the_weight_over_an_opening_goes_round_it():
     weight = 2e4 * area * 0.06 * 0.06
     carried = forces(reference, on_ground(problem), "normal_force")[-1]
     assert carried == pytest.approx(weight + 1e6 * 6 * 0.24, rel=1e-9)
-    run = solve(problem, Latin(), distance=distance_to(reference, problem))
+    run = solve(problem, Latin(), distance=distance_to(reference, problem), watch=False)
     assert run.is_certified
     assert run.records[-1].error_force < 1e-9
 
@@ -103,7 +103,7 @@ def test_latin_and_the_incremental_solver_come_to_one_solution(bond):
     assert reference.converged.all()
     assert np.any(reference.status == 2)
     assert np.any(np.abs(reference.status) == 1)
-    run = solve(problem, Latin(), distance=distance_to(reference, problem))
+    run = solve(problem, Latin(), distance=distance_to(reference, problem), watch=False)
     assert run.is_certified
     assert run.records[-1].error_force < 1e-10
     assert kkt_residual(run.iterate, problem) < 1e-10
@@ -112,7 +112,7 @@ def test_latin_and_the_incremental_solver_come_to_one_solution(bond):
 def test_the_ground_carries_what_weighs_and_presses():
     made = wall()
     problem = discrete.discretise(made)
-    run = solve(problem, Latin())
+    run = solve(problem, Latin(), watch=False)
     pressed = forces(run.iterate, on_ground(problem), "normal_force")
     expected = made.size[0] * 1e6 * DOWN - made.weight[1]
     np.testing.assert_allclose(pressed, expected, rtol=1e-9)
@@ -123,7 +123,8 @@ def test_the_ground_carries_what_weighs_and_presses():
 
 def test_a_wall_that_is_moved_the_other_way_is_its_mirror_image():
     first, second = (
-        solve(discrete.discretise(wall(moved=way)), Latin()) for way in (5e-5, -5e-5)
+        solve(discrete.discretise(wall(moved=way)), Latin(), watch=False)
+        for way in (5e-5, -5e-5)
     )
     shears = []
     for run, sign in ((first, 1.0), (second, -1.0)):
@@ -139,7 +140,7 @@ def test_the_order_of_the_bricks_changes_nothing():
     sums = []
     for each in (made, mixed):
         problem = discrete.discretise(each)
-        run = solve(problem, Latin())
+        run = solve(problem, Latin(), watch=False)
         assert run.is_certified
         sums.append(forces(run.iterate, on_ground(problem), "tangential_force"))
     np.testing.assert_allclose(*sums, atol=1e-9 * np.abs(sums[0]).max())
@@ -153,7 +154,7 @@ def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
     found = []
     for made in (whole, cut):
         problem = discrete.discretise(made)
-        run = solve(problem, Latin())
+        run = solve(problem, Latin(), watch=False)
         assert run.is_certified
         names = sorted(problem.rubbing)
         sums = [run.iterate.contact(name).normal_force.sum(axis=0) for name in names]
@@ -237,7 +238,7 @@ def test_a_pile_says_the_load_that_it_carries_in_the_name_of_its_setting(
     )
     assert float(told[1]) == pytest.approx(limit, rel=1e-3)
     assert float(told[2]) == pytest.approx(limit / 5e5, rel=3e-3)
-    assert told[0] in solve(problem, method_of(settings)).status.advice
+    assert told[0] in solve(problem, method_of(settings), watch=False).status.advice
 
 
 def test_loads_of_which_no_share_is_carried_are_told_as_they_are():
@@ -332,7 +333,7 @@ def test_the_number_of_iterations_does_not_grow_with_the_bricks():
 def test_a_run_ends_by_itself_within_its_accuracy():
     problem = discrete.discretise(wall(6, 6))
     distance = distance_to(reference_of(problem), problem)
-    run = solve(problem, Latin(finish=None), distance=distance)
+    run = solve(problem, Latin(finish=None), distance=distance, watch=False)
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.01
 

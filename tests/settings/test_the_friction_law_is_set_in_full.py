@@ -48,7 +48,7 @@ def test_a_stiffness_alone_is_the_compliant_law_of_the_same_stiffness(scene):
     absolute = 30.0 * compliant.contact_unit
     general = chosen(scene, **GENERAL, tangential_stiffness=absolute)
     forces = [
-        solve(discretise(one), method_of(one)).iterate.friction_force
+        solve(discretise(one), method_of(one), watch=False).iterate.friction_force
         for one in (compliant, general)
     ]
     np.testing.assert_allclose(*forces, atol=1e-9 * np.abs(forces[0]).max())
@@ -58,7 +58,7 @@ def test_a_stiffness_alone_is_the_compliant_law_of_the_same_stiffness(scene):
 def test_two_points_of_strength_are_friction_that_changes_with_slip(scene):
     ratio = {"friction_ratio": 0.8, "slip_length": 2e-4}
     before, *after = (
-        solve(discretise(one), method_of(one)).iterate.friction_force
+        solve(discretise(one), method_of(one), watch=False).iterate.friction_force
         for one in (
             chosen(scene, friction_law="slip-dependent", **ratio),
             chosen(scene, **GENERAL, **ratio, strength="linear"),

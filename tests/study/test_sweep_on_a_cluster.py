@@ -26,22 +26,29 @@ from solver.study.sweep.run import sweep, versions
 ROOT = Path(__file__).resolve().parents[2]
 
 
+SCHEDULER = """
+import asyncio, sys
+from distributed import Scheduler, Worker
+
+async def serve():
+    address = {"host": "127.0.0.1", "port": 0, "dashboard": False}
+    async with Scheduler(**address, scheduler_file=sys.argv[1]) as scheduler:
+        async with Worker(scheduler.address, nthreads=1):
+            await scheduler.finished()
+
+asyncio.run(serve())
+"""
+"""A scheduler with a worker in its own process: to import them takes a while."""
+
+
 class Cluster:
-    """A scheduler and workers, as processes of this machine."""
+    """A scheduler with a worker, and further workers, as processes of this machine."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._processes: list[subprocess.Popen[bytes]] = []
         file = folder / "scheduler.json"
-        self._start(
-            "scheduler",
-            "--port",
-            "0",
-            "--host",
-            "127.0.0.1",
-            "--scheduler-file",
-            str(file),
-        )
+        self._start("-c", SCHEDULER, str(file))
         wait_for(
             lambda: file.exists() and file.read_text(encoding="utf-8").endswith("}")
         )
@@ -52,7 +59,8 @@ class Cluster:
         return self.address.replace("tcp://", "dask://")
 
     def worker(self) -> None:
-        self._start("worker", self.address, "--nthreads", "1", "--no-nanny")
+        options = ["--nthreads", "1", "--no-nanny", "--no-dashboard"]
+        self._start("-m", "distributed.cli.dask_worker", self.address, *options)
 
     def wait_for_workers(self, number: int) -> None:
         # It takes a second, in each process that collects this test.
@@ -63,12 +71,12 @@ class Cluster:
 
     @property
     def workers(self) -> list[subprocess.Popen[bytes]]:
+        """Workers with a process of their own."""
         return self._processes[1:]
 
-    def _start(self, what: str, *arguments: str) -> None:
-        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *arguments]
+    def _start(self, *arguments: str) -> None:
         process = subprocess.Popen(
-            [*command, "--no-dashboard"],
+            [sys.executable, *arguments],
             cwd=self._folder,
             env=os.environ | {"PYTHONPATH": str(ROOT)},
             stderr=subprocess.DEVNULL,
@@ -86,8 +94,7 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     """A scheduler with two workers."""
     found = Cluster(tmp_path_factory.mktemp("cluster"))
     try:
-        for _ in range(2):
-            found.worker()
+        found.worker()
         found.wait_for_workers(2)
         yield found
     finally:

@@ -18,7 +18,6 @@ from __future__ import annotations
 import numpy as np
 import scipy
 from scipy.linalg import matmul_toeplitz
-from scipy.special import erfc
 
 from solver.arrays import Array
 
@@ -52,7 +51,9 @@ def spread(
     steps = np.diff(instants)
     later = instants[1:] - instants[0]
     bends = np.diff(np.diff(given) / steps, prepend=0.0)
-    pressure = given[0] * erfc(_diffusion_lengths(positions, later, diffusivity))
+    pressure = given[0] * scipy.special.erfc(
+        _diffusion_lengths(positions, later, diffusivity)
+    )
     # Every bend of the pressure adds the same answer: at even steps a convolution.
     if np.ptp(steps) <= EVEN * later[-1]:
         risen = _risen(positions, later, diffusivity)
@@ -72,7 +73,7 @@ def spread(
 def _risen(positions: Array, later: Array, diffusivity: float) -> Array:
     """Pressure under one at the end that rises by 1 Pa/s, (n_positions, n_times), s."""
     far = _diffusion_lengths(positions, later, diffusivity)
-    steady = (1.0 + 2.0 * far**2) * erfc(far)
+    steady = (1.0 + 2.0 * far**2) * scipy.special.erfc(far)
     flowing = 2.0 / np.sqrt(np.pi) * far * np.exp(-(far**2))
     return np.asarray(later * (steady - flowing))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.special import exprel
+import scipy
 
 from solver.arrays import Array, Indices
 from solver.discrete.plane.beams import Beam
@@ -207,7 +207,8 @@ class Band(Bodies):
         assert isinstance(body.shape, Beam)
         spans = guide.span * (1.0 + np.exp(exponent))
         stiffness = body.young * np.mean(body.shape.area)
-        return float((guide.length * exprel(exponent) + spans) / stiffness)
+        around = guide.length * scipy.special.exprel(exponent)
+        return float((around + spans) / stiffness)
 
     def tensions(self, problem: Problem, fields: LoopFields) -> Array:
         """Tension of all elements, those of the spans too, (n_elements, n_instants), N.

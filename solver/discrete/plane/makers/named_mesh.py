@@ -14,9 +14,9 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from solver.arrays import Array, Indices
 from solver.checks import Numbers, check_value
@@ -146,7 +146,7 @@ class NamedMesh:
         owners = np.zeros((count, len(self.names)), dtype=bool)
         for body, used in enumerate(self._used):
             owners[used, body] = True
-        tree = cKDTree(self.points)
+        tree = scipy.spatial.cKDTree(self.points)
         first, second = tree.query_pairs(SAME * self.size, output_type="ndarray").T
         apart = ~(owners[first] & owners[second]).any(axis=1)
         links = np.ones(int(apart.sum())), (first[apart], second[apart])

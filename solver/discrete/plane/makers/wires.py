@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from scipy.spatial import Delaunay
+import scipy
 
 from solver.arrays import Array, Indices
 from solver.discrete.plane.meshes import Mesh
@@ -122,7 +122,7 @@ class Disc:
 
 def triangulated(corners: Array) -> Mesh:
     """Mesh of triangles between corners, (n, 2), of a convex body."""
-    return Mesh(corners, Delaunay(corners).simplices.astype(np.intp))
+    return Mesh(corners, scipy.spatial.Delaunay(corners).simplices.astype(np.intp))
 
 
 def _polar(radius: Array, angle: Array) -> Array:
