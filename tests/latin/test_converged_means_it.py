@@ -23,6 +23,11 @@ BLOCK = (
     "top=traction top_normal_load=[[0,0],[0.5,-119201409.28],[1,-119201409.28]] "
     "top_tangential_load=[[0,0],[0.5,937242.781],[1,0]]"
 )
+PLATEAU = (
+    "wall instants=1 elements=2 elements_up=79 bricks=2 courses=3 height=11.478 "
+    "pressure=585604 displacement=-9.704e-07 settlement=-3.636e-06 "
+    "settled_length=2.7785 unit_weight=259.7 head_friction=0.0308 ground_friction=1.341"
+)
 FINE = ["bar elements=800", "bar elements=800 substructures=5 max_iterations=3000"]
 """Bars that the paper's method leaves unsolved after a thousand iterations, some
 seconds each."""
@@ -57,6 +62,12 @@ def test_the_papers_method_ends_right_or_told_on_a_hard_command(command):
     settings = settings.replace(
         method="paper", tolerance=settings.tolerance, max_iterations=1000
     )
+    outcome = outcome_of(settings)
+    assert judge(outcome, settings.accuracy).verdict is not Verdict.WRONG, outcome
+
+
+def test_a_plateau_is_not_taken_for_the_end():
+    settings = from_words(PLATEAU)
     outcome = outcome_of(settings)
     assert judge(outcome, settings.accuracy).verdict is not Verdict.WRONG, outcome
 
