@@ -1,0 +1,189 @@
+"""Balance of rigid bodies on the springs of the search direction, at one instant.
+
+Bodies are rigid, and k is a spring at every row: a contact presses or is open, and
+sticks or slips at mu times what presses it. The positions of the bodies at which their
+forces balance all loads are a zero of a piecewise linear function, which Newton's
+method on the statuses finds (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92,
+1991). A step ends where the forces do no more work along it: without friction that is
+the least energy, which always falls.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import sparse
+
+from solver.arrays import Array, Flags
+from solver.latin.stages.rigid_stiffness import BandStiffness, Touch
+
+BALANCED = 1e-9
+"""Largest unbalanced force, over the largest contact force or load, in balance."""
+STEPS = 25
+"""Largest number of linear systems from one start; most instants take one to three
+(measured)."""
+TRIALS = 30
+"""Largest number of trials of how far a step goes."""
+TOO_FAR = 1e-2
+"""Work against a step at its end, over that along it at its start, up to which the step
+does not go too far."""
+HELD = 1e-10
+"""Share of the springs at all rows that holds a body which nothing touches."""
+
+
+class Given(NamedTuple):
+    """Jumps and loads of an instant; all scaled.
+
+    Attributes
+    ----------
+    jump
+        Jumps across and along the pairs where no body moves, shape (2 n_pairs,).
+    load
+        Forces along the motions there, but for those of contacts, shape (n_motions,).
+    sliders
+        Positions of the sliders at the instant before, shape (n_pairs,).
+    """
+
+    jump: Array
+    load: Array
+    sliders: Array
+
+
+class Place(NamedTuple):
+    """Position of all bodies, and the forces there; all scaled.
+
+    Attributes
+    ----------
+    position
+        Rigid motions, shape (n_motions,).
+    unbalanced
+        Sum of all forces along the motions, shape (n_motions,).
+    sliders
+        Positions of the sliders, shape (n_pairs,).
+    presses, slips
+        Whether each pair presses, and the sign of its friction if it slips, else 0,
+        shape (n_pairs,).
+    error
+        Largest unbalanced force, over the largest contact force or load.
+    """
+
+    position: Array
+    unbalanced: Array
+    sliders: Array
+    presses: Flags
+    slips: Array
+    error: float
+
+
+class Balance:
+    """Balance of the forces on rigid bodies, ready for all instants.
+
+    Parameters
+    ----------
+    touch
+        The contacts.
+    stiffness
+        Stiffness of springs that neither open nor slip, (n_motions, n_motions), scaled.
+    holding
+        Stiffness of springs at all rows against each motion, (n_motions,), scaled.
+    """
+
+    def __init__(
+        self, touch: Touch, stiffness: sparse.csr_array, holding: Array
+    ) -> None:
+        self._touch = touch
+        self._stiffness = stiffness
+        self._pushes = sparse.csr_array(touch.jumps.T)
+        self._n_pairs = len(touch.gap)
+        held = stiffness + sparse.diags_array(HELD * holding)
+        self._band = BandStiffness(touch, sparse.csr_array(held))
+
+    def settled(self, given: Given, near: Array | None, before: Array) -> Place:
+        """Place where the forces balance, or the nearest to that which is found.
+
+        `near` is a position that may be near it, `before` that of the instant before,
+        from which the first step is taken with all pairs stuck; (n_motions,) both.
+        """
+        if near is not None:
+            place = self._from(self.at(near, given), given)
+            if place.error <= BALANCED:
+                return place
+        start = self.at(before, given)
+        glued = start._replace(
+            presses=np.ones_like(start.presses), slips=np.zeros_like(start.slips)
+        )
+        return self._from(self._moved(start, self._step(glued), given), given)
+
+    def _from(self, place: Place, given: Given) -> Place:
+        """The best place on the way that Newton's method takes from a first one."""
+        best = place
+        for _ in range(STEPS):
+            if place.error <= BALANCED:
+                return place
+            place = self._moved(place, self._step(place), given)
+            if place.error < best.error:
+                best = place
+        return best
+
+    def _step(self, place: Place) -> Array:
+        """Step to where forces balance if no status changes, shape (n_motions,)."""
+        touch = self._touch
+        pressing = place.presses / touch.compliance[: self._n_pairs]
+        sticks = place.presses & (place.slips == 0.0)
+        sticking = sticks / touch.compliance[self._n_pairs :]
+        rubbing = place.slips * touch.friction * pressing
+        stiffnesses = np.concatenate([pressing, sticking, rubbing])
+        return self._band.solve(stiffnesses, place.unbalanced)
+
+    def _moved(self, place: Place, step: Array, given: Given) -> Place:
+        """Place after a step, or after the part of it along which the forces work."""
+        work = float(place.unbalanced @ step)
+        after = self.at(place.position + step, given)
+        end_work = float(after.unbalanced @ step)
+        enough = TOO_FAR * abs(work)
+        if work <= 0.0 or end_work >= -enough:
+            return after
+        # Regula falsi; the work at an end that stays is halved (Illinois).
+        begin = 0.0
+        end = 1.0
+        for _ in range(TRIALS):
+            share = begin + (end - begin) * work / (work - end_work)
+            after = self.at(place.position + share * step, given)
+            work_there = float(after.unbalanced @ step)
+            if abs(work_there) <= enough:
+                break
+            if work_there > 0.0:
+                begin = share
+                work = work_there
+                end_work *= 0.5
+            else:
+                end = share
+                end_work = work_there
+                work *= 0.5
+        return after
+
+    def at(self, position: Array, given: Given) -> Place:
+        """Forces where the bodies are at a position, (n_motions,)."""
+        touch = self._touch
+        size = self._n_pairs
+        jump = given.jump + touch.jumps @ position
+        along = jump[size:]
+        soft = touch.compliance[size:]
+        overlap = -touch.gap - jump[:size]
+        pressing = np.maximum(overlap, 0.0) / touch.compliance[:size]
+        sticking = (given.sliders - along) / soft
+        bound = touch.friction * pressing
+        friction = np.clip(sticking, -bound, bound)
+        pushed = self._pushes @ np.concatenate([pressing, friction])
+        unbalanced = given.load - self._stiffness @ position + pushed
+        # Friction is large only where pressing is, or mu is.
+        largest = max(pressing.max(), np.abs(friction).max(), np.abs(given.load).max())
+        return Place(
+            position=position,
+            unbalanced=unbalanced,
+            sliders=along + soft * friction,
+            presses=overlap > 0.0,
+            slips=np.sign(sticking) * (np.abs(sticking) > bound),
+            error=float(np.abs(unbalanced).max() / (largest or 1.0)),
+        )
