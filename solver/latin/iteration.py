@@ -106,7 +106,9 @@ class Iteration:
         self.k = self._k_update.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         self.linear = _linear_stage(problem, self.k, latin, blocks)
-        self.local = LocalStage(problem, self.k, blocks, self._rigid_bodies(latin))
+        self.local = LocalStage(
+            problem, self.k, blocks, self._rigid_bodies(latin, start)
+        )
         self._mixture: AndersonState | None = None
         if latin.acceleration is not None and self.linear.is_full:
             self._mixture = AndersonState(
@@ -121,13 +123,15 @@ class Iteration:
         self.linear.go_to(start)
         self._show()
 
-    def _rigid_bodies(self, latin: Latin) -> RigidBodies | None:
+    def _rigid_bodies(
+        self, latin: Latin, start: Checkpoint | None
+    ) -> RigidBodies | None:
         """Shifts of rigid bodies in the local stage: a part of the coarse problem.
 
         Truncated bases would not hold what little of their fields is deformation.
         """
         if latin.multiscale and self.linear.is_full:
-            return rigid_bodies_of(self._problem, self.k)
+            return rigid_bodies_of(self._problem, self.k, from_rest=start is None)
         return None
 
     def _show(self) -> None:

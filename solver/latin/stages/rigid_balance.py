@@ -19,7 +19,7 @@ from solver.arrays import Array, Flags
 from solver.latin.stages.rigid_stiffness import BandStiffness, Touch
 
 BALANCED = 1e-9
-"""Largest unbalanced force, over the largest contact force or load, in balance."""
+"""Largest unbalanced force, over the largest load of a body, in balance."""
 STEPS = 25
 """Largest number of linear systems from one start; most instants take one to three
 (measured)."""
@@ -65,7 +65,7 @@ class Place(NamedTuple):
         Whether each pair presses, and the sign of its friction if it slips, else 0,
         shape (n_pairs,).
     error
-        Largest unbalanced force, over the largest contact force or load.
+        Largest unbalanced force, over the largest load of a body.
     """
 
     position: Array
@@ -87,15 +87,23 @@ class Balance:
         Stiffness of springs that neither open nor slip, (n_motions, n_motions), scaled.
     holding
         Stiffness of springs at all rows against each motion, (n_motions,), scaled.
+    load_size
+        Largest load of a body, scaled. Contact forces are no measure: bodies that have
+        gone astray have large ones.
     """
 
     def __init__(
-        self, touch: Touch, stiffness: sparse.csr_array, holding: Array
+        self,
+        touch: Touch,
+        stiffness: sparse.csr_array,
+        holding: Array,
+        load_size: float,
     ) -> None:
         self._touch = touch
         self._stiffness = stiffness
         self._pushes = sparse.csr_array(touch.jumps.T)
         self._n_pairs = len(touch.gap)
+        self._load_size = load_size
         held = stiffness + sparse.diags_array(HELD * holding)
         self._band = BandStiffness(touch, sparse.csr_array(held))
 
@@ -177,13 +185,11 @@ class Balance:
         friction = np.clip(sticking, -bound, bound)
         pushed = self._pushes @ np.concatenate([pressing, friction])
         unbalanced = given.load - self._stiffness @ position + pushed
-        # Friction is large only where pressing is, or mu is.
-        largest = max(pressing.max(), np.abs(friction).max(), np.abs(given.load).max())
         return Place(
             position=position,
             unbalanced=unbalanced,
             sliders=along + soft * friction,
             presses=overlap > 0.0,
             slips=np.sign(sticking) * (np.abs(sticking) > bound),
-            error=float(np.abs(unbalanced).max() / (largest or 1.0)),
+            error=float(np.abs(unbalanced).max()) / self._load_size,
         )

@@ -28,18 +28,20 @@ from which bodies that contact alone holds are shifted. Arches of 31 voussoirs r
 of the contact force in as much time with shifts as without there, in 14 iterations
 instead of 96 (measured)."""
 LOST = 1e-3
-"""Unbalanced force, over the largest force, from which bodies stay where they are, at
-this instant and at those after it, which depend on it."""
+"""Unbalanced force, over the largest load of a body, from which bodies stay where they
+are, at this instant and at those after it, which depend on it."""
 PATIENCE = 10
 """Successive iterations with such an instant after which bodies are shifted no more: an
 arch of 61 voussoirs has 4 before all instants balance (measured)."""
 
 
-def rigid_bodies_of(problem: Problem, k: Array) -> RigidBodies | None:
+def rigid_bodies_of(
+    problem: Problem, k: Array, *, from_rest: bool
+) -> RigidBodies | None:
     """Shifts of all bodies, where sides move so far that hinges are free.
 
     None elsewhere, and where a law of contact does more than open, slip and give way.
-    `k` is the search direction of the rows, shape (n_rows,), scaled.
+    Parameters are those of `RigidBodies`.
     """
     if problem.own_laws or not problem.rubbing or not _moves_far(problem):
         return None
@@ -47,7 +49,7 @@ def rigid_bodies_of(problem: Problem, k: Array) -> RigidBodies | None:
         return None
     if not all(_is_plain(law) for law in problem.rubbing.laws.values()):
         return None
-    return RigidBodies(problem, k)
+    return RigidBodies(problem, k, from_rest=from_rest)
 
 
 def _moves_far(problem: Problem) -> bool:
@@ -84,6 +86,8 @@ class RigidBodies:
         The problem to be solved, of bodies in the plane.
     k
         Search direction of the rows, shape (n_rows,), scaled.
+    from_rest
+        Whether the iteration begins here, so that bodies are not near their places.
 
     Attributes
     ----------
@@ -93,11 +97,12 @@ class RigidBodies:
 
     motion: Array | None = None
 
-    def __init__(self, problem: Problem, k: Array) -> None:
+    def __init__(self, problem: Problem, k: Array, *, from_rest: bool) -> None:
         self._modes, self._centres, body_load = _motions(problem, k)
         laws = [law for law in problem.laws if isinstance(law, Contact)]
         self._jumps = _jumps(laws, problem.n_rows)
         self._sliders = np.concatenate([_start(law) for law in laws])
+        body_load += self._modes.T @ _given_forces(problem)
         extension, stiffness, load = _springs(problem, k)
         stretched = sparse.csr_array(extension @ self._modes)
         pulled = stretched.T @ sparse.diags_array(stiffness)
@@ -110,8 +115,13 @@ class RigidBodies:
             friction=np.concatenate([law.tangential.friction for law in laws]),
         )
         holding = np.asarray((self._modes * self._modes).T @ k)
-        self._balance = Balance(touch, sparse.csr_array(pulled @ stretched), holding)
-        self._positions: Array | None = None
+        self._balance = Balance(
+            touch,
+            sparse.csr_array(pulled @ stretched),
+            holding,
+            load_size=float(np.abs(body_load).max()),
+        )
+        self._is_near = not from_rest
         self._times_lost = 0
 
     def balanced(self, incoming: Array) -> Array:
@@ -131,29 +141,26 @@ class RigidBodies:
         is_lost = False
         for instant, centre in enumerate(centres):
             given = Given(jumps[instant], loads[instant], sliders)
-            near = None
-            if self._positions is not None:
-                near = self._positions[instant] - centre
-            place = self._settled(given, near, before - centre, is_lost=is_lost)
+            place = self._settled(given, before - centre, is_lost=is_lost)
             is_lost = is_lost or place.error > LOST
             sliders = place.sliders
             shifts[instant] = place.position
             before = centre + place.position
-        self._positions = centres + shifts
+        self._is_near = True
         self._count(is_lost=is_lost)
         shifted: Array = np.asfortranarray(self._modes @ shifts.T)
         shifted += incoming
         return shifted
 
-    def _settled(
-        self, given: Given, near: Array | None, before: Array, *, is_lost: bool
-    ) -> Place:
+    def _settled(self, given: Given, before: Array, *, is_lost: bool) -> Place:
         """Place of the bodies at an instant; they stay if there is no balance.
 
-        Positions are where they stood in the iteration before, if there was one, and at
-        the instant before, (n_motions,); `is_lost` tells that there was no balance at
-        an earlier instant.
+        `before` is the shift to where they stood at the instant before, (n_motions,);
+        `is_lost` tells that there was no balance at an earlier instant.
         """
+        near = None
+        if self._is_near:
+            near = np.zeros_like(before)
         if not is_lost:
             place = self._balance.settled(given, near, before)
             if place.error <= LOST:
@@ -254,14 +261,12 @@ def _springs(problem: Problem, k: Array) -> tuple[sparse.csr_array, Array, Array
     """Springs of k where rows are held or glued.
 
     Returned are their extension by fields of rows, (n_springs, n_rows), their
-    stiffness, (n_springs,), and the forces on rows where these do not move, of springs
-    and loads, (n_rows, n_instants), scaled.
+    stiffness, (n_springs,), and their forces on rows that do not move, (n_rows,
+    n_instants), scaled.
     """
     extensions = [sparse.csr_array((0, problem.n_rows))]
     stiffnesses = [np.zeros(0)]
     load = np.zeros((problem.n_rows, problem.n_instants))
-    for given in problem.given_forces:
-        load[given.rows] = given.values
     for held in problem.given_displacements:
         stiffness = k[held.rows]
         load[held.rows] = stiffness[:, None] * held.values
@@ -273,3 +278,11 @@ def _springs(problem: Problem, k: Array) -> tuple[sparse.csr_array, Array, Array
         stiffnesses.append(1.0 / Springs(both, k).soft[:, 0])
     springs = sparse.csr_array(sparse.vstack(extensions))
     return springs, np.concatenate(stiffnesses), load
+
+
+def _given_forces(problem: Problem) -> Array:
+    """Forces that are prescribed at rows, shape (n_rows, n_instants), scaled."""
+    force = np.zeros((problem.n_rows, problem.n_instants))
+    for given in problem.given_forces:
+        force[given.rows] = given.values
+    return force
