@@ -28,8 +28,11 @@ TRIALS = 30
 TOO_FAR = 1e-2
 """Work against a step at its end, over that along it at its start, up to which the step
 does not go too far."""
-HELD = 1e-10
-"""Share of the springs at all rows that holds a body which nothing touches."""
+HELD = 1e-10, 1e-6, 1e-4
+"""Shares of the springs at all rows that hold bodies in a step, so that one that touches
+nothing does not go too far; each is tried where those before it lead nowhere. Of an
+arch moved by 20 mm 1 % of the contact force takes 19 iterations, and with the first
+share alone more than 150 (measured)."""
 
 
 class Given(NamedTuple):
@@ -104,8 +107,7 @@ class Balance:
         self._pushes = sparse.csr_array(touch.jumps.T)
         self._n_pairs = len(touch.gap)
         self._load_size = load_size
-        held = stiffness + sparse.diags_array(HELD * holding)
-        self._band = BandStiffness(touch, sparse.csr_array(held))
+        self._band = BandStiffness(touch, stiffness, holding)
 
     def settled(self, given: Given, near: Array | None, before: Array) -> Place:
         """Place where the forces balance, or the nearest to that which is found.
@@ -113,36 +115,49 @@ class Balance:
         `near` is a position that may be near it, `before` that of the instant before,
         from which the first step is taken with all pairs stuck; (n_motions,) both.
         """
+        tried = []
         if near is not None:
-            place = self._from(self.at(near, given), given)
-            if place.error <= BALANCED:
-                return place
+            tried.append(self._from(self.at(near, given), given, HELD[0]))
+            if tried[0].error <= BALANCED:
+                return tried[0]
         start = self.at(before, given)
         glued = start._replace(
             presses=np.ones_like(start.presses), slips=np.zeros_like(start.slips)
         )
-        return self._from(self._moved(start, self._step(glued), given), given)
+        stuck = self._moved(start, self._step(glued, HELD[0]), given)
+        for held in HELD:
+            place = self._from(stuck, given, held)
+            tried.append(place)
+            if place.error <= BALANCED:
+                break
+        return min(tried, key=lambda place: place.error)
 
-    def _from(self, place: Place, given: Given) -> Place:
-        """The best place on the way that Newton's method takes from a first one."""
+    def _from(self, place: Place, given: Given, held: float) -> Place:
+        """The best place on the way that Newton's method takes from a first one.
+
+        `held` is the share of springs that hold bodies, as in `HELD`.
+        """
         best = place
         for _ in range(STEPS):
             if place.error <= BALANCED:
                 return place
-            place = self._moved(place, self._step(place), given)
+            place = self._moved(place, self._step(place, held), given)
             if place.error < best.error:
                 best = place
         return best
 
-    def _step(self, place: Place) -> Array:
-        """Step to where forces balance if no status changes, shape (n_motions,)."""
+    def _step(self, place: Place, held: float) -> Array:
+        """Step to where forces balance if no status changes, shape (n_motions,).
+
+        `held` is as in `_from`.
+        """
         touch = self._touch
         pressing = place.presses / touch.compliance[: self._n_pairs]
         sticks = place.presses & (place.slips == 0.0)
         sticking = sticks / touch.compliance[self._n_pairs :]
         rubbing = place.slips * touch.friction * pressing
         stiffnesses = np.concatenate([pressing, sticking, rubbing])
-        return self._band.solve(stiffnesses, place.unbalanced)
+        return self._band.solve(stiffnesses, place.unbalanced, held)
 
     def _moved(self, place: Place, step: Array, given: Given) -> Place:
         """Place after a step, or after the part of it along which the forces work."""

@@ -44,9 +44,13 @@ class BandStiffness:
         The contacts.
     constant
         Stiffness of what neither opens nor slips, (n_motions, n_motions), scaled.
+    holding
+        Stiffness of springs at all rows against each motion, (n_motions,), scaled.
     """
 
-    def __init__(self, touch: Touch, constant: sparse.csr_array) -> None:
+    def __init__(
+        self, touch: Touch, constant: sparse.csr_array, holding: Array
+    ) -> None:
         size = len(touch.gap)
         across = touch.jumps[:size]
         along = touch.jumps[size:]
@@ -63,6 +67,9 @@ class BandStiffness:
         places = self._flat(*entries.coords)
         self._constant = np.zeros(self._shape[0] * self._shape[1])
         np.add.at(self._constant, places, entries.data)
+        motions = np.arange(len(holding))
+        self._holding = holding
+        self._diagonal = self._flat(motions, motions)
         parts = [
             self._entries(across, across),
             self._entries(along, along),
@@ -91,13 +98,15 @@ class BandStiffness:
         size = self._shape[0] * self._shape[1]
         return sparse.csr_array((values, (places, rows[first])), (size, left.shape[0]))
 
-    def solve(self, stiffnesses: Array, right: Array) -> Array:
+    def solve(self, stiffnesses: Array, right: Array, held: float) -> Array:
         """Solve for the motions, shape (n_motions,), scaled.
 
         Stiffnesses of the pairs are those across, those along, and those of friction
-        against overlap, (3 n_pairs,); the right side has the shape (n_motions,).
+        against overlap, (3 n_pairs,); the right side has the shape (n_motions,). A
+        share `held` of the springs at all rows holds every motion.
         """
         band = self._constant + self._of_pairs @ stiffnesses
+        band[self._diagonal] += held * self._holding
         matrix = band.reshape(self._shape, order="F")
         width = self._width
         solved = dgbsv(width, width, matrix, right[self._order], overwrite_ab=True)
