@@ -1,4 +1,4 @@
-"""Where hinges are free bodies move as rigid ones, and the search gets there."""
+"""Free hinges: bodies move as rigid ones, and the search gets there."""
 
 from __future__ import annotations
 

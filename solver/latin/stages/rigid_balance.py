@@ -29,10 +29,10 @@ TOO_FAR = 1e-2
 """Work against a step at its end, over that along it at its start, up to which the step
 does not go too far."""
 HELD = 1e-10, 1e-6, 1e-4
-"""Shares of the springs at all rows that hold bodies in a step, so that one that touches
-nothing does not go too far; each is tried where those before it lead nowhere. Of an
-arch moved by 20 mm 1 % of the contact force takes 19 iterations, and with the first
-share alone more than 150 (measured)."""
+"""Shares of the springs at all rows that hold bodies in a step, so that one in the air
+does not go too far; each is tried where those before it lead nowhere. Of an arch moved
+by 20 mm 1 % of the contact force takes 19 iterations, and with the first share alone
+more than 150 (measured)."""
 
 
 class Given(NamedTuple):
