@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, sparse_factor
+from solver.arrays import Array, largest_size, sparse_factor
 from solver.discrete.problem import Problem
 from solver.latin.stages.rigid_balance import Balance, Given, Place
 from solver.latin.stages.rigid_stiffness import Touch
@@ -54,17 +54,21 @@ def rigid_bodies_of(
 
 def _moves_far(problem: Problem) -> bool:
     """Check whether sides move further than loads deform bodies, by far."""
-    moved = float(np.abs(problem.prescribed[1]).max(initial=0.0))
-    loads = [given.values for given in problem.given_forces]
+    moved = largest_size(problem.prescribed[1])
+    load = largest_size(_load_sizes(problem).sum(axis=0))
+    # Without any load the motion itself makes all forces.
+    return 0.0 < FAR * load < moved
+
+
+def _load_sizes(problem: Problem) -> Array:
+    """Sums of the sizes of the forces of each load, (n_loads, n_instants), scaled."""
+    sizes = [np.zeros(problem.n_instants)]
+    for given in problem.given_forces:
+        sizes.append(np.abs(given.values).sum(axis=0))
     for part in problem.substructures:
         if part.body_force is not None:
-            loads.append(part.body_force)
-    total = np.zeros(problem.n_instants)
-    for load in loads:
-        total += np.abs(load).sum(axis=0)
-    largest = float(total.max(initial=0.0))
-    # Without any load the motion itself makes all forces.
-    return 0.0 < FAR * largest < moved
+            sizes.append(np.abs(part.body_force).sum(axis=0))
+    return np.array(sizes)
 
 
 def _is_plain(law: Contact) -> bool:
@@ -119,7 +123,7 @@ class RigidBodies:
             touch,
             sparse.csr_array(pulled @ stretched),
             holding,
-            load_size=float(np.abs(body_load).max()),
+            load_size=largest_size(_load_sizes(problem)),
         )
         self._is_near = not from_rest
         self._times_lost = 0
