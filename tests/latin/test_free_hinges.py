@@ -50,7 +50,9 @@ def unbalanced(problem, force):
     [
         {},
         {"displacement": -2e-3},
+        {"displacement": 0.1},
         {"abutment": "down"},
+        {"span": 100.0, "friction": 0.9},
         POINTED,
         {"elements": 4, "substructures": 2},
         {"abutment_load": APART, "instants": 5},
