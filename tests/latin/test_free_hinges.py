@@ -146,6 +146,12 @@ def test_no_other_scene_is_shifted_by_default(scene):
     assert shifts_of(problem, settings)[1] is None
 
 
+def test_bricks_of_a_wall_are_not_shifted_however_far_it_moves():
+    settings = settings_of("wall", pressure=1e3, displacement=2e-3)
+    problem = discretise(settings)
+    assert shifts_of(problem, settings)[1] is None
+
+
 def test_bodies_without_any_balance_are_left_alone_at_last():
     settings = arch(thickness=0.1, friction=0.6)
     problem = discretise(settings)

@@ -31,21 +31,26 @@ LOST = 1e-3
 """Unbalanced force, over the largest load of a body, from which bodies stay where they
 are, at this instant and at those after it, which depend on it."""
 PATIENCE = 10
-"""Successive iterations with such an instant after which bodies are shifted no more: an
-arch of 61 voussoirs has 4 before all instants balance (measured)."""
+"""Successive iterations with such an instant after which bodies are shifted no more. An
+arch of 61 voussoirs moved by 20 mm has 2 in the first three (measured)."""
 
 
 def rigid_bodies_of(
     problem: Problem, k: Array, *, from_rest: bool
 ) -> RigidBodies | None:
-    """Shifts of all bodies, where sides move so far that hinges are free.
+    """Shifts of all bodies of a chain, whose sides move so far that hinges are free.
 
     None elsewhere, and where a law of contact does more than open, slip and give way.
+    Bricks of a wall, which touch more than two others, seldom find a balance as rigid
+    bodies where friction alone holds them, and take minutes to seek it (measured).
     Parameters are those of `RigidBodies`.
     """
     if problem.own_laws or not problem.rubbing or not _moves_far(problem):
         return None
-    if problem.motions is None:
+    inside = problem.inside
+    if inside is None or problem.motions is None:
+        return None
+    if len(problem.rubbing) >= len(np.unique(inside.body_of_dofs)):
         return None
     if not all(_is_plain(law) for law in problem.rubbing.laws.values()):
         return None
