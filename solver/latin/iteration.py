@@ -18,6 +18,7 @@ from solver.latin.method import Latin
 from solver.latin.stages.blocks import Blocks, one_blas_thread
 from solver.latin.stages.linear import LinearStage
 from solver.latin.stages.local import LocalStage
+from solver.latin.stages.rigid_bodies import RigidBodies, rigid_bodies_of
 from solver.latin.start import prolong, wrong_waves
 from solver.refusal import RefusedError
 
@@ -105,7 +106,9 @@ class Iteration:
         self.k = self._k_update.k
         blocks = Blocks(problem.n_rows, problem.n_instants, latin.threads)
         self.linear = _linear_stage(problem, self.k, latin, blocks)
-        self.local = LocalStage(problem, self.k, blocks)
+        self.local = LocalStage(
+            problem, self.k, blocks, self._rigid_bodies(latin, start)
+        )
         self._mixture: AndersonState | None = None
         if latin.acceleration is not None and self.linear.is_full:
             self._mixture = AndersonState(
@@ -119,6 +122,17 @@ class Iteration:
             start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
         self.linear.go_to(start)
         self._show()
+
+    def _rigid_bodies(
+        self, latin: Latin, start: Checkpoint | None
+    ) -> RigidBodies | None:
+        """Shifts of rigid bodies in the local stage: a part of the coarse problem.
+
+        Truncated bases would not hold what little of their fields is deformation.
+        """
+        if latin.multiscale and self.linear.is_full:
+            return rigid_bodies_of(self._problem, self.k, from_rest=start is None)
+        return None
 
     def _show(self) -> None:
         """Read the fields of the linear stage."""

@@ -7,6 +7,7 @@ import numpy as np
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.latin.stages.blocks import ALL, Blocks
+from solver.latin.stages.rigid_bodies import RigidBodies
 from solver.latin.stages.sliding_body import slide_of
 
 
@@ -25,26 +26,34 @@ class LocalStage:
         Search direction of the rows, shape (n_rows,), scaled.
     blocks
         Blocks of instants.
+    bodies
+        Shifts of all bodies as rigid ones; None where these are not shifted.
 
     Attributes
     ----------
     displacement
         W^ of the last call, a new field of shape (n_rows, n_instants), scaled.
     incoming
-        W^ - F^/k of the last call, same shape: z as read, plus the shift of a body that
-        slides as a whole.
+        W^ - F^/k of the last call, same shape: z as read, plus the shift of bodies that
+        move as a whole.
     motion
-        Motion of the rows in a slide of that body, shape (n_rows,); None without such a
-        body.
+        Motion of the rows in a slide of one body, shape (n_rows,), whose residuals
+        count for nothing; None without such a slide.
     """
 
-    def __init__(self, problem: Problem, k: Array, blocks: Blocks) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        k: Array,
+        blocks: Blocks,
+        bodies: RigidBodies | None = None,
+    ) -> None:
         shape = problem.n_rows, problem.n_instants
         self._blocks = blocks
         self.displacement = space_time(*shape)
         self.incoming = self.displacement
         self._outgoing = space_time(*shape)
-        self._slide = slide_of(problem, k)
+        self._slide = bodies or slide_of(problem, k)
         self.motion = None
         if self._slide is not None:
             self.motion = self._slide.motion

@@ -1,0 +1,297 @@
+"""Rigid motions of all bodies in the local stage: a coarse problem that opens, slips.
+
+Where hinges are free next to nothing resists the motions of bodies, and E+ alone holds
+them: an iteration moves a body by about (unbalanced force over k), which is thousands
+of times less than the way that it has to go. So k is taken as zero along all rigid
+motions: at every instant the local stage shifts the bodies to where contacts, with all
+that opens and slips there, and springs of k balance the loads on each body
+(`solver.latin.stages.rigid_balance`; MATHEMATICS.md, 2). A shift costs no elastic
+force, so that the linear stage does not see it. What remains is the same iteration for
+the deformation of each body, whatever the hinges.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+
+from solver.arrays import Array, largest_size, sparse_factor
+from solver.discrete.problem import Problem
+from solver.latin.stages.rigid_balance import Balance, Given, Place
+from solver.latin.stages.rigid_stiffness import Touch
+from solver.laws import Contact, Unilateral
+from solver.laws.interface import Component, Springs
+
+FAR = 150.0
+"""Largest displacement of a side, over that of a body of stiffness E under all loads,
+from which bodies that contact alone holds are shifted. Arches of 31 voussoirs reach 1 %
+of the contact force in as much time with shifts as without there, in 14 iterations
+instead of 96 (measured)."""
+LOST = 1e-3
+"""Unbalanced force, over the largest load of a body, from which bodies stay where they
+are, at this instant and at those after it, which depend on it."""
+PATIENCE = 10
+"""Successive iterations with such an instant after which bodies are shifted no more. An
+arch of 61 voussoirs moved by 20 mm has 2 in the first three (measured)."""
+
+
+def rigid_bodies_of(
+    problem: Problem, k: Array, *, from_rest: bool
+) -> RigidBodies | None:
+    """Shifts of all bodies of a chain, whose sides move so far that hinges are free.
+
+    None elsewhere, and where a law of contact does more than open, slip and give way.
+    Bricks of a wall, which touch more than two others, seldom find a balance as rigid
+    bodies where friction alone holds them, and take minutes to seek it (measured).
+    Parameters are those of `RigidBodies`.
+    """
+    if problem.own_laws or not problem.rubbing or not _moves_far(problem):
+        return None
+    inside = problem.inside
+    if inside is None or problem.motions is None:
+        return None
+    if len(problem.rubbing) >= len(np.unique(inside.body_of_dofs)):
+        return None
+    if not all(_is_plain(law) for law in problem.rubbing.laws.values()):
+        return None
+    return RigidBodies(problem, k, from_rest=from_rest)
+
+
+def _moves_far(problem: Problem) -> bool:
+    """Check whether sides move further than loads deform bodies, by far."""
+    moved = largest_size(problem.prescribed[1])
+    load = largest_size(_load_sizes(problem).sum(axis=0))
+    # Without any load the motion itself makes all forces.
+    return 0.0 < FAR * load < moved
+
+
+def _load_sizes(problem: Problem) -> Array:
+    """Sums of the sizes of the forces of each load, (n_loads, n_instants), scaled."""
+    sizes = [np.zeros(problem.n_instants)]
+    for given in problem.given_forces:
+        sizes.append(np.abs(given.values).sum(axis=0))
+    for part in problem.substructures:
+        if part.body_force is not None:
+            sizes.append(np.abs(part.body_force).sum(axis=0))
+    return np.array(sizes)
+
+
+def _is_plain(law: Contact) -> bool:
+    """Check whether a contact opens, and slips at mu times what presses it."""
+    friction = law.tangential
+    if law.normal is None or law.incremental_form() is None:
+        return False
+    if friction.cap is not None or friction.slip_factor is not None:
+        return False
+    return not friction.bound.any()
+
+
+class RigidBodies:
+    """Shifts of all bodies to where their forces balance in the local stage.
+
+    Parameters
+    ----------
+    problem
+        The problem to be solved, of bodies in the plane.
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
+    from_rest
+        Whether the iteration begins here, so that bodies are not near their places.
+
+    Attributes
+    ----------
+    motion
+        None: residuals along shifts count, as they are errors of positions.
+    """
+
+    motion: Array | None = None
+
+    def __init__(self, problem: Problem, k: Array, *, from_rest: bool) -> None:
+        self._modes, self._centres, body_load = _motions(problem, k)
+        laws = [law for law in problem.laws if isinstance(law, Contact)]
+        self._jumps = _jumps(laws, problem.n_rows)
+        self._sliders = np.concatenate([_start(law) for law in laws])
+        body_load += self._modes.T @ _given_forces(problem)
+        extension, stiffness, load = _springs(problem, k)
+        stretched = sparse.csr_array(extension @ self._modes)
+        pulled = stretched.T @ sparse.diags_array(stiffness)
+        self._held = sparse.csr_array(pulled @ extension)
+        self._load = body_load + self._modes.T @ load
+        touch = Touch(
+            jumps=sparse.csr_array(self._jumps @ self._modes),
+            compliance=_compliance(laws, k),
+            gap=np.concatenate([_normal(law).gap for law in laws]),
+            friction=np.concatenate([law.tangential.friction for law in laws]),
+        )
+        holding = np.asarray((self._modes * self._modes).T @ k)
+        self._balance = Balance(
+            touch,
+            sparse.csr_array(pulled @ stretched),
+            holding,
+            load_size=largest_size(_load_sizes(problem)),
+        )
+        self._is_near = not from_rest
+        self._times_lost = 0
+
+    def balanced(self, incoming: Array) -> Array:
+        """Shift z = W - F/k of all rows, instant by instant.
+
+        Both z have shape (n_rows, n_instants), scaled. Where bodies find no balance
+        again and again, they are not shifted.
+        """
+        if self._times_lost >= PATIENCE:
+            return incoming
+        jumps = (self._jumps @ incoming).T
+        loads = (self._load - self._held @ incoming).T
+        centres = (self._centres @ incoming).T
+        shifts = np.zeros_like(centres)
+        sliders = self._sliders
+        before = np.zeros(centres.shape[1])
+        is_lost = False
+        for instant, centre in enumerate(centres):
+            given = Given(jumps[instant], loads[instant], sliders)
+            place = self._settled(given, before - centre, is_lost=is_lost)
+            is_lost = is_lost or place.error > LOST
+            sliders = place.sliders
+            shifts[instant] = place.position
+            before = centre + place.position
+        self._is_near = True
+        self._count(is_lost=is_lost)
+        shifted: Array = np.asfortranarray(self._modes @ shifts.T)
+        shifted += incoming
+        return shifted
+
+    def _settled(self, given: Given, before: Array, *, is_lost: bool) -> Place:
+        """Place of the bodies at an instant; they stay if there is no balance.
+
+        `before` is the shift to where they stood at the instant before, (n_motions,);
+        `is_lost` tells that there was no balance at an earlier instant.
+        """
+        near = None
+        if self._is_near:
+            near = np.zeros_like(before)
+        if not is_lost:
+            place = self._balance.settled(given, near, before)
+            if place.error <= LOST:
+                return place
+        if near is None:
+            near = before
+        return self._balance.at(near, given)
+
+    def _count(self, *, is_lost: bool) -> None:
+        """Count successive iterations in which some instant had no balance."""
+        if is_lost:
+            self._times_lost += 1
+        else:
+            self._times_lost = 0
+
+
+def _motions(
+    problem: Problem, k: Array
+) -> tuple[sparse.csr_array, sparse.csr_array, Array]:
+    """Rigid motions of all bodies, and what belongs to them.
+
+    Returned are the motions of rows, shape (n_rows, n_motions); the map from a field of
+    rows to its mean motions, weighted by k, (n_motions, n_rows); and the body forces
+    along the motions, (n_motions, n_instants), scaled.
+    """
+    inside = problem.inside
+    assert inside is not None
+    bodies = inside.body_of_dofs
+    by_dofs = sparse.lil_array((problem.n_dofs, 3 * (int(bodies.max()) + 1)))
+    for body in np.unique(bodies):
+        dofs = np.flatnonzero(bodies == body)
+        by_dofs[dofs, 3 * body : 3 * body + 3] = inside.rigid_modes(dofs)
+    of_dofs = sparse.csr_array(by_dofs)
+    of_rows = of_dofs[problem.row_dofs]
+    load = np.zeros((of_dofs.shape[1], problem.n_instants))
+    for part in problem.substructures:
+        if part.body_force is not None:
+            load += of_dofs[part.dofs].T @ part.body_force
+    weighted = sparse.csr_array((of_rows * k[:, None]).T)
+    products = sparse_factor(sparse.csc_array(weighted @ of_rows))
+    means = sparse.csr_array(products.solve(weighted.toarray()))
+    return of_rows, means, load
+
+
+def _normal(law: Contact) -> Unilateral:
+    """Normal law of a contact that may open."""
+    assert law.normal is not None
+    return law.normal
+
+
+def _jumps(laws: list[Contact], n_rows: int) -> sparse.csr_array:
+    """Jumps across all pairs of all contacts, then along them: (2 n_pairs, n_rows)."""
+    across = [_difference(_normal(law).component, n_rows) for law in laws]
+    along = [_difference(law.tangent, n_rows) for law in laws]
+    return sparse.csr_array(sparse.vstack(across + along))
+
+
+def _difference(component: Component, n_rows: int) -> sparse.csr_array:
+    """Jump of a component from fields of rows, shape (n_pairs, n_rows)."""
+    size = len(component.above)
+    difference = sparse.csr_array(
+        (np.ones(size), (np.arange(size), component.above)), (size, n_rows)
+    )
+    if component.below is None:
+        return difference
+    below = (np.ones(size), (np.arange(size), component.below))
+    return difference - sparse.csr_array(below, (size, n_rows))
+
+
+def _compliance(laws: list[Contact], k: Array) -> Array:
+    """Compliance of k and of springs of the laws, (2 n_pairs,), stacked as `_jumps`."""
+    across = []
+    along = []
+    for law in laws:
+        normal = _normal(law)
+        across.append(_in_series(normal.component, k, normal.compliance))
+        along.append(_in_series(law.tangent, k, law.tangential.compliance))
+    return np.concatenate(across + along)
+
+
+def _in_series(component: Component, k: Array, compliance: Array | None) -> Array:
+    """Compliance of k of both sides, and of a spring, (n_pairs,) or None."""
+    soft = Springs(component, k).soft[:, 0]
+    if compliance is None:
+        return soft
+    return soft + compliance
+
+
+def _start(law: Contact) -> Array:
+    """Positions of sliders before the first instant, (n_pairs,), scaled."""
+    start = law.tangential.start
+    if start is None:
+        return np.zeros(len(law.points))
+    return start
+
+
+def _springs(problem: Problem, k: Array) -> tuple[sparse.csr_array, Array, Array]:
+    """Springs of k where rows are held or glued.
+
+    Returned are their extension by fields of rows, (n_springs, n_rows), their
+    stiffness, (n_springs,), and their forces on rows that do not move, (n_rows,
+    n_instants), scaled.
+    """
+    extensions = [sparse.csr_array((0, problem.n_rows))]
+    stiffnesses = [np.zeros(0)]
+    load = np.zeros((problem.n_rows, problem.n_instants))
+    for held in problem.given_displacements:
+        stiffness = k[held.rows]
+        load[held.rows] = stiffness[:, None] * held.values
+        extensions.append(_difference(Component(held.rows), problem.n_rows))
+        stiffnesses.append(stiffness)
+    for cut in problem.cuts:
+        both = Component(cut.first, cut.second)
+        extensions.append(_difference(both, problem.n_rows))
+        stiffnesses.append(1.0 / Springs(both, k).soft[:, 0])
+    springs = sparse.csr_array(sparse.vstack(extensions))
+    return springs, np.concatenate(stiffnesses), load
+
+
+def _given_forces(problem: Problem) -> Array:
+    """Forces that are prescribed at rows, shape (n_rows, n_instants), scaled."""
+    force = np.zeros((problem.n_rows, problem.n_instants))
+    for given in problem.given_forces:
+        force[given.rows] = given.values
+    return force

@@ -1,0 +1,163 @@
+"""Free hinges: bodies move as rigid ones, and the search gets there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+import pytest
+from runs import errors, iterates, settings_of
+
+from solver.latin import iterations
+from solver.latin.stages.rigid_bodies import PATIENCE, RigidBodies, rigid_bodies_of
+from solver.scenes import discretise
+from solver.scenes.method import method_of
+
+MOVED = {"voussoirs": 15, "instants": 21, "displacement": 2e-3}
+APART = [[0.0, 0.0], [0.25, 0.0], [1.0, 0.002]]
+POINTED = {"centres": 1.0, "friction": 0.9}
+ENOUGH = 60
+"""Iterations within which all default scenes are to be at 1 %."""
+
+
+def arch(**changes):
+    return settings_of("arch", **(MOVED | changes))
+
+
+def shifts_of(problem, settings, *, from_rest=True):
+    k = method_of(settings).direction.of(problem)
+    return k, rigid_bodies_of(problem, k, from_rest=from_rest)
+
+
+def unbalanced(problem, force):
+    """Sum of the forces of rows and body forces on every body, and their sizes."""
+    sums = []
+    sizes = []
+    for part in problem.substructures:
+        of_dofs = problem.inside.rigid_modes(part.dofs)
+        of_rows = of_dofs[part.elasticity.trace]
+        total = of_rows.T @ force[part.rows]
+        if part.body_force is not None:
+            total += of_dofs.T @ part.body_force
+        sums.append(total)
+        sizes.append(np.abs(of_rows).T @ np.abs(force[part.rows]))
+    return np.concatenate(sums), np.concatenate(sizes)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"displacement": -2e-3},
+        {"displacement": 0.1},
+        {"abutment": "down"},
+        {"span": 100.0, "friction": 0.9},
+        POINTED,
+        {"elements": 4, "substructures": 2},
+        {"abutment_load": APART, "instants": 5},
+        {"method": "paper"},
+        {"acceleration": "none"},
+    ],
+    ids=str,
+)
+def test_the_search_reaches_one_percent_on_free_hinges(changes):
+    found = errors(arch(**changes), ENOUGH)
+    assert found.min() <= 0.01
+    assert found[-1] <= 1e-4
+
+
+def test_more_voussoirs_take_hardly_more_iterations():
+    for voussoirs in (15, 31, 61):
+        found = errors(arch(voussoirs=voussoirs), 25)
+        assert found[-1] <= 0.01
+
+
+def test_without_shifts_the_search_does_not_get_there():
+    assert errors(arch(multiscale=False), ENOUGH).min() > 0.1
+
+
+def test_every_body_is_in_balance_after_a_local_stage():
+    last = iterates(arch(), 5)[-1]
+    missing, size = unbalanced(last.problem, last.boundary_local_force)
+    assert np.abs(missing).max() <= 1e-8 * size.max()
+
+
+def test_rigid_motions_of_the_fields_hardly_change_forces():
+    settings = arch()
+    problem = discretise(settings)
+    latin = replace(method_of(settings), acceleration=None)
+    (start,) = islice(iterations(problem, latin), 4, 5)
+    moved = start.outgoing.copy(order="F")
+    amounts = 1e-8 * np.random.default_rng(1).standard_normal(3)
+    for part in problem.substructures:
+        modes = problem.inside.rigid_modes(part.dofs)[part.elasticity.trace]
+        moved[part.rows] += (modes @ amounts)[:, None]
+    after = []
+    for outgoing in (start.outgoing, moved):
+        again = replace(start.checkpoint, outgoing=outgoing)
+        after.append(next(iterations(problem, latin, again)))
+    one, other = [each.boundary_local_force for each in after]
+    np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-4 * np.abs(one).max())
+
+
+def test_a_run_that_is_resumed_goes_on_exactly():
+    settings = arch(acceleration="none")
+    problem = discretise(settings)
+    latin = method_of(settings)
+    straight = list(islice(iterations(problem, latin), 8))
+    again = list(islice(iterations(problem, latin, straight[4].checkpoint), 3))
+    for one, other in zip(again, straight[5:], strict=True):
+        assert np.array_equal(one.outgoing, other.outgoing)
+
+
+def test_rigid_bodies_on_springs_thrust_as_statics_says():
+    settings = arch(elements=4)
+    (first,) = iterates(settings, 1)
+    force = first.boundary_local_force
+    modes = first.problem.inside.rigid_modes
+    # What the moved abutment is pushed with along x, by the joints beside it.
+    pushed = np.zeros(first.problem.n_instants)
+    part = first.problem.substructures[-1]
+    held = first.problem.is_held[part.rows]
+    along = modes(part.dofs)[part.elasticity.trace][:, 0]
+    pushed = -(along[~held] @ force[part.rows[~held]])
+    weight = settings.structure().downwards[-1] / first.problem.scales.force
+    thrust = np.abs(pushed[settings.path("abutment_load") == 2e-3]) / weight
+    least, _ = settings.statics.thrusts()
+    np.testing.assert_allclose(thrust, least, rtol=0.02)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"displacement": 5e-5}, {"unit_weight": 0.0, "displacement": 1e-6}],
+    ids=str,
+)
+def test_bodies_that_hardly_move_are_not_shifted(changes):
+    settings = arch(**changes)
+    problem = discretise(settings)
+    assert shifts_of(problem, settings)[1] is None
+
+
+@pytest.mark.parametrize("scene", ["block", "layers", "wall", "bundle", "mesh", "belt"])
+def test_no_other_scene_is_shifted_by_default(scene):
+    settings = settings_of(scene)
+    problem = discretise(settings)
+    assert shifts_of(problem, settings)[1] is None
+
+
+def test_bricks_of_a_wall_are_not_shifted_however_far_it_moves():
+    settings = settings_of("wall", pressure=1e3, displacement=2e-3)
+    problem = discretise(settings)
+    assert shifts_of(problem, settings)[1] is None
+
+
+def test_bodies_without_any_balance_are_left_alone_at_last():
+    settings = arch(thickness=0.1, friction=0.6)
+    problem = discretise(settings)
+    _, shifts = shifts_of(problem, settings)
+    assert isinstance(shifts, RigidBodies)
+    field = np.zeros((problem.n_rows, problem.n_instants), order="F")
+    for _ in range(PATIENCE):
+        assert np.all(np.isfinite(shifts.balanced(field)))
+    assert shifts.balanced(field) is field
