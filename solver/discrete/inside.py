@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
@@ -77,10 +76,9 @@ class Inside:
         `nodes` are those of all parts, part by part, and `first_nodes` the places of
         the first of each part.
         """
-        parts = self._parts
-        kept = [part.condensed.kept for part in parts]
+        kept = [part.condensed.kept for part in self._parts]
         counts = [len(of_part) for of_part in kept]
-        n_axes = np.repeat([part.mesh.n_axes for part in parts], counts)
+        n_axes = np.repeat([part.mesh.n_axes for part in self._parts], counts)
         of_parts = np.concatenate(kept)
         places, axes = np.divmod(of_parts, n_axes)
         own = nodes[np.repeat(first_nodes, counts) + places]
@@ -88,12 +86,8 @@ class Inside:
             N_AXES * own + axes, return_index=True, return_inverse=True
         )
         self.nodes_of_dofs: Indices = skeleton // N_AXES
-        ends = pairwise(np.cumsum([0, *counts]).tolist())
-        self.dofs: list[Indices] = [numbers[start:end] for start, end in ends]
-        directions = [part.directions for part in parts]
-        first_dofs = _firsts([len(of_part) for of_part in directions])
-        along = np.repeat(first_dofs, counts) + of_parts
-        self.directions: Array = np.concatenate(directions)[along[first]]
+        self.dofs: list[Indices] = np.split(numbers, np.cumsum(counts)[:-1])
+        self.directions: Array = _directions(self._parts, counts, of_parts)[first]
 
     def substructures(self) -> tuple[Substructure, ...]:
         """Substructures of the problem, part by part, and so are their rows."""
@@ -298,3 +292,17 @@ def _condensed_by(condensed: SchurComplement, forces: Sequence[Array]) -> list[A
 def _firsts(sizes: Sequence[int]) -> Indices:
     """Place of the first entry of each of some lists that follow each other, (n,)."""
     return np.cumsum(sizes) - sizes
+
+
+def _directions(
+    parts: Sequence[CondensedPart], counts: Sequence[int], of_parts: Indices
+) -> Array:
+    """Motions along x and y, and turns, of degrees of freedom of parts, (n, 3).
+
+    `of_parts` are their numbers within each part, part by part, (n,), and `counts` how
+    many of them are of each.
+    """
+    directions = [part.directions for part in parts]
+    first_dofs = _firsts([len(of_part) for of_part in directions])
+    rows = np.repeat(first_dofs, counts) + of_parts
+    return np.asarray(np.concatenate(directions)[rows])
