@@ -213,9 +213,13 @@ class Scene(View):
             self._dragged = {}
         # Along the time of a frame the scale stays, so that motions can be compared.
         if self._factor is None or shown is not frame:
-            largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
-            self._factor = layout.fitting(largest, self._factor)
+            self._factor = self._magnification(frame, layout)
             self._scale_arrows(frame)
+
+    def _magnification(self, frame: Frame, layout: Layout) -> float:
+        """Factor on displacements with which a frame has room in the figure."""
+        largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
+        return layout.fitting(largest, self._factor)
 
     def _rests(self, run: Run) -> list[Rest]:
         """Handles of the loads that were drawn, and are zero in a run."""
@@ -370,7 +374,8 @@ class Thrust(ExtraScene):
     """Resultant forces of joints, as lines from body to body; hinges of a chain.
 
     The width of a line is in proportion to its force; the largest force of all instants
-    has the widest line.
+    has the widest line. Bodies are drawn as they were: there the forces act, which
+    magnified displacements would part from them.
     """
 
     name = "Thrust"
@@ -385,6 +390,9 @@ class Thrust(ExtraScene):
         self.add("thrust", "MultiLine", "xs ys line_width", **look)
         look = {"fill_color": "white", "line_color": ERROR, "line_width": 2.5}
         self.add("hinges", "Scatter", "x y", size=9, **look)
+
+    def _magnification(self, frame: Frame, layout: Layout) -> float:
+        return 0.0
 
     def _show(self, extra: Any, picture: Picture) -> None:
         largest = float(extra["forces"].max())

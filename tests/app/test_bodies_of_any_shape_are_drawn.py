@@ -175,7 +175,14 @@ def test_hinges_are_marked_and_counted_as_the_quantity_counts_them(
     assert count == 3
     assert hinges[:, 0].sum() == 0.0
     view = shown(spread, 0.5, Thrust)
-    assert len(view.sources["hinges"].data["x"]) == count
+    marks = view.sources["hinges"].data
+    assert len(marks["x"]) == count
+    # A hinge is drawn at a corner of the stones that turn about it.
+    picture = view.picture
+    assert picture is not None
+    nodes = picture.page(picture.nodes)
+    for x, y in zip(marks["x"], marks["y"], strict=True):
+        assert np.hypot(*(nodes - [x, y]).T).min() < 1.0
     notes = str([item.label for item in view._keys.items])
     assert f"hinges: {count}" in notes
 
