@@ -297,7 +297,7 @@ class Browser(DataModel):
 
 
 class AtOnce(pn.custom.JSComponent):
-    """Part without a look that has the values of a dragged slider come at once.
+    """Part without a look that has the values of a slider come at once.
 
     Panel gathers values for 50 ms, but what comes before a message of a component is
     handed on before it.

@@ -16,7 +16,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Flags
-from solver.latin.stages.rigid_stiffness import BandStiffness, Touch
+from solver.latin.stages.rigid_stiffness import BandStiffness, RigidContacts
 
 BALANCED = 1e-9
 """Largest unbalanced force, over the largest load of a body, in balance."""
@@ -39,7 +39,7 @@ CLOSE = 1e-2
 """Unbalanced force, as in `BALANCED`, from which Newton's method takes over again."""
 
 
-class Given(NamedTuple):
+class Loading(NamedTuple):
     """Jumps and loads of an instant; all scaled.
 
     Attributes
@@ -57,7 +57,7 @@ class Given(NamedTuple):
     sliders: Array
 
 
-class Place(NamedTuple):
+class RigidState(NamedTuple):
     """Position of all bodies, and the forces there; all scaled.
 
     Attributes
@@ -94,7 +94,7 @@ class Balance:
 
     Parameters
     ----------
-    touch
+    contacts
         The contacts.
     stiffness
         Stiffness of springs that neither open nor slip, (n_motions, n_motions), scaled.
@@ -107,99 +107,103 @@ class Balance:
 
     def __init__(
         self,
-        touch: Touch,
+        contacts: RigidContacts,
         stiffness: sparse.csr_array,
         holding: Array,
         load_size: float,
     ) -> None:
-        self._touch = touch
+        self._contacts = contacts
         self._stiffness = stiffness
-        self._pushes = sparse.csr_array(touch.jumps.T)
-        self._n_pairs = len(touch.gap)
+        self._pushes = sparse.csr_array(contacts.jumps.T)
+        self._n_pairs = len(contacts.gap)
         self._load_size = load_size
-        self._band = BandStiffness(touch, stiffness, holding)
+        self._band = BandStiffness(contacts, stiffness, holding)
 
-    def settled(self, given: Given, near: Array | None, before: Array) -> Place:
-        """Place where the forces balance, or the nearest to that which is found.
+    def settled(
+        self, loading: Loading, near: Array | None, before: Array
+    ) -> RigidState:
+        """State in which the forces balance, or the nearest to that which is found.
 
         `near` is a position that may be near it, `before` that of the instant before,
         from which the first step is taken with all pairs stuck; (n_motions,) both.
         """
         tried = []
         if near is not None:
-            tried.append(self._from(self.at(near, given), given, HELD[0]))
+            tried.append(self._from(self.at(near, loading), loading, HELD[0]))
             if tried[0].error <= BALANCED:
                 return tried[0]
-        start = self.at(before, given)
+        start = self.at(before, loading)
         glued = start._replace(
             presses=np.ones_like(start.presses), slips=np.zeros_like(start.slips)
         )
-        stuck = self._moved(start, self._step(glued, HELD[0]), given)
+        stuck = self._moved(start, self._step(glued, HELD[0]), loading)
         for held in HELD:
-            place = self._from(stuck, given, held)
-            tried.append(place)
-            if place.error <= BALANCED:
+            state = self._from(stuck, loading, held)
+            tried.append(state)
+            if state.error <= BALANCED:
                 break
-        best = min(tried, key=lambda place: place.error)
+        best = min(tried, key=lambda state: state.error)
         if best.error <= BALANCED:
             return best
-        return self._by_known_bounds(stuck, given, best)
+        return self._by_known_bounds(stuck, loading, best)
 
-    def _by_known_bounds(self, place: Place, given: Given, best: Place) -> Place:
-        """Place found by rounds in which the bounds of friction are known.
+    def _by_known_bounds(
+        self, state: RigidState, loading: Loading, best: RigidState
+    ) -> RigidState:
+        """State found by rounds in which the bounds of friction are known.
 
         These are bounds of the round before. With them the balance is the least of a
-        convex energy, which the steps always reach. The rounds begin at a place; `best`
+        convex energy, which the steps always reach. The rounds begin at a state; `best`
         is the best one so far, which is returned if no round is better.
         """
         for _ in range(ROUNDS):
-            known = self.at(place.position, given, place.bound)
-            place = self.at(self._from(known, given, HELD[1]).position, given)
-            if place.error <= CLOSE:
-                place = self._from(place, given, HELD[0])
-            if place.error < best.error:
-                best = place
+            known = self.at(state.position, loading, state.bound)
+            state = self.at(self._from(known, loading, HELD[1]).position, loading)
+            if state.error <= CLOSE:
+                state = self._from(state, loading, HELD[0])
+            if state.error < best.error:
+                best = state
             if best.error <= BALANCED:
                 break
         return best
 
-    def _from(self, place: Place, given: Given, held: float) -> Place:
-        """The best place on the way that Newton's method takes from a first one.
+    def _from(self, state: RigidState, loading: Loading, held: float) -> RigidState:
+        """The best state on the way that Newton's method takes from a first one.
 
         `held` is the share of springs that hold bodies, as in `HELD`.
         """
-        best = place
+        best = state
         for _ in range(STEPS):
-            if place.error <= BALANCED:
-                return place
-            place = self._moved(place, self._step(place, held), given)
-            if place.error < best.error:
-                best = place
+            if state.error <= BALANCED:
+                return state
+            state = self._moved(state, self._step(state, held), loading)
+            if state.error < best.error:
+                best = state
         return best
 
-    def _step(self, place: Place, held: float) -> Array:
+    def _step(self, state: RigidState, held: float) -> Array:
         """Step to where forces balance if no status changes, shape (n_motions,).
 
         `held` is as in `_from`.
         """
-        touch = self._touch
-        pressing = place.presses / touch.compliance[: self._n_pairs]
-        sticks = place.presses & (place.slips == 0.0)
-        rubbing = place.slips * touch.friction * pressing
-        if place.has_known_bound:
-            sticks = (place.bound > 0.0) & (place.slips == 0.0)
+        contacts = self._contacts
+        pressing = state.presses / contacts.compliance[: self._n_pairs]
+        sticks = state.presses & (state.slips == 0.0)
+        rubbing = state.slips * contacts.friction * pressing
+        if state.has_known_bound:
+            sticks = (state.bound > 0.0) & (state.slips == 0.0)
             rubbing = np.zeros_like(rubbing)
-        sticking = sticks / touch.compliance[self._n_pairs :]
+        sticking = sticks / contacts.compliance[self._n_pairs :]
         stiffnesses = np.concatenate([pressing, sticking, rubbing])
-        return self._band.solve(stiffnesses, place.unbalanced, held)
+        return self._band.solve(stiffnesses, state.unbalanced, held)
 
-    def _moved(self, place: Place, step: Array, given: Given) -> Place:
-        """Place after a step, or after the part of it along which the forces work."""
-        work = float(place.unbalanced @ step)
+    def _moved(self, state: RigidState, step: Array, loading: Loading) -> RigidState:
+        """State after a step, or after the part of it along which the forces work."""
+        work = float(state.unbalanced @ step)
         known = None
-        if place.has_known_bound:
-            known = place.bound
-        after = self.at(place.position + step, given, known)
+        if state.has_known_bound:
+            known = state.bound
+        after = self.at(state.position + step, loading, known)
         end_work = float(after.unbalanced @ step)
         enough = TOO_FAR * abs(work)
         if work <= 0.0 or end_work >= -enough:
@@ -209,7 +213,7 @@ class Balance:
         end = 1.0
         for _ in range(TRIALS):
             share = begin + (end - begin) * work / (work - end_work)
-            after = self.at(place.position + share * step, given, known)
+            after = self.at(state.position + share * step, loading, known)
             work_there = float(after.unbalanced @ step)
             if abs(work_there) <= enough:
                 break
@@ -224,28 +228,28 @@ class Balance:
         return after
 
     def at(
-        self, position: Array, given: Given, known_bound: Array | None = None
-    ) -> Place:
+        self, position: Array, loading: Loading, known_bound: Array | None = None
+    ) -> RigidState:
         """Forces where the bodies are at a position, (n_motions,).
 
         `known_bound` is that of friction, (n_pairs,), where it does not follow what
         presses.
         """
-        touch = self._touch
+        contacts = self._contacts
         size = self._n_pairs
-        jump = given.jump + touch.jumps @ position
+        jump = loading.jump + contacts.jumps @ position
         along = jump[size:]
-        soft = touch.compliance[size:]
-        overlap = -touch.gap - jump[:size]
-        pressing = np.maximum(overlap, 0.0) / touch.compliance[:size]
-        sticking = (given.sliders - along) / soft
+        soft = contacts.compliance[size:]
+        overlap = -contacts.gap - jump[:size]
+        pressing = np.maximum(overlap, 0.0) / contacts.compliance[:size]
+        sticking = (loading.sliders - along) / soft
         bound = known_bound
         if bound is None:
-            bound = touch.friction * pressing
+            bound = contacts.friction * pressing
         friction = np.clip(sticking, -bound, bound)
         pushed = self._pushes @ np.concatenate([pressing, friction])
-        unbalanced = given.load - self._stiffness @ position + pushed
-        return Place(
+        unbalanced = loading.load - self._stiffness @ position + pushed
+        return RigidState(
             position=position,
             unbalanced=unbalanced,
             sliders=along + soft * friction,

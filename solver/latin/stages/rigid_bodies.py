@@ -17,8 +17,8 @@ from scipy import sparse
 
 from solver.arrays import Array, largest_size, sparse_factor
 from solver.discrete.problem import Problem
-from solver.latin.stages.rigid_balance import Balance, Given, Place
-from solver.latin.stages.rigid_stiffness import Touch
+from solver.latin.stages.rigid_balance import Balance, Loading, RigidState
+from solver.latin.stages.rigid_stiffness import RigidContacts
 from solver.laws import Contact, Unilateral
 from solver.laws.interface import Component, Springs
 
@@ -117,7 +117,7 @@ class RigidBodies:
         pulled = stretched.T @ sparse.diags_array(stiffness)
         self._held = sparse.csr_array(pulled @ extension)
         self._load = body_load + self._modes.T @ load
-        touch = Touch(
+        contacts = RigidContacts(
             jumps=sparse.csr_array(self._jumps @ self._modes),
             compliance=_compliance(laws, k),
             gap=np.concatenate([_normal(law).gap for law in laws]),
@@ -125,7 +125,7 @@ class RigidBodies:
         )
         holding = np.asarray((self._modes * self._modes).T @ k)
         self._balance = Balance(
-            touch,
+            contacts,
             sparse.csr_array(pulled @ stretched),
             holding,
             load_size=largest_size(_load_sizes(problem)),
@@ -149,20 +149,20 @@ class RigidBodies:
         before = np.zeros(centres.shape[1])
         is_lost = False
         for instant, centre in enumerate(centres):
-            given = Given(jumps[instant], loads[instant], sliders)
-            place = self._settled(given, before - centre, is_lost=is_lost)
-            is_lost = is_lost or place.error > LOST
-            sliders = place.sliders
-            shifts[instant] = place.position
-            before = centre + place.position
+            loading = Loading(jumps[instant], loads[instant], sliders)
+            state = self._settled(loading, before - centre, is_lost=is_lost)
+            is_lost = is_lost or state.error > LOST
+            sliders = state.sliders
+            shifts[instant] = state.position
+            before = centre + state.position
         self._is_near = True
         self._count(is_lost=is_lost)
         shifted: Array = np.asfortranarray(self._modes @ shifts.T)
         shifted += incoming
         return shifted
 
-    def _settled(self, given: Given, before: Array, *, is_lost: bool) -> Place:
-        """Place of the bodies at an instant; they stay if there is no balance.
+    def _settled(self, loading: Loading, before: Array, *, is_lost: bool) -> RigidState:
+        """State of the bodies at an instant; they stay if there is no balance.
 
         `before` is the shift to where they stood at the instant before, (n_motions,);
         `is_lost` tells that there was no balance at an earlier instant.
@@ -171,12 +171,12 @@ class RigidBodies:
         if self._is_near:
             near = np.zeros_like(before)
         if not is_lost:
-            place = self._balance.settled(given, near, before)
-            if place.error <= LOST:
-                return place
+            state = self._balance.settled(loading, near, before)
+            if state.error <= LOST:
+                return state
         if near is None:
             near = before
-        return self._balance.at(near, given)
+        return self._balance.at(near, loading)
 
     def _count(self, *, is_lost: bool) -> None:
         """Count successive iterations in which some instant had no balance."""

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from solver.arrays import Array, Indices
 
 
-class Touch(NamedTuple):
+class RigidContacts(NamedTuple):
     """Pairs of contacts, as rigid bodies see them; all scaled.
 
     Attributes
@@ -40,7 +40,7 @@ class BandStiffness:
 
     Parameters
     ----------
-    touch
+    contacts
         The contacts.
     constant
         Stiffness of what neither opens nor slips, (n_motions, n_motions), scaled.
@@ -49,12 +49,12 @@ class BandStiffness:
     """
 
     def __init__(
-        self, touch: Touch, constant: sparse.csr_array, holding: Array
+        self, contacts: RigidContacts, constant: sparse.csr_array, holding: Array
     ) -> None:
-        size = len(touch.gap)
-        across = touch.jumps[:size]
-        along = touch.jumps[size:]
-        touched = abs(touch.jumps)
+        size = len(contacts.gap)
+        across = contacts.jumps[:size]
+        along = contacts.jumps[size:]
+        touched = abs(contacts.jumps)
         pattern = sparse.csr_array(touched.T @ touched + abs(constant))
         self._order = np.asarray(reverse_cuthill_mckee(pattern, symmetric_mode=True))
         self._place = np.argsort(self._order)
