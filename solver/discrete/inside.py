@@ -291,7 +291,8 @@ def _condensed_by(condensed: SchurComplement, forces: Sequence[Array]) -> list[A
 
 def _firsts(sizes: Sequence[int]) -> Indices:
     """Place of the first entry of each of some lists that follow each other, (n,)."""
-    return np.cumsum(sizes) - sizes
+    lengths: Indices = np.asarray(sizes, dtype=np.intp)
+    return np.cumsum(lengths) - lengths
 
 
 def _directions(

@@ -47,7 +47,8 @@ def mesh_volumes(basis: skfem.Basis) -> Array:
     """Area that belongs to each node of a mesh, of a basis of it, (n_nodes,), m^2."""
     shares = [(each[0] * basis.dx).sum(axis=1) for each in basis.basis]
     nodes = basis.element_dofs.ravel()
-    return np.bincount(nodes, np.concatenate(shares), minlength=basis.N)
+    areas = np.bincount(nodes, np.concatenate(shares), minlength=basis.N)
+    return np.asarray(areas, dtype=float)
 
 
 def mesh_strains(mesh: Mesh, elements: Indices, nodes: Indices) -> sparse.csr_array:
