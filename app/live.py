@@ -159,9 +159,9 @@ class Live:
     def _shape(self) -> list[str]:
         """CSS classes that say what is shown, and where, all in one change.
 
-        Plots stand beside a high picture, and below a broad one. While the question of
-        a lesson is open, texts that give the answer away are hidden. Beside a text that
-        tells what is seen a projector has no sentence on it.
+        Plots, if there are any, stand beside a high picture, and below a broad one.
+        While the question of a lesson is open, texts that give the answer away are
+        hidden. Beside a text that tells what is seen a projector has no sentence on it.
         """
         state = self.state
         classes = ["live", state.view]
@@ -171,8 +171,10 @@ class Live:
             classes.append("told")
         if state.frame is not None and len(state.frame.run.surfaces) > 1:
             classes.append("several")
+        if not self._cards:
+            classes.append("alone")
         shape = []
-        if self._cards and state.frame is not None:
+        if state.frame is not None:
             shape = [shape_of(state.frame.run.geometry)]
         case = state.trade_case
         if case is not None and case.surroundings is not None:

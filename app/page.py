@@ -297,7 +297,7 @@ class Page:
         if self._guide.is_open:
             beside.append(self._guide.view)
         main = [self._tabs[self.state.tab]]
-        roles = ["main"]
+        roles = ["main", self.state.view]
         if self._class.view.visible:
             main.append(self._class.view)
             roles.append("with-line")

@@ -57,7 +57,9 @@ class Choices:
         self.view = pn.Column(
             self._choices,
             self._words,
-            pn.FlexBox(self._show_me, self._open, self._go_on, margin=0),
+            pn.FlexBox(
+                self._show_me, self._open, self._go_on, margin=0, **looks("onward")
+            ),
             **WIDE,
         )
         self.show()

@@ -210,7 +210,7 @@ class Guide:
         if self._curve:
             figures = [pn.pane.Bokeh(self._curve.figure, margin=0)]
         title = f"## {lesson.title}"
-        choices = Choices(lesson, self._state, self.predict, self._open_counts)
+        choices = Choices(lesson, self._state, self.predict, self._show_counts)
         self._choices = choices
         question = [*self._paragraphs((f"**{lesson.question}**",)), choices.view]
         explore = text_button("Explore freely", self._end, variant="text")
@@ -227,6 +227,12 @@ class Guide:
             *explanation,
             buttons,
         ]
+
+    def _show_counts(self) -> None:
+        """Open the counts, and bring the question into sight."""
+        self._open_counts()
+        question = self.view.objects.index(self._choices.view) - 1
+        self.view.scroll_to(question)
 
     def _verdict(self, lesson: Lesson) -> pmui.Alert:
         """The prediction, the right choice and its reason."""

@@ -86,6 +86,7 @@ class Layout:
         *,
         in_rows: bool = False,
     ) -> None:
+        self._geometry = geometry
         self.is_bare = is_bare
         self.in_rows = in_rows
         self.width = width
@@ -177,12 +178,25 @@ class Layout:
         for side, size in chain(self._room_of_supports(), self._room_of_loads()):
             room[side] = max(room[side], size)
         acts = self.description.acts
-        if any(act.where.startswith("body") for act in acts):
+        if any(self._acts_on_bodies(act) for act in acts):
             # Their words stand above the arrows on top.
             room["top"] = max(room["top"], self.arrow + 10.0) + 2.2 * self.letter
         for act, count in zip(acts, self.equals, strict=True):
             room["top"] += self.row * self.is_told_above(act, count)
         return room["left"], room["right"], room["bottom"], room["top"]
+
+    def _acts_on_bodies(self, act: Act) -> bool:
+        """Check whether a load of all bodies has some where its arrow begins.
+
+        Below an arch there are none, and its words stand there.
+        """
+        if not act.where.startswith("body"):
+            return False
+        places = act.points_at(0)[:, None] * self.size
+        corners = self._geometry.nodes[self._geometry.cells]
+        is_right_above = places >= corners.min(axis=1)
+        is_left_below = places <= corners.max(axis=1)
+        return bool(np.any(np.all(is_right_above & is_left_below, axis=-1)))
 
     def _room_of_supports(self) -> Iterator[tuple[str, float]]:
         """Sides of the bodies, and the room that supports and ground take there, px."""

@@ -440,3 +440,14 @@ def test_the_weight_of_an_arch_is_named_at_its_arrow(
     (name,) = [text for text in boxes if text.startswith("W")]
     apart = np.maximum(boxes[name][0] - shaft, shaft - boxes[name][1])
     assert apart.max() < 40.0
+
+
+def test_an_arch_whose_weight_is_told_below_it_is_as_high_as_its_figure(
+    spread: Frame,
+) -> None:
+    view = shown(spread, 1.0)
+    view.lay_out(900.0, 300.0)
+    view.update(spread, Selection(1.0), None)
+    assert view.picture is not None
+    layout = view.picture.layout
+    assert layout.size[1] * layout.scale[1] > 0.7 * layout.height
