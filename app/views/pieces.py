@@ -31,6 +31,10 @@ LETTER = 0.5
 LETTERS = 115
 """Height of a line and width of a letter over their type size, and number of letters
 above the pieces, about."""
+TOLD = 0.4
+"""Largest share of the height for words."""
+SMALL = 30.0
+"""Least room for the pieces, px."""
 KEYS = 78
 """Number of letters below them, with the room of their marks."""
 THICK = 0.3
@@ -139,7 +143,7 @@ class PiecesView(ExtraView):
         self._show_forces(extra, stage, column)
         self._show_selected(extra, frame, selection)
         sentence = _sentence(extra, stage, column, selection.stage)
-        self._write(f"{sentence}. {self._note(extra)}.")
+        self._write(f"{sentence}.", f"{self._note(extra)}.")
 
     def _box(self) -> Array:
         """Corners of the room between text and legend, (2, 2), px."""
@@ -150,18 +154,23 @@ class PiecesView(ExtraView):
         size = float(self._type.removesuffix("px"))
         letter = LETTER * size
         below = math.ceil(min(KEYS * letter / width, 2.0))
-        above = math.ceil(LETTERS * letter / width)
         line = FOOT * size
+        most = max(int(TOLD * height / line), 1)
+        self._rows = min(math.ceil(LETTERS * letter / width), most)
         low = below * line
-        return np.array([[0.0, low], [width, height - above * line]])
+        high = max(height - self._rows * line, low)
+        return np.array([[0.0, low], [width, high]])
 
-    def _write(self, text: str) -> None:
-        """Write a text into the lines above the pieces."""
+    def _write(self, sentence: str, note: str) -> None:
+        """Write a sentence into the lines above the pieces, and a note if it fits."""
         width, height = self._size.values()
         letter = LETTER * float(self._type.removesuffix("px"))
+        letters = max(int(width / letter), 20)
         # A factor stays beside its sign.
-        text = text.replace("× ", "×\N{NO-BREAK SPACE}")
-        lines = textwrap.wrap(text, max(int(width / letter), 20))
+        text = f"{sentence} {note}".replace("× ", "×\N{NO-BREAK SPACE}")
+        lines = textwrap.wrap(text, letters)
+        if len(lines) > self._rows:
+            lines = textwrap.wrap(sentence, letters)
         self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
 
     def _show_forces(self, extra: Pieces, stage: StageFields, column: int) -> None:
@@ -269,11 +278,11 @@ class _Placed:
     def __init__(self, extra: Pieces, box: Array, is_plane: bool) -> None:
         self._extra = extra
         self.is_plane = is_plane
-        room = np.ptp(box, axis=0) - 2.0 * ROOM
+        room = np.maximum(np.ptp(box, axis=0) - 2.0 * ROOM, SMALL)
         low = np.nanmin(extra.corners, axis=0)
         high = np.nanmax(extra.corners, axis=0)
         lows, highs = _boxes(extra.corners, extra.parts)
-        scale = np.maximum(room, 30.0) / (high - low)
+        scale = room / (high - low)
         if is_plane:
             scale[:] = scale.min()
         else:

@@ -283,6 +283,33 @@ def test_the_view_says_what_fits_keeps_its_scales_and_selects_by_a_tap() -> None
     assert len(view.sources["selected"].data["x"])
 
 
+def on_a_projector(width: float, height: float) -> PiecesView:
+    """The pieces of a bar in a figure of a size, px, with large type."""
+    frame = frame_of(settings_of("bar"), 2)
+    view = PiecesView(PageState(frame.run.settings))
+    assert view.figure is not None
+    view.magnify("23px")
+    view._size = {"inner_width": width, "inner_height": height}
+    view.update(frame, Selection(), None)
+    return view
+
+
+@pytest.mark.parametrize("height", [260.0, 210.0])
+def test_words_on_a_projector_leave_the_pieces_free(height: float) -> None:
+    view = on_a_projector(400.0, height)
+    lines = words(view).splitlines()
+    assert lines[0].startswith("Linear stage")
+    (top,) = view.sources["words"].data["y"]
+    highest = np.nanmax(view.sources["pieces"].data["y"])
+    assert highest < top - 23.0 * len(lines)
+
+
+def test_pieces_are_drawn_in_a_figure_that_is_too_small_for_words() -> None:
+    view = on_a_projector(300.0, 120.0)
+    heights = np.asarray(view.sources["pieces"].data["y"])
+    assert 0.0 < np.nanmin(heights) < np.nanmax(heights) < 120.0
+
+
 @pytest.mark.parametrize(("scene", "count"), [("bar", 10), ("strand", 0)])
 def test_only_pieces_on_a_support_have_one_below_them(scene: str, count: int) -> None:
     frame = frame_of(settings_of(scene), 2)
