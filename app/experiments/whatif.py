@@ -20,11 +20,12 @@ from app.experiments.questions import (
     quantities,
     question_of,
 )
-from app.refusals import advice_in_titles
+from app.refusals import advice_in_titles, message_of
 from app.state import PageState, answer
 from app.units import unit_for
 from app.widgets import PlainText, button, download
 from solver.files.saved import dump
+from solver.refusal import RefusedError
 from solver.settings.scene import Settings
 from solver.study.mesh import decides
 from solver.study.page import Chart
@@ -243,9 +244,9 @@ class WhatIf:
         self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
         if sweep.is_over:
-            words = counts(sweep.plan, sweep.rows)
+            words = counts(sweep.plan, sweep.rows) + _first_failure(sweep)
         else:
-            words = sweep.progress
+            words = f"{sweep.progress}."
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
         sentences = [sweep.message, words]
@@ -254,6 +255,21 @@ class WhatIf:
                 sentences.append(text)
         self.message.object = " ".join(sentences).strip()
         self._chart.show(self.chart())
+
+
+def _first_failure(sweep: Sweep) -> str:
+    """Sentence on the first run of a sweep without an answer; "" if all have one."""
+    failed = [row for row in sweep.rows if not row.holds]
+    if not failed:
+        return ""
+    plan = sweep.plan
+    first = min(failed, key=lambda row: row.number)
+    reason = advice_in_titles(plan.settings, first.reason)
+    try:
+        plan.settings_at(first.number)
+    except RefusedError as refusal:
+        reason = message_of(refusal, plan.settings)
+    return f" The first {first.ending}: {reason}"
 
 
 def _amount(value: float, unit: str) -> str:

@@ -8,6 +8,7 @@ from contextlib import nullcontext
 from typing import Any
 
 import pytest
+from small_scenes import SMALL
 from sweeps import TINY, Here
 
 from app.experiments import jobs, reports
@@ -50,6 +51,21 @@ def test_the_tab_opens_with_its_first_chart_drawn() -> None:
     assert "6 of 6 runs: 6 converged" in made.message.object
     rows = [line for line in made.table().splitlines() if line[:1] not in ("#", "r")]
     assert len(rows) == 6
+
+
+@pytest.mark.usefixtures("here")
+def test_why_a_run_has_no_answer_is_told_in_the_words_of_the_page() -> None:
+    belt = CATALOGUE["belt"]().replace(**SMALL["belt"])
+    made = WhatIf(
+        PageState(belt, tab="What if", question="pull=1000:2000:2 dissipation")
+    )
+    assert made.sweep is not None
+    made.sweep.thread.join()
+    made.look()
+    assert "1 refused" in made.message.object
+    refused = "The first refused: Pull beyond the tail's cannot be 2 kN: lower it"
+    assert refused in made.message.object
+    assert "Allowed: tensions of both ends" in made.message.object
 
 
 @pytest.mark.usefixtures("here")
