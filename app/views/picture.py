@@ -197,12 +197,15 @@ class Picture:
         return self._line(_drawn(geometry.rims, nodes))
 
     def mechanism(self, moved: Array) -> Columns:
-        """Outline of bodies that begin to collapse, by moved nodes, (n_nodes, 2), m."""
+        """Outline of bodies that go on to collapse, by a motion of nodes, (n, 2), m.
+
+        It begins where the bodies are drawn, so that what is held stays there.
+        """
         size = float(np.abs(moved).max(initial=0.0))
         if size == 0.0:
             size = 1.0
         shown = MECHANISM * self.layout.size[1] / size * moved
-        nodes = self.layout.local(self._geometry.nodes + shown)
+        nodes = self.nodes + shown * self.layout.scale
         return self._line(_drawn(self._geometry.outlines, nodes))
 
     def page(self, local: Array) -> Array:
