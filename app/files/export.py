@@ -284,8 +284,11 @@ def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS
         show(number)
         for (model, name), values in changes.items():
             value = getattr(model, name)
-            if name == "data":
+            # Lists and mappings of a model refer to it, and go on to change.
+            if isinstance(value, dict):
                 value = dict(value)
+            elif isinstance(value, list):
+                value = list(value)
             values.append(value)
     models = []
     names = []

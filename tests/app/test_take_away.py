@@ -13,9 +13,11 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import frames
 import numpy as np
 import pandas as pd
 import pytest
+from small_scenes import SMALL as SMALLEST
 
 from app.files.export import (
     contact_table,
@@ -36,6 +38,7 @@ from app.views.timeline import Timeline
 from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
+from solver.scenes import CATALOGUE
 from solver.study.comparison import FRICTION, results_in
 
 KINDS = tuple(chain.from_iterable(CARDS))
@@ -171,6 +174,16 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
         assert f"<figcaption>{view.name}</figcaption>" in text
     # The page's own figures are as they were.
     assert [view.figure.height for view in views] == before
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_the_offline_page_is_made_of_every_scene(scene: str) -> None:
+    settings = default_settings(scene).replace(**SMALLEST[scene])
+    frame = frames.frame_of(settings, Needs(extras=frozenset()), ends=False)
+    state = PageState(settings, frame=frame, newest=frame)
+    views = [Scene(state), Timeline(state), ContactForce(state)]
+    text = offline_page(state, views)
+    assert "<figcaption>Contact force</figcaption>" in text
 
 
 def test_the_offline_page_tells_status_and_all_settings_as_the_page_does() -> None:
