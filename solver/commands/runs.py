@@ -97,6 +97,11 @@ def _mesh(chosen: argparse.Namespace) -> int:
             "--of", chosen.of, can, "`python -m solver sweep` lists them"
         )
     values: dict[str, float] = {}
+    if not settings.MESH:
+        instants = _refined(settings, ["instants"], asked, values)
+        print("Elements: They are those of the mesh, refined where it was made.")
+        print(f"Instants: {answer(instants, asked.unit, TIME_STEP)}")
+        return 0 if instants.is_told else 1
     elements = _refined(settings, settings.MESH, asked, values)
     instants = _refined(settings, ["instants"], asked, values)
     print(f"Elements: {answer(elements, asked.unit)}")

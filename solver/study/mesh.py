@@ -157,8 +157,12 @@ def value_on(settings: Settings, asked: Quantity) -> float:
 
 def size_of(settings: Settings) -> str:
     """Numbers of elements and instants, in words."""
-    elements = " x ".join(str(getattr(settings, name)) for name in settings.MESH)
-    return f"{elements} elements, {settings.values()['instants']} instants"
+    sizes = []
+    if settings.MESH:
+        counts = " x ".join(str(getattr(settings, name)) for name in settings.MESH)
+        sizes.append(f"{counts} elements")
+    sizes.append(f"{settings.values()['instants']} instants")
+    return ", ".join(sizes)
 
 
 def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:

@@ -93,6 +93,16 @@ def test_it_is_said_which_to_refine(
     assert f"Refine {refined} first" in capsys.readouterr().out
 
 
+def test_of_a_mesh_of_ones_own_instants_alone_are_refined(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["mesh", "mesh", "--of", "dissipation", "--set=instants=5"]) == 0
+    said = capsys.readouterr().out
+    assert "Elements: They are those of the mesh" in said
+    assert "Instants: " in said
+    assert "elements, " not in said
+
+
 @pytest.mark.parametrize("asked", ["seconds", "peak_pressure", "nonsense"])
 def test_what_a_mesh_does_not_decide_is_refused(
     asked: str, capsys: pytest.CaptureFixture[str]
