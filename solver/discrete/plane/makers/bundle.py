@@ -20,6 +20,7 @@ from solver.discrete.plane.makers.wires import (
     Plate,
     Zone,
 )
+from solver.kept import KEPT
 
 PLATE = "plate"
 THICKNESS = 0.8
@@ -68,18 +69,20 @@ class Wires:
     @cached_property
     def _placed(self) -> list[tuple[Disc, int]]:
         """Shape of each wire, and by how many turns it is turned."""
-        shapes = dict[tuple[tuple[int, Zone], ...], Disc]()
         placed = []
         for wire in range(len(self.centres)):
             contacts = self._contacts(wire)
             turned = {turn: _turned(contacts, turn) for turn in range(TURNS)}
             # Wires that are turned copies of each other share the first of all orders.
             turn = min(turned, key=lambda turn: str(turned[turn]))
-            pattern = turned[turn]
-            if pattern not in shapes:
-                shapes[pattern] = Disc.of(self.radius, dict(pattern))
-            placed.append((shapes[pattern], turn))
+            placed.append((self._shaped(turned[turn]), turn))
         return placed
+
+    def _shaped(self, pattern: tuple[tuple[int, Zone], ...]) -> Disc:
+        """Shape of a wire with zones by their direction, one for all such wires."""
+        # To mesh it takes as long as a few iterations, and loads leave it alone.
+        key = Disc, self.radius, pattern
+        return KEPT.of(key, lambda: Disc.of(self.radius, dict(pattern)))
 
     def _contacts(self, wire: int) -> dict[int, Zone]:
         """Zones of a wire by their direction."""
@@ -92,6 +95,11 @@ class Wires:
     @cached_property
     def plate(self) -> Plate:
         """The plate on the highest wires."""
+        key = Plate, self.packing, self.radius, self.under_plate
+        return KEPT.of(key, self._make_plate)
+
+    def _make_plate(self) -> Plate:
+        """A new plate."""
         places = self.centres[self.highest, 0]
         return Plate.of(places, self.radius, THICKNESS * self.radius, self.under_plate)
 
