@@ -82,6 +82,8 @@ def pytest_collection_finish() -> None:
     """Keep the garbage collector from searching the imported modules again."""
     gc.collect()
     gc.freeze()
+    # Pages and figures are rings of thousands of models: as the server does
+    gc.set_threshold(50_000, 20, 20)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
