@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -27,6 +27,8 @@ THICKNESS = 0.8
 """Thickness of the plate over the radius of a wire."""
 WIDER = np.sqrt(2.0)
 """Half width of a contact with an elastic plate, over that of two wires."""
+Pattern = tuple[tuple[int, Zone], ...]
+"""Zones of a wire with their directions, in turns."""
 
 
 @dataclass(frozen=True)
@@ -71,14 +73,11 @@ class Wires:
         """Shape of each wire, and by how many turns it is turned."""
         placed = []
         for wire in range(len(self.centres)):
-            contacts = self._contacts(wire)
-            turned = {turn: _turned(contacts, turn) for turn in range(TURNS)}
-            # Wires that are turned copies of each other share the first of all orders.
-            turn = min(turned, key=lambda turn: str(turned[turn]))
-            placed.append((self._shaped(turned[turn]), turn))
+            pattern, turn = _first_order(tuple(self._contacts(wire).items()))
+            placed.append((self._shaped(pattern), turn))
         return placed
 
-    def _shaped(self, pattern: tuple[tuple[int, Zone], ...]) -> Disc:
+    def _shaped(self, pattern: Pattern) -> Disc:
         """Shape of a wire with zones by their direction, one for all such wires."""
         # To mesh it takes as long as a few iterations, and loads leave it alone.
         key = Disc, self.radius, pattern
@@ -232,7 +231,18 @@ def _unit(direction: int) -> Array:
     return np.array([np.cos(direction * TURN), np.sin(direction * TURN)])
 
 
-def _turned(contacts: dict[int, Zone], turn: int) -> tuple[tuple[int, Zone], ...]:
+@lru_cache(1000)
+def _first_order(contacts: Pattern) -> tuple[Pattern, int]:
+    """Contacts as they are seen from one of all turned axes, and the number of turns.
+
+    Wires that are turned copies of each other share the first of all orders.
+    """
+    turned = [_turned(contacts, turn) for turn in range(TURNS)]
+    pattern = min(turned, key=str)
+    return pattern, turned.index(pattern)
+
+
+def _turned(contacts: Pattern, turn: int) -> Pattern:
     """Contacts as seen from axes that are turned, in ascending order."""
-    turned = [((each - turn) % TURNS, zone) for each, zone in contacts.items()]
+    turned = [((each - turn) % TURNS, zone) for each, zone in contacts]
     return tuple(sorted(turned, key=lambda contact: contact[0]))
