@@ -311,10 +311,9 @@ class Problem:
         """Mean over the rows of each degree of freedom, shape (n_dofs, n_rows)."""
         places = self.row_dofs, np.arange(self.n_rows)
         shape = self.n_dofs, self.n_rows
-        total = sparse.csr_array((np.ones(self.n_rows), places), shape=shape)
-        counts = np.asarray(total.sum(axis=1)).ravel()
-        inverse = sparse.diags_array(1.0 / np.maximum(counts, 1.0))
-        return sparse.csr_array(inverse @ total)
+        counts = np.bincount(self.row_dofs, minlength=self.n_dofs)
+        shares = 1.0 / counts[self.row_dofs]
+        return sparse.csr_array((shares, places), shape=shape)
 
     @cached_property
     def body_force_on_rows(self) -> Array | None:

@@ -82,7 +82,8 @@ class AndersonState:
         self._steps = [_step(smallest_step, group.rows.size) for group in self._groups]
         weights = []
         for group in self._groups:
-            weights.append(group.k[:, None, None] * problem.time_weights)
+            of_group = group.k[:, None, None] * problem.time_weights
+            weights.append(np.broadcast_to(of_group, group.target.shape))
         self._root = np.sqrt(self._sampled(weights))
         self._free_motion = None
         if motion is not None:
@@ -102,11 +103,15 @@ class AndersonState:
 
     def _free(self, motion: Array, n_instants: int) -> _FreeMotion:
         """Motion of the rows that counts for nothing, (n_rows,), on the sample."""
-        by_group = [motion[group.rows][:, :, None] for group in self._groups]
         times = np.arange(float(n_instants))
+        by_group = []
+        instants = []
+        for group in self._groups:
+            shape = group.target.shape
+            by_group.append(np.broadcast_to(motion[group.rows][:, :, None], shape))
+            instants.append(np.broadcast_to(times, shape))
         return _FreeMotion(
-            self._root * self._sampled(by_group),
-            self._sampled([times for _ in self._groups]).astype(int),
+            self._root * self._sampled(by_group), self._sampled(instants).astype(int)
         )
 
     def _forget(self) -> None:
@@ -210,13 +215,11 @@ class AndersonState:
     def _sampled(self, fields: list[Array]) -> Array:
         """Values of fields of the groups at the sample, shape (n_sample,).
 
-        Each field has a shape that broadcasts to (n_boundary, n_substructures,
-        n_instants).
+        Each field has shape (n_boundary, n_substructures, n_instants).
         """
         values = []
-        for field, group, step in zip(fields, self._groups, self._steps, strict=True):
-            whole = np.broadcast_to(field, group.target.shape)
-            values.append(whole.reshape(-1, order="F")[::step])
+        for field, step in zip(fields, self._steps, strict=True):
+            values.append(field.reshape(-1, order="F")[::step])
         return np.concatenate(values)
 
 

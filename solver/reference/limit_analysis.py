@@ -19,7 +19,7 @@ import numpy as np
 import scipy
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, largest_size
 from solver.discrete.problem import Problem
 from solver.reference.assembly import (
     Interrupted,
@@ -32,12 +32,16 @@ from solver.reference.rules import rules_of
 WHOLE = 1.0 - 1e-6
 """Share of a step of the loads from which on it counts as all of it, by the tolerance
 of HiGHS."""
+SURE = 1.0 - 1e-9
+"""Share from which on a whole load holds, and no smaller steps are looked at."""
 TURNED = 1e-3
 """Difference of displacements in a body, over the largest of all, from which on it
 turns."""
 ALIKE = 1e-3
 """Difference of the angles of bodies, over the largest, up to which they turn as
 one."""
+ON_LINE = 1e-12
+"""Distance of loads from a line, over the largest load, up to which they lie on it."""
 MOST = 1e6
 """Largest load over the other loads that counts as bounded."""
 INFEASIBLE = 2
@@ -155,6 +159,24 @@ class _Program:
             raise NoReferenceError(f"limit analysis has no answer: {program.message}")
         return program
 
+    def holds(self, instant: int, load: Array, stop: Callable[[], bool] | None) -> bool:
+        """Check whether contact balances all of a load, (n_motions,), without doubt.
+
+        Raises
+        ------
+        Interrupted
+            If `stop` returns True.
+        NoReferenceError
+            If HiGHS finds no answer.
+        """
+        if stop is not None and stop():
+            raise Interrupted
+        step = sparse.csr_array(load[:, None])
+        balanced = self.solve(instant, np.zeros(len(load)), step)
+        if balanced.status == INFEASIBLE:
+            return False
+        return float(balanced.x[-1]) >= SURE
+
 
 def collapse_of(
     problem: Problem, stop: Callable[[], bool] | None = None
@@ -177,7 +199,12 @@ def collapse_of(
     unit = float(np.abs(loads).max(initial=0.0)) or 1.0
     program = _Program(problem, motions, unit)
     before = np.zeros(len(loads))
-    for instant, now in enumerate(loads.T / unit):
+    path = loads.T / unit
+    ends = _ends_of_line(problem, path)
+    # Mostly nothing falls, which two programs tell of loads on a line.
+    if ends and all(program.holds(end, path[end], stop) for end in ends):
+        return None
+    for instant, now in enumerate(path):
         step = sparse.csr_array((now - before)[:, None])
         # The load stands still: what held an instant before holds on.
         if not step.nnz and instant:
@@ -192,6 +219,24 @@ def collapse_of(
             return _collapse_at(problem, instant, share, balanced)
         before = now
     return None
+
+
+def _ends_of_line(problem: Problem, loads: Array) -> list[int]:
+    """Instants at both ends of the line on which all loads lie; none for other loads.
+
+    Loads that contact balances are a convex set: what is between two of them is one,
+    too. The loads have shape (n_instants, n_motions).
+    """
+    # A bound that changes with time makes another set at every instant.
+    if rules_of(problem).bound.shape[1] > 1:
+        return []
+    moved = loads - loads[0]
+    farthest = moved[np.abs(moved).max(axis=1).argmax()]
+    course = moved @ farthest / (float(farthest @ farthest) or 1.0)
+    apart = largest_size(moved - np.outer(course, farthest))
+    if apart > ON_LINE * largest_size(loads):
+        return []
+    return sorted({int(course.argmin()), int(course.argmax())})
 
 
 def load_factors(problem: Problem, without: Problem) -> Array:

@@ -18,7 +18,8 @@ from app.state import PageState
 
 SMALL = f"elements=20&instants=11&{ANSWER}"
 QUERIES = SMALL, f"{SMALL}&view=present", "lesson=how-fast-how-big"
-LOOKS = 20
+LOOKS = 100
+"""Looks at what is left, 0.3 s apart: on a busy machine callbacks come late."""
 QUICK = {
     "unused_session_lifetime_milliseconds": 1000,
     "check_unused_sessions_milliseconds": 50,

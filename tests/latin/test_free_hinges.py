@@ -68,7 +68,7 @@ def test_the_search_reaches_one_percent_on_free_hinges(changes):
 
 
 def test_more_voussoirs_take_hardly_more_iterations():
-    for voussoirs in (15, 31, 61):
+    for voussoirs in (15, 61):
         found = errors(arch(voussoirs=voussoirs), 25)
         assert found[-1] <= 0.01
 
@@ -146,7 +146,7 @@ def test_bricks_of_a_wall_are_not_shifted_however_far_it_moves():
 
 
 def test_bodies_without_any_balance_are_left_alone_at_last():
-    settings = arch(thickness=0.1, friction=0.6)
+    settings = arch(thickness=0.1, friction=0.6, instants=2)
     problem = discretise(settings)
     _, shifts = shifts_of(problem, settings)
     assert isinstance(shifts, RigidBodies)

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 from runs import assert_goes_on, distance_of, errors, sample, settings_of, solved
-from small_scenes import SMALL
+from small_scenes import KINDS, SMALL
 
 from solver.latin import Ending, Solution
 from solver.latin.end.status_step import states_of
 from solver.reduction.basis import SeparatedBasis
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study.quantities.finished import finished_run
 
@@ -170,8 +170,8 @@ def bar() -> Solution:
     return solved(small(pgd_modes=2))
 
 
-@pytest.mark.parametrize("scene", CATALOGUE)
-def test_two_modes_find_the_solution_of_every_scene(scene: str) -> None:
+@pytest.mark.parametrize("scene", KINDS)
+def test_two_modes_find_the_solution_of_every_kind_of_scene(scene: str) -> None:
     solution = solved(small(scene, pgd_modes=2))
     assert solution.is_certified
     before, last = solution.records[-2:]

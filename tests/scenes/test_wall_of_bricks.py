@@ -211,6 +211,14 @@ def test_limit_analysis_finds_the_shear_that_no_contact_force_balances(law, limi
     assert collapse_of(discrete.discretise(safe)) is None
 
 
+def test_of_loads_on_a_line_that_holds_only_both_ends_are_looked_at():
+    problem = discretise(CATALOGUE["wall"].checked({"instants": 21}))
+    asked = []
+    # It is asked before each linear program.
+    assert collapse_of(problem, lambda: bool(asked.append(0))) is None
+    assert len(asked) == 2
+
+
 PILE = {
     "top": "pulled",
     "bond": "stack",

@@ -19,7 +19,7 @@ from solver.study.random_loads import log_uniform
 from solver.study.random_runs import draw
 from solver.study.stability import Verdict, judge, run
 
-RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "5"))
+RUNS = int(os.environ.get("SLIPFRONT_RANDOM_RUNS", "4"))
 SMALLEST = 1e-12
 """Of a number whose range begins at zero, or below."""
 MOST = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from refusals import assert_names, refusal
-from small_scenes import SMALL
+from small_scenes import KINDS, SMALL
 
 from app.units import unit_of
 from solver.files.saved import settings_from_command
@@ -42,7 +42,7 @@ def test_with_nothing_given_it_is_coulombs(scene):
     assert chosen(scene, **GENERAL).law == FrictionLaw()
 
 
-@pytest.mark.parametrize("scene", list(SMALL))
+@pytest.mark.parametrize("scene", KINDS)
 def test_a_stiffness_alone_is_the_compliant_law_of_the_same_stiffness(scene):
     compliant = chosen(scene, friction_law="compliant", contact_stiffness=30.0)
     absolute = 30.0 * compliant.contact_unit

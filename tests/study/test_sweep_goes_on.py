@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from pebble import ProcessExpired
 from processes import is_alive, started, wait_for
+from small_scenes import KINDS
 from sweeps import Here, rows_in_table, rows_of, sweep_of_bars, tiny
 
 from solver.commands import reports as report_commands
@@ -90,7 +91,7 @@ def test_a_run_ends_itself_when_its_time_is_up() -> None:
         assert "--limit" in row.reason
 
 
-@pytest.mark.parametrize("scene", CATALOGUE)
+@pytest.mark.parametrize("scene", KINDS)
 def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> None:
     if "elements_up" in CATALOGUE[scene].param:
         changes = {"elements_up": 8}
@@ -101,8 +102,6 @@ def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> No
         changes = {"elements_up": 2, "bricks": 3, "courses": 3, "displacement": 5e-5}
     if scene == "arch":
         changes = {"voussoirs": 7, "elements": 2}
-    if scene == "bundle":
-        changes = {"rings": 1, "elements": 2}
     if scene == "mesh":
         changes = {"substructures": 1, "displacement": 1.5e-5}
     plan = tiny(

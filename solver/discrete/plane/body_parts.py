@@ -24,7 +24,7 @@ from solver.discrete.plane.mesh_elasticity import (
     quadratic_basis,
 )
 from solver.discrete.plane.meshes import Mesh
-from solver.kept import content_of
+from solver.kept import KEPT, content_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +124,8 @@ class ShapePart:
         """Volume that belongs to each node, shape (n_nodes,), m^3."""
         shape = self.body.shape
         if isinstance(shape, Mesh):
-            return mesh_volumes(self._basis)[self.nodes]
+            key = "volumes", shape.content, content_of(self.chosen)
+            return KEPT.of(key, lambda: mesh_volumes(self._basis)[self.nodes])
         return shape.volumes(self.chosen)[self.nodes]
 
     def force(self, weight: Array | None, load: Array | None) -> Array | None:
@@ -134,7 +135,8 @@ class ShapePart:
         nodes, of the shape of the forces, N.
         """
         force = load
-        if weight is not None:
+        # Mostly nothing is heavy, and volumes of meshes take some time.
+        if weight is not None and weight.any():
             force = np.multiply.outer(self.volumes, weight)
             if load is not None:
                 force = force + load

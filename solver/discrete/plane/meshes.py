@@ -29,6 +29,11 @@ FLAT = 1e-9
 """Smallest area of an element at any of its corners, over that of a square about it."""
 
 
+FOUND = 9
+"""Memory of all that is found from a mesh once it is used, over that of its corners and
+elements (measured)."""
+
+
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """A mesh of triangles or quadrilaterals, in which displacement is quadratic.
@@ -56,6 +61,11 @@ class Mesh:
             corners=Numbers(((None, 2),)),
             elements=Numbers(((None, 3), (None, 4)), low=0, high=last, whole=True),
         )
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the mesh, with what is found from it, B."""
+        return (1 + FOUND) * (self.corners.nbytes + self.elements.nbytes)
 
     @cached_property
     def content(self) -> bytes:

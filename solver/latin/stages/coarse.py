@@ -225,11 +225,12 @@ def _solver(
     """
     factor = sparse_factor(system)
     if system.shape[0] > DENSE_UP_TO:
+        back = spread.T
 
         def solve(forces: Array, instants: slice) -> Array:
             """W~ by the sparse factor, shape (n_local, n_some), scaled."""
             right = constant[:, instants] - spread @ forces
-            return np.asarray(spread.T @ factor.solve(right))
+            return np.asarray(back @ factor.solve(right))
 
         return solve
     # Few macro unknowns: all products are made once, and an iteration has one.

@@ -113,7 +113,8 @@ class Balance:
         load_size: float,
     ) -> None:
         self._contacts = contacts
-        self._stiffness = stiffness
+        # One product for both: of matrices as small as these a call costs most.
+        self._of_position = sparse.csr_array(sparse.vstack([contacts.jumps, stiffness]))
         self._pushes = sparse.csr_array(contacts.jumps.T)
         self._n_pairs = len(contacts.gap)
         self._load_size = load_size
@@ -237,7 +238,8 @@ class Balance:
         """
         contacts = self._contacts
         size = self._n_pairs
-        jump = loading.jump + contacts.jumps @ position
+        of_position = self._of_position @ position
+        jump = loading.jump + of_position[: 2 * size]
         along = jump[size:]
         soft = contacts.compliance[size:]
         overlap = -contacts.gap - jump[:size]
@@ -246,9 +248,9 @@ class Balance:
         bound = known_bound
         if bound is None:
             bound = contacts.friction * pressing
-        friction = np.clip(sticking, -bound, bound)
+        friction = np.minimum(np.maximum(sticking, -bound), bound)
         pushed = self._pushes @ np.concatenate([pressing, friction])
-        unbalanced = loading.load - self._stiffness @ position + pushed
+        unbalanced = loading.load - of_position[2 * size :] + pushed
         return RigidState(
             position=position,
             unbalanced=unbalanced,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -20,12 +20,15 @@ from solver.discrete.plane.makers.wires import (
     Plate,
     Zone,
 )
+from solver.kept import KEPT
 
 PLATE = "plate"
 THICKNESS = 0.8
 """Thickness of the plate over the radius of a wire."""
 WIDER = np.sqrt(2.0)
 """Half width of a contact with an elastic plate, over that of two wires."""
+Pattern = tuple[tuple[int, Zone], ...]
+"""Zones of a wire with their directions, in turns."""
 
 
 @dataclass(frozen=True)
@@ -68,18 +71,17 @@ class Wires:
     @cached_property
     def _placed(self) -> list[tuple[Disc, int]]:
         """Shape of each wire, and by how many turns it is turned."""
-        shapes = dict[tuple[tuple[int, Zone], ...], Disc]()
         placed = []
         for wire in range(len(self.centres)):
-            contacts = self._contacts(wire)
-            turned = {turn: _turned(contacts, turn) for turn in range(TURNS)}
-            # Wires that are turned copies of each other share the first of all orders.
-            turn = min(turned, key=lambda turn: str(turned[turn]))
-            pattern = turned[turn]
-            if pattern not in shapes:
-                shapes[pattern] = Disc.of(self.radius, dict(pattern))
-            placed.append((shapes[pattern], turn))
+            pattern, turn = _first_order(tuple(self._contacts(wire).items()))
+            placed.append((self._shaped(pattern), turn))
         return placed
+
+    def _shaped(self, pattern: Pattern) -> Disc:
+        """Shape of a wire with zones by their direction, one for all such wires."""
+        # To mesh it takes as long as a few iterations, and loads leave it alone.
+        key = Disc, self.radius, pattern
+        return KEPT.of(key, lambda: Disc.of(self.radius, dict(pattern)))
 
     def _contacts(self, wire: int) -> dict[int, Zone]:
         """Zones of a wire by their direction."""
@@ -92,6 +94,11 @@ class Wires:
     @cached_property
     def plate(self) -> Plate:
         """The plate on the highest wires."""
+        key = Plate, self.packing, self.radius, self.under_plate
+        return KEPT.of(key, self._make_plate)
+
+    def _make_plate(self) -> Plate:
+        """A new plate."""
         places = self.centres[self.highest, 0]
         return Plate.of(places, self.radius, THICKNESS * self.radius, self.under_plate)
 
@@ -224,7 +231,18 @@ def _unit(direction: int) -> Array:
     return np.array([np.cos(direction * TURN), np.sin(direction * TURN)])
 
 
-def _turned(contacts: dict[int, Zone], turn: int) -> tuple[tuple[int, Zone], ...]:
+@lru_cache(1000)
+def _first_order(contacts: Pattern) -> tuple[Pattern, int]:
+    """Contacts as they are seen from one of all turned axes, and the number of turns.
+
+    Wires that are turned copies of each other share the first of all orders.
+    """
+    turned = [_turned(contacts, turn) for turn in range(TURNS)]
+    pattern = min(turned, key=str)
+    return pattern, turned.index(pattern)
+
+
+def _turned(contacts: Pattern, turn: int) -> Pattern:
     """Contacts as seen from axes that are turned, in ascending order."""
-    turned = [((each - turn) % TURNS, zone) for each, zone in contacts.items()]
+    turned = [((each - turn) % TURNS, zone) for each, zone in contacts]
     return tuple(sorted(turned, key=lambda contact: contact[0]))

@@ -88,6 +88,11 @@ class Disc:
     mesh: Mesh
     zones: dict[int, Indices]
 
+    @property
+    def nbytes(self) -> int:
+        """Memory of the mesh, B."""
+        return self.mesh.nbytes
+
     @classmethod
     def of(cls, radius: float, contacts: Mapping[int, Zone]) -> Disc:
         """Mesh of a disc with zones of contact by their directions, in turns."""
@@ -164,6 +169,11 @@ class Plate:
     zones: list[Indices]
     top: Indices
     ends: tuple[Indices, Indices]
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the mesh, B."""
+        return self.mesh.nbytes
 
     @classmethod
     def of(cls, places: Array, radius: float, thickness: float, zone: Zone) -> Plate:
