@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from bokeh.core.serialization import Serializer
 from bokeh.document import Document
+from bokeh.events import Tap
 from bokeh.models import DataRange1d, LogScale
 
 from app.frame import Frame, Selection
@@ -447,3 +448,26 @@ def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     card.fit()
     assert isinstance(card.seen, HysteresisLoop)
     assert len(card.seen.sources["LATIN"].data["x"]) == len(frame.run.instants)
+
+
+@pytest.mark.parametrize(("kind", "case"), [(Convergence, "bar"), (StatusMap, "block")])
+def test_a_tap_is_heard_after_another_tab_was_shown(
+    monkeypatch: pytest.MonkeyPatch, kind: type[View], case: str
+) -> None:
+    frame = frames_of(case)[1]
+    state = PageState(frame.run.settings, frame=frame, newest=frame)
+    heard: list[object] = []
+    monkeypatch.setattr(state, "select", lambda **chosen: heard.append(chosen))
+    monkeypatch.setattr(state, "seek", heard.append)
+    card = Card([kind(state), HysteresisLoop(state)], state)
+    card.fit()
+    document = Document()
+    root = card.view.get_root(document)
+    document.add_root(root)
+    for number in (1, 0):
+        card.tabs.active = number
+        card.fit()
+    plot = card.views[0].figure
+    assert plot.document is document
+    document.callbacks.trigger_event(Tap(plot, x=2.0, y=0.5))
+    assert len(heard) == 1
