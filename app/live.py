@@ -16,6 +16,7 @@ from app.status import figures_line, status_line
 from app.transport import Transport
 from app.views.catalogue import CARDS, LARGE_CARDS
 from app.views.layout import shape_of
+from app.views.parts import laid_out_alone
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
@@ -102,7 +103,7 @@ class Live:
         self.arrange(kinds)
         boxes = (self._scene, self._timeline)
         for box, view in zip(boxes, self._views, strict=True):
-            box.append(pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both"))
+            box.append(laid_out_alone(view.figure))
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._times, self._plots])
 
@@ -303,10 +304,10 @@ class Card:
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; the figure is made when first seen."""
         state = self._state
-        figure = view.layout
+        pane = laid_out_alone(view.layout)
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
-        return pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=0)
+        return pane
 
 
 def first_needs(state: PageState, kinds: Kinds | None) -> frozenset[str]:
