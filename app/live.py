@@ -235,10 +235,7 @@ class Live:
             if self.state.trade_case is not None:
                 sentence = self.state.trade_case.sentence_on(sentence)
             self._sentence.object = sentence
-            if self._shape != self.view.css_classes:
-                # In one step with new data the browser would paint the old ones in the
-                # new shape.
-                self._document.add_next_tick_callback(self._reshape)
+            self._reshape()
 
 
 class Card:
