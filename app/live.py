@@ -95,15 +95,13 @@ class Live:
             view.figure  # noqa: B018  # it is made when it is first asked for
 
     def open(self, kinds: Kinds | None) -> None:
-        """Show the figures once the browser has all other widgets.
-
-        It would lay the figures out anew for each widget that follows.
-        """
+        """Show the figures once the browser has all other widgets."""
         self._is_open = True
         self.arrange(kinds)
         boxes = (self._scene, self._timeline)
         for box, view in zip(boxes, self._views, strict=True):
             box.append(laid_out_alone(view.figure))
+            view.hold(True)
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._times, self._plots])
 
@@ -115,8 +113,6 @@ class Live:
         if self.state.view == "present":
             self.transport.present()
         self._magnify(type_size(self.state))
-        # Before new data: a layout paints at once, and glyphs whose data have changed
-        # are whole only once the message has ended.
         self._reshape()
         self._fit()
 
@@ -302,6 +298,8 @@ class Card:
         """The figure of a view with the frame; the figure is made when first seen."""
         state = self._state
         pane = laid_out_alone(view.layout)
+        # It is painted once it has its size; see `Display`.
+        view.hold(True)
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
         return pane

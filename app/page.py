@@ -27,10 +27,12 @@ from app.supervisor import Supervisor
 from app.transport import TOUCHED
 from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
 
+NO_SLIDING = {"transition": "none"}
+"""Look of what takes its size at once as the controls open and close: figures would be
+painted in each size on the way."""
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
-    # Figures would be painted in each size on the way as the controls open and close.
-    "& .main": {"transition": "none"},
+    "& .main": NO_SLIDING,
     # On a phone the buttons are moved by a finger.
     "@media (max-width: 600px)": {
         "& header .title": {"display": "none"},
@@ -77,6 +79,7 @@ HEADINGS = {
 BARE = {
     # It stands over the page and takes no room; what it holds need not change its size.
     "& .header": {"visibility": "hidden"},
+    "& .main": NO_SLIDING,
     "& .main .MuiToolbar-root": {"display": "none"},
 }
 
@@ -156,7 +159,11 @@ class Page:
         )
 
     def _fill(self) -> None:
-        """Put the parts on the page, while the browser loads its programs."""
+        """Put the parts on the page, while the browser loads its programs.
+
+        Each stands in a component of its own: Bokeh lays out all that a component holds
+        whenever one widget in it is mounted, or changes its size.
+        """
         self.template.param.update(
             sidebar=[pmui.Column(self._controls.view, margin=0)],
             header=[pmui.Row(self._header(), margin=0, sizing_mode="stretch_width")],

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
 
-from bokeh.core.property.descriptors import UnsetValueError
 import panel as pn
+from bokeh.core.property.descriptors import UnsetValueError
 from bokeh.models import (
     ColorBar,
     Glyph,
