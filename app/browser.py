@@ -129,7 +129,9 @@ class Display:
     """Display of the views in sight: a picture once the browser has painted the last.
 
     `views` are those in sight. `also` is called with each picture, inside its hold, for
-    parts that are not views, such as the status line.
+    parts that are not views, such as the status line. A view that is held when it comes
+    in sight is painted from the next picture on: as the browser mounts a page it lays
+    each figure out several times.
     """
 
     def __init__(
@@ -155,7 +157,7 @@ class Display:
         """Set the views in sight, and needs of frames beside theirs."""
         needs = chain.from_iterable(view.needs for view in views)
         self._state.needs = frozenset([*needs, *also])
-        if views != self.views:
+        if views != self.views or any(view.is_held for view in views):
             self.views = views
             self._update()
 
@@ -213,6 +215,10 @@ class Display:
 
         All pages share the server's thread.
         """
+        with pn.io.hold():
+            for view in self.views:
+                if view.is_held:
+                    view.hold(False)
         # Each of the other pages may take as long as this one took.
         pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
         if pause < SHORTEST:

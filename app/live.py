@@ -16,6 +16,7 @@ from app.status import figures_line, status_line
 from app.transport import Transport
 from app.views.catalogue import CARDS, LARGE_CARDS
 from app.views.layout import shape_of
+from app.views.parts import laid_out_alone
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
@@ -94,15 +95,13 @@ class Live:
             view.figure  # noqa: B018  # it is made when it is first asked for
 
     def open(self, kinds: Kinds | None) -> None:
-        """Show the figures once the browser has all other widgets.
-
-        It would lay the figures out anew for each widget that follows.
-        """
+        """Show the figures once the browser has all other widgets."""
         self._is_open = True
         self.arrange(kinds)
         boxes = (self._scene, self._timeline)
         for box, view in zip(boxes, self._views, strict=True):
-            box.append(pn.pane.Bokeh(view.figure, margin=0, sizing_mode="stretch_both"))
+            box.append(laid_out_alone(view.figure))
+            view.hold(True)
         # All at once: each change goes through all models of the document.
         self.view.extend([self._scene, self._times, self._plots])
 
@@ -114,8 +113,6 @@ class Live:
         if self.state.view == "present":
             self.transport.present()
         self._magnify(type_size(self.state))
-        # Before new data: a layout paints at once, and glyphs whose data have changed
-        # are whole only once the message has ended.
         self._reshape()
         self._fit()
 
@@ -236,10 +233,7 @@ class Live:
             if self.state.trade_case is not None:
                 sentence = self.state.trade_case.sentence_on(sentence)
             self._sentence.object = sentence
-            if self._shape != self.view.css_classes:
-                # In one step with new data the browser would paint the old ones in the
-                # new shape.
-                self._document.add_next_tick_callback(self._reshape)
+            self._reshape()
 
 
 class Card:
@@ -305,10 +299,12 @@ class Card:
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; the figure is made when first seen."""
         state = self._state
-        figure = view.layout
+        pane = laid_out_alone(view.layout)
+        # It is painted once it has its size; see `Display`.
+        view.hold(True)
         if state.frame is not None:
             view.update(state.frame, state.selection, state.ghost)
-        return pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=0)
+        return pane
 
 
 def first_needs(state: PageState, kinds: Kinds | None) -> frozenset[str]:

@@ -27,8 +27,12 @@ from app.supervisor import Supervisor
 from app.transport import TOUCHED
 from app.widgets import GLOSSARY, PlainText, button, dialog, html, looks, wrapped
 
+NO_SLIDING = {"transition": "none"}
+"""Look of what takes its size at once as the controls open and close: figures would be
+painted in each size on the way."""
 COMPACT = {
     "& .MuiToolbar-root": {"minHeight": "48px !important"},
+    "& .main": NO_SLIDING,
     # On a phone the buttons are moved by a finger.
     "@media (max-width: 600px)": {
         "& header .title": {"display": "none"},
@@ -75,6 +79,7 @@ HEADINGS = {
 BARE = {
     # It stands over the page and takes no room; what it holds need not change its size.
     "& .header": {"visibility": "hidden"},
+    "& .main": NO_SLIDING,
     "& .main .MuiToolbar-root": {"display": "none"},
 }
 
@@ -105,7 +110,9 @@ class Page:
         self._class = ClassDialog(self._member, self._link.join)
         self._guide.view.stylesheets = [STYLE]
         self._class.view.stylesheets = [STYLE]
-        self._beside = wrapped(self._live.view, sizing_mode="stretch_width")
+        self._beside = wrapped(
+            self._live.view, self._guide.view, sizing_mode="stretch_width"
+        )
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         self._make_dialogs()
@@ -121,6 +128,7 @@ class Page:
 
     def _make_dialogs(self) -> None:
         """Make the page's own dialogs; all are put on it when they are first opened."""
+        self._dialogs = pmui.Column(margin=0, height=0)
         self._away = dialog("Take away")
         self._words = dialog(
             "Keys and words", pn.pane.Markdown(GLOSSARY), width_option="md"
@@ -151,9 +159,18 @@ class Page:
         )
 
     def _fill(self) -> None:
-        """Put the parts on the page, while the browser loads its programs."""
+        """Put the parts on the page, while the browser loads its programs.
+
+        Each stands in a component of its own: Bokeh lays out all that a component holds
+        whenever one widget in it is mounted, or changes its size.
+        """
         self.template.param.update(
-            sidebar=[self._controls.view], header=[self._header()], main=[self._main]
+            sidebar=[pmui.Column(self._controls.view, margin=0)],
+            header=[pmui.Row(self._header(), margin=0, sizing_mode="stretch_width")],
+            main=[
+                pmui.Column(self._main, margin=0, sizing_mode="stretch_width"),
+                self._dialogs,
+            ],
         )
         self._live.prepare(kinds_beside(self.state))
 
@@ -257,8 +274,11 @@ class Page:
 
     def _put(self, event: Any) -> None:
         """Put a dialog on the page when it is first opened."""
-        if event.obj not in self.template.main:
-            self.template.main = [*self.template.main, event.obj]
+        if event.obj not in self._dialogs:
+            self._dialogs.append(event.obj)
+            # The browser is to answer: BokehJS sends models that have come since its
+            # last message whole, and the server would warn of the first button there.
+            self.state.given += 1
 
     def _take_away(self) -> None:
         """Offer a link to the page, and files of what is seen."""
@@ -291,18 +311,15 @@ class Page:
 
         Beside hidden parts the browser does not paint figures.
         """
-        # The text and the line of the class are appended, and put in front by the style
-        # sheet: a column whose children change their order loses some of them.
-        beside = [self._live.view]
-        if self._guide.is_open:
-            beside.append(self._guide.view)
+        # The text is hidden in its place: a row whose children change has all others
+        # rendered anew. Text and line of the class are put in front by the style sheet:
+        # a column whose children change their order loses some of them.
+        self._guide.view.visible = self._guide.is_open
         main = [self._tabs[self.state.tab]]
         roles = ["main", self.state.view]
         if self._class.view.visible:
             main.append(self._class.view)
             roles.append("with-line")
-        if list(self._beside) != beside:
-            self._beside[:] = beside
         if list(self._main) != main:
             self._main[:] = main
         self._main.css_classes = roles

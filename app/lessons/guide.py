@@ -140,6 +140,9 @@ class Guide:
         poll = self._state.poll
         return poll is not None and not poll.leads
 
+    # In one message: the browser lays out and paints all figures for each change of
+    # their sizes.
+    @pn.io.hold()
     def _build(self, lesson: Lesson | None, case: Case | None) -> None:
         state = self._state
         parts = list[Any]()

@@ -6,14 +6,18 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
 
+import panel as pn
 from bokeh.core.property.descriptors import UnsetValueError
 from bokeh.models import (
     ColorBar,
     Glyph,
     GlyphRenderer,
     HoverTool,
+    LayoutDOM,
     LinearColorMapper,
+    Pane,
     Range1d,
+    Spacer,
 )
 from bokeh.plotting import figure
 
@@ -96,3 +100,17 @@ def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
             if name in names:
                 properties[name] = given
     return properties
+
+
+def laid_out_alone(plot: LayoutDOM) -> pn.pane.Bokeh:
+    """A pane with a figure that is laid out by itself, and takes all the room.
+
+    Bokeh lays out all that has a common root whenever one part asks for it, as each
+    widget does that is new, and each figure whose labels become longer. A `Pane` ends
+    this: what is in it is a root of its own, which follows its own size alone.
+    """
+    own_root = Pane(elements=[plot], styles={"width": "100%", "height": "100%"})
+    room = Spacer(
+        elements=[own_root], sizing_mode="stretch_both", min_height=plot.min_height
+    )
+    return pn.pane.Bokeh(room, margin=0)

@@ -72,8 +72,9 @@ FLOWING = """
 """
 """Style sheet by which the entries of a legend follow each other, and take a second
 line where the first has no room; or stand below each other."""
-WRAPPED = ":host { max-width: calc(100% + 52px); }"
-"""Style sheet of the room that a legend above a plot has."""
+WRAPPED = ":host { width: calc(100% + 52px); }"
+"""Style sheet of a legend above a plot, which is as wide whatever its entries are: a
+figure is painted once more when the size of its legend changes."""
 
 
 HIDE = """
@@ -109,6 +110,7 @@ class View:
         self._type = TEXT
         self._figure: figure | None = None
         self.beside: figure | None = None
+        self.is_held = False
         self.sources: dict[str, ColumnDataSource] = {}
         self._items: dict[str, LegendItem] = {}
 
@@ -134,6 +136,13 @@ class View:
     def layout(self) -> Any:
         """The figure as a card has it: alone, or laid out with another beside it."""
         return self.figure
+
+    def hold(self, is_held: bool) -> None:
+        """Have the figures wait with all painting, or paint what they show."""
+        self.is_held = is_held
+        for plot in (self._figure, self.beside):
+            if plot is not None:
+                plot.hold_render = is_held
 
     def magnify(self, size: str) -> None:
         """Set the type size of all figures, as CSS has it."""

@@ -58,6 +58,43 @@ def test_a_first_run_goes_on_once_its_first_picture_is_painted(
 
 
 @pytest.mark.usefixtures("orders")
+def test_figures_that_come_in_sight_are_painted_once_the_browser_has_laid_them_out(
+    document: Document,
+) -> None:
+    settings = default_settings("bar").replace(elements=10, instants=11)
+    state = PageState(settings)
+    page = Page(state)
+    start = Start(state.number, settings, math.inf)
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    pulse = document.get_model_by_name("pulse")
+    live = page._live
+
+    def held() -> list[str]:
+        """Names of the figures in sight that wait with painting."""
+        views = live.display.views
+        return [view.name for view in views if view.figure.hold_render]
+
+    runner._iterate()
+    page.loaded()
+    assert len(held()) == len(live.display.views) == 4
+    state.take(NewFrame(runner.frame(Needs())))
+    assert len(held()) == 4
+    pulse.painted = pulse.sent
+    assert not held()
+    state.plots = ["Loop"]
+    assert held() == ["Loop"]
+    pulse.painted = pulse.sent
+    assert not held()
+    # The same figures in other cards: they wait for a picture, which is sent.
+    cards = [(type(card.seen),) for card in live._cards]
+    live.arrange(tuple(kind for (kind,) in cards))
+    assert len(held()) == 2
+    assert pulse.painted < pulse.sent
+    pulse.painted = pulse.sent
+    assert not held()
+
+
+@pytest.mark.usefixtures("orders")
 def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> None:
     settings = default_settings("bar").replace(elements=10, instants=11)
     state = PageState(settings)
