@@ -11,7 +11,7 @@ from runs import assert_goes_on, errors, iterates, settings_of
 
 from solver.latin import iterations
 from solver.latin.stages import rigid_balance
-from solver.latin.stages.rigid_bodies import PATIENCE, RigidBodies, rigid_bodies_of
+from solver.latin.stages.rigid_bodies import PATIENCE, RigidBodies, moves_rigidly
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 
@@ -28,7 +28,9 @@ def arch(**changes):
 
 def shifts_of(problem, settings, *, from_rest=True):
     k = method_of(settings).direction.of(problem)
-    return k, rigid_bodies_of(problem, k, from_rest=from_rest)
+    if not moves_rigidly(problem):
+        return k, None
+    return k, RigidBodies(problem, k, from_rest=from_rest)
 
 
 def unbalanced(problem, force):
