@@ -77,7 +77,7 @@ class PricedMethod(Protocol):
 
     @property
     def multiscale(self) -> bool:
-        """Whether bodies are shifted as rigid ones where hinges are free."""
+        """Shifts of rigid bodies where hinges are free, and the coarse problem."""
 
     @property
     def acceleration(self) -> object | None:

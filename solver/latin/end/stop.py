@@ -130,7 +130,7 @@ class JudgedMethod(Protocol):
 
     @property
     def multiscale(self) -> bool:
-        """Whether bodies are shifted as rigid ones where hinges are free."""
+        """Shifts of rigid bodies where hinges are free, and the coarse problem."""
 
     @property
     def relaxation(self) -> float:
