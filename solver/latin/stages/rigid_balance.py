@@ -29,8 +29,8 @@ STEPS = 25
 NEAR = 1.0
 """Unbalanced force, as in `BALANCED`, up to which all instants take steps together."""
 STEPS_TOGETHER = 6
-"""Largest number of these steps; most iterations take two, each in a third of the time
-of steps of all instants, one by one (measured)."""
+"""Largest number of these steps; most iterations take two, each in half the time of
+steps of all instants, one by one (measured)."""
 HELD = 1e-10, 1e-6, 1e-4
 """Shares of the springs at all rows that hold bodies in a step, so that one in the air
 does not go too far; each is tried where those before it lead nowhere."""
