@@ -18,7 +18,7 @@ from solver.latin.method import Latin
 from solver.latin.stages.blocks import Blocks, one_blas_thread
 from solver.latin.stages.linear import LinearStage
 from solver.latin.stages.local import LocalStage
-from solver.latin.stages.rigid_bodies import RigidBodies, rigid_bodies_of
+from solver.latin.stages.rigid_bodies import RigidBodies, moves_rigidly
 from solver.latin.start import prolong, wrong_waves
 from solver.refusal import RefusedError
 
@@ -130,8 +130,9 @@ class Iteration:
 
         Truncated bases would not hold what little of their fields is deformation.
         """
-        if latin.multiscale and self.linear.is_full:
-            return rigid_bodies_of(self._problem, self.k, from_rest=start is None)
+        may_shift = latin.multiscale and self.linear.is_full
+        if may_shift and moves_rigidly(self._problem):
+            return RigidBodies(self._problem, self.k, from_rest=start is None)
         return None
 
     def _show(self) -> None:

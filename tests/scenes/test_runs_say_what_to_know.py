@@ -227,6 +227,13 @@ def test_the_scenes_defaults_are_neither_long_nor_large(scene: str) -> None:
     assert 0.0 < found.memory < 0.1 * LARGE
 
 
+def test_shifts_of_rigid_bodies_count_where_they_are_made() -> None:
+    far: dict[str, Any] = {"displacement": 2e-3, "multiscale": True}
+    seconds = cost("arch", **far).seconds
+    for plain in ({"displacement": 5e-5}, {"multiscale": False}):
+        assert seconds > 2.0 * cost("arch", **(far | plain)).seconds
+
+
 @pytest.mark.parametrize("scene", list(LONG_ONES))
 def test_what_takes_minutes_or_gigabytes_is_told(scene: str) -> None:
     assert cost(scene, **LONG_ONES[scene]).is_large

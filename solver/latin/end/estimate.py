@@ -61,6 +61,9 @@ class ErrorEstimate:
         Whether only a certified solution counts, whatever it costs: bases that are too
         small converge to something else, which no change shows, and from a start that
         is near changes are small also where k is so far off that nothing moves.
+    may_shift
+        Whether the method shifts bodies as rigid ones where hinges are free, which
+        costs more than a plain iteration.
     interrupted
         Returns True where a status step is to be given up; it is tried again after the
         next iteration.
@@ -82,10 +85,12 @@ class ErrorEstimate:
         accuracy: float,
         *,
         needs_proof: bool = False,
+        may_shift: bool = False,
         interrupted: Callable[[], bool] = lambda: False,
     ) -> None:
         self._accuracy = accuracy
         self.needs_proof = needs_proof
+        self._may_shift = may_shift
         self._changes = ForceChanges()
         self._next_trial = 1
         self._solver: Incremental | None = None
@@ -184,7 +189,10 @@ class ErrorEstimate:
     def _costs_of(self, iterate: Iterate) -> Costs:
         """Costs by the statuses of an iterate, new at every doubling of iterations."""
         if self._costs is None or iterate.number >= AGAIN * self._costs[0]:
-            self._costs = iterate.number, costs_of(iterate.problem, states_of(iterate))
+            costs = costs_of(
+                iterate.problem, states_of(iterate), may_shift=self._may_shift
+            )
+            self._costs = iterate.number, costs
         return self._costs[1]
 
 

@@ -129,6 +129,10 @@ class JudgedMethod(Protocol):
         """Form in which the linear stage holds its fields."""
 
     @property
+    def multiscale(self) -> bool:
+        """Shifts of rigid bodies where hinges are free, and the coarse problem."""
+
+    @property
     def relaxation(self) -> float:
         """Share of the new iterate in a relaxed one."""
 
@@ -173,6 +177,7 @@ class StopState:
         self.estimate = ErrorEstimate(
             self._stop.accuracy,
             needs_proof=self._has_bases or latin.start is not None,
+            may_shift=latin.multiscale and not self._has_bases,
             interrupted=interrupted,
         )
         self._next = 1

@@ -6,10 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg.lapack import dgbsv
+from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from solver.arrays import Array, Indices
+
+DENSE_UP_TO = 30_000
+"""Entries of a matrix up to which its dense product with one column is no slower than
+the sparse one (measured)."""
 
 
 class RigidContacts(NamedTuple):
@@ -30,6 +34,28 @@ class RigidContacts(NamedTuple):
     compliance: Array
     gap: Array
     friction: Array
+
+
+class Product:
+    """Product of a sparse matrix with fields of motions or forces.
+
+    Parameters
+    ----------
+    matrix
+        The matrix, shape (n_out, n_in).
+    """
+
+    def __init__(self, matrix: sparse.csr_array) -> None:
+        self._sparse = matrix
+        self._dense = None
+        if np.prod(matrix.shape) <= DENSE_UP_TO:
+            self._dense = matrix.toarray()
+
+    def __call__(self, field: Array) -> Array:
+        """Product with a field, (n_in, n_instants); (n_out, n_instants)."""
+        if self._dense is not None and field.shape[1] == 1:
+            return np.asarray(self._dense @ field)
+        return np.asarray(self._sparse @ field)
 
 
 class BandStiffness:
@@ -98,18 +124,63 @@ class BandStiffness:
         size = self._shape[0] * self._shape[1]
         return sparse.csr_array((values, (places, rows[first])), (size, left.shape[0]))
 
-    def solve(self, stiffnesses: Array, right: Array, held: float) -> Array:
-        """Solve for the motions, shape (n_motions,), scaled.
+    def factored(self, stiffnesses: Array, held: float) -> BandFactors:
+        """Factor the matrices of some instants.
 
         Stiffnesses of the pairs are those across, those along, and those of friction
-        against overlap, (3 n_pairs,); the right side has the shape (n_motions,). A
-        share `held` of the springs at all rows holds every motion.
+        against overlap, (3 n_pairs, n_instants). A share `held` of the springs at all
+        rows holds every motion.
         """
-        band = self._constant + self._of_pairs @ stiffnesses
-        band[self._diagonal] += held * self._holding
-        matrix = band.reshape(self._shape, order="F")
+        entries = np.ascontiguousarray((self._of_pairs @ stiffnesses).T)
+        entries += self._constant
+        entries[:, self._diagonal] += held * self._holding
+        # The band of one instant after that of the other: nothing couples them.
+        band = entries.reshape(-1, self._shape[0]).T
         width = self._width
-        solved = dgbsv(width, width, matrix, right[self._order], overwrite_ab=True)
+        factors, pivots, _ = dgbtrf(band, width, width, overwrite_ab=True)
+        return BandFactors(factors, pivots, width, self._order)
+
+
+class BandFactors(NamedTuple):
+    """Factors of the stiffness at some instants.
+
+    Attributes
+    ----------
+    factors
+        Bands of the factors, one instant after the other, shape (3 width + 1,
+        n_instants n_motions).
+    pivots
+        Rows that pivots were found in, shape (n_instants n_motions,).
+    width
+        Number of diagonals on either side.
+    order
+        Numbers of the motions in the order of the band, shape (n_motions,).
+    """
+
+    factors: Array
+    pivots: Indices
+    width: int
+    order: Indices
+
+    def solve(self, right: Array) -> Array:
+        """Solve at all instants, shape of the right side: (n_motions, n_instants)."""
+        stacked = np.ascontiguousarray(right[self.order].T).ravel()
+        solved, _ = dgbtrs(self.factors, self.width, self.width, stacked, self.pivots)
         motions = np.empty_like(right)
-        motions[self._order] = solved[2]
+        motions[self.order] = solved.reshape(right.shape[1], -1).T
+        return motions
+
+    def solve_at(self, instant: int, right: Array) -> Array:
+        """Solve at one instant, shape of the right side: (n_motions,)."""
+        size = len(right)
+        first = instant * size
+        solved, _ = dgbtrs(
+            self.factors[:, first : first + size],
+            self.width,
+            self.width,
+            right[self.order],
+            self.pivots[first : first + size] - first,
+        )
+        motions = np.empty_like(right)
+        motions[self.order] = solved
         return motions
