@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import suppress
 from typing import Any
 
 import panel as pn
-from bokeh.core.property.descriptors import UnsetValueError
 from bokeh.models import (
     ColorBar,
     Glyph,
@@ -52,19 +50,6 @@ def bare(
     return plot
 
 
-def size_told(plot: figure, known: Mapping[str, float]) -> dict[str, float]:
-    """Sizes of a figure in px by their names, as the browser told them, or as known.
-
-    Of a figure that has gone to another card the browser tells, and nothing is called.
-    """
-    sizes = {}
-    for name, size in known.items():
-        sizes[name] = size
-        with suppress(UnsetValueError):
-            sizes[name] = max(float(getattr(plot, name)), LEAST)
-    return sizes
-
-
 def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     """A bar at the right of a figure that explains its colours."""
     bar = ColorBar(
@@ -107,7 +92,9 @@ def laid_out_alone(plot: LayoutDOM) -> pn.pane.Bokeh:
 
     Bokeh lays out all that has a common root whenever one part asks for it, as each
     widget does that is new, and each figure whose labels become longer. A `Pane` ends
-    this: what is in it is a root of its own, which follows its own size alone.
+    this: what is in it is a root of its own, which follows its own size alone. And
+    Panel, which takes the callbacks of the model of a pane that leaves the page, leaves
+    those of the figure.
     """
     own_root = Pane(elements=[plot], styles={"width": "100%", "height": "100%"})
     room = Spacer(

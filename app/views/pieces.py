@@ -16,7 +16,7 @@ from app.units import number, unit_for
 from app.views.acts import gapped, hatched
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
-from app.views.parts import LEAST, bare, size_told
+from app.views.parts import LEAST, bare
 from app.views.view import TEXT, ExtraView
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
@@ -147,7 +147,6 @@ class PiecesView(ExtraView):
 
     def _box(self) -> Array:
         """Corners of the room between text and legend, (2, 2), px."""
-        self._size = size_told(self._figure, self._size)
         width, height = self._size.values()
         self._figure.x_range.end = width
         self._figure.y_range.end = height

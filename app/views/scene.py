@@ -29,7 +29,7 @@ from app.views.colors import (
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
 from app.views.layout import NARROW, Layout, layout_of
-from app.views.parts import LEAST, bare, color_bar, size_told
+from app.views.parts import LEAST, bare, color_bar
 from app.views.picture import Picture
 from app.views.view import View
 from solver.settings.scene import Settings
@@ -144,7 +144,6 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         plot = self.figure
         run = frame.run
-        self._size = size_told(plot, self._size)
         layout = self._layout_of(frame)
         self._scale(frame, layout)
         self._shown = frame, selection, ghost

@@ -278,20 +278,6 @@ def drag(view: Scene, start: np.ndarray, end: np.ndarray) -> None:
     view._let_go(SimpleNamespace(x=end[0], y=end[1]))
 
 
-def test_a_figure_that_goes_to_another_card_is_laid_out_for_the_size_it_is_told() -> (
-    None
-):
-    frame = frame_of(default_settings("bar"))
-    view = Scene(PageState(frame.run.settings))
-    plot = view.figure
-    for name, size in (("inner_width", 476), ("inner_height", 410)):
-        # Then the browser tells of a size, and nothing is called.
-        plot.remove_on_change(name, view._resize)
-        plot.set_from_json(name, size)
-    view.update(frame, Selection(0.25), None)
-    assert (plot.x_range.end, plot.y_range.end) == (476.0, 410.0)
-
-
 def test_marks_of_a_first_visit_stay_until_somebody_does_something() -> None:
     frame = frame_of(default_settings("bar"))
     view = Scene(PageState(frame.run.settings, is_new=True))

@@ -24,7 +24,9 @@ from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.errors import CURVES, Convergence
 from app.views.loops import HysteresisLoop
+from app.views.pieces import PiecesView
 from app.views.rope import AxialForces
+from app.views.scene import Stress
 from app.views.status_map import StatusMap
 from app.views.view import View
 from app.worker.references import ReferenceCache
@@ -450,15 +452,10 @@ def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     assert len(card.seen.sources["LATIN"].data["x"]) == len(frame.run.instants)
 
 
-@pytest.mark.parametrize(("kind", "case"), [(Convergence, "bar"), (StatusMap, "block")])
-def test_a_tap_is_heard_after_another_tab_was_shown(
-    monkeypatch: pytest.MonkeyPatch, kind: type[View], case: str
-) -> None:
+def turned_away_and_back(kind: type[View], case: str) -> tuple[View, Document]:
+    """A view that shows a frame on a page, on which another tab was shown meanwhile."""
     frame = frames_of(case)[1]
     state = PageState(frame.run.settings, frame=frame, newest=frame)
-    heard: list[object] = []
-    monkeypatch.setattr(state, "select", lambda **chosen: heard.append(chosen))
-    monkeypatch.setattr(state, "seek", heard.append)
     card = Card([kind(state), HysteresisLoop(state)], state)
     card.fit()
     document = Document()
@@ -467,7 +464,29 @@ def test_a_tap_is_heard_after_another_tab_was_shown(
     for number in (1, 0):
         card.tabs.active = number
         card.fit()
-    plot = card.views[0].figure
-    assert plot.document is document
-    document.callbacks.trigger_event(Tap(plot, x=2.0, y=0.5))
+    view = card.views[0]
+    assert view.figure.document is document
+    return view, document
+
+
+@pytest.mark.parametrize(("kind", "case"), [(Convergence, "bar"), (StatusMap, "block")])
+def test_a_tap_is_heard_after_another_tab_was_shown(
+    monkeypatch: pytest.MonkeyPatch, kind: type[View], case: str
+) -> None:
+    view, document = turned_away_and_back(kind, case)
+    heard: list[object] = []
+    monkeypatch.setattr(view.state, "select", lambda **chosen: heard.append(chosen))
+    monkeypatch.setattr(view.state, "seek", heard.append)
+    document.callbacks.trigger_event(Tap(view.figure, x=2.0, y=0.5))
     assert len(heard) == 1
+
+
+@pytest.mark.parametrize("kind", [Stress, PiecesView])
+def test_a_picture_follows_its_size_after_another_tab_was_shown(
+    kind: type[View],
+) -> None:
+    view, _ = turned_away_and_back(kind, "block")
+    plot = view.figure
+    for name, size in (("inner_width", 476), ("inner_height", 410)):
+        plot.set_from_json(name, size)
+    assert (plot.x_range.end, plot.y_range.end) == (476.0, 410.0)
