@@ -8,9 +8,10 @@ from typing import Any
 ROOT = str(Path(__file__).resolve().parents[1])
 sys.path.insert(0, ROOT)
 
-from app.server import configure  # noqa: E402  # the root is on the path only from here on
+from app.server import configure, lighten  # noqa: E402  # the root is on the path only from here on
 
 configure()
+lighten()
 
 
 def on_server_loaded(_server_context: Any) -> None:

@@ -70,6 +70,7 @@ class SettingControl:
         self._echoes = Echoes(state)
         self._positions = Echoes(state)
         self._dialog: CurveDialog | None = None
+        self._edit_button: pmui.Button | None = None
         self.slider: pmui.FloatSlider | None = None
         self.field, self.view = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
@@ -103,14 +104,7 @@ class SettingControl:
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            self._edit_button = button(
-                "Edit points",
-                self._edit,
-                icon="show_chart",
-                variant="text",
-                margin=(-4, 0, 0, 0),
-            )
-            return field, pn.Column(field, self._edit_button, margin=0)
+            return field, pn.Column(field, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
@@ -190,7 +184,7 @@ class SettingControl:
         if isinstance(self._definition, CurveParameter):
             choice = POINTS if isinstance(value, tuple) else value
             self._echoes.show(self.field, choice)
-            self._edit_button.visible = isinstance(value, tuple)
+            self._offer_points(has_points=isinstance(value, tuple))
             if self._dialog is not None:
                 self._dialog.update()
         elif isinstance(self._definition, TextParameter) and self._definition.is_file:
@@ -206,6 +200,21 @@ class SettingControl:
             self._echoes.show(self.field, self._written(value))
             if not self._is_dragged:
                 self._show_on_slider(value)
+
+    def _offer_points(self, *, has_points: bool) -> None:
+        """Show the button that opens the points of a path, if it has any."""
+        if self._edit_button is not None:
+            self._edit_button.visible = has_points
+        elif has_points:
+            # Few paths have points: the button is made for the first that has.
+            self._edit_button = button(
+                "Edit points",
+                self._edit,
+                icon="show_chart",
+                variant="text",
+                margin=(-4, 0, 0, 0),
+            )
+            self.view.append(self._edit_button)
 
     def _show_on_slider(self, value: float) -> None:
         slider = self.slider

@@ -12,6 +12,7 @@ from urllib.parse import SplitResult, urlsplit
 
 import panel as pn
 from bokeh.server.urls import per_app_patterns
+from bokeh.settings import settings
 from panel.io.server import DocHandler, WSHandler
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPHeaders, HTTPServerRequest
@@ -106,6 +107,20 @@ def configure() -> None:
     ):
         logging.getLogger(name).addFilter(OneLine())
     logging.getLogger("asyncio").addFilter(is_of_an_open_page)
+
+
+def lighten() -> None:
+    """Have Bokeh leave out checks of programs, which tests have without a server.
+
+    Of each of the thousand callbacks of a page it would inspect the signature, a tenth
+    of the time in which a page is made.
+    """
+    settings.perform_error_diagnostics = False
+    settings.perform_document_validation = False
+    # The defaults: what is not set here is looked for in the environment for each of a
+    # page's seven hundred models.
+    settings.simple_ids = True
+    settings.serialize_include_defaults = False
 
 
 class PageServer(HTTPServer):
