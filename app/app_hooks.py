@@ -27,5 +27,6 @@ def on_server_loaded(_server_context: Any) -> None:
     gc.collect()
     gc.freeze()
     # Pages are made of many small objects that stay: collections took a tenth of their
-    # making.
-    gc.set_threshold(50_000, 20, 20)
+    # making. Older objects are walked seldom, as Panel has all collected once a page is
+    # closed.
+    gc.set_threshold(50_000, 100, 20)
