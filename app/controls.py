@@ -206,16 +206,21 @@ class SettingControl:
 
     def _offer_points(self, *, has_points: bool) -> None:
         """Show the button that opens the points of a path, if it has any."""
+        if has_points:
+            self._add_edit_button()
         if self._edit_button is not None:
             self._edit_button.visible = has_points
-        elif has_points:
-            # Few paths have points: the button is made for the first that has.
+
+    def _add_edit_button(self) -> None:
+        """Have the button that opens the points of a path, which few paths need."""
+        if self._edit_button is None:
             self._edit_button = button(
                 "Edit points",
                 self._edit,
                 icon="show_chart",
                 variant="text",
                 margin=(-4, 0, 0, 0),
+                visible=False,
             )
             self.views[0].append(self._edit_button)
 
@@ -306,6 +311,8 @@ class SettingControl:
     def _edit(self) -> None:
         """Open the points of a path."""
         if self._dialog is None:
+            # Nothing is to be added to the page while the dialog is open.
+            self._add_edit_button()
             self._dialog = CurveDialog(self.name, self._state)
             self.views[0].append(self._dialog.view)
         self.update()
