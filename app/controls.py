@@ -95,7 +95,7 @@ class SettingControl:
             self._is_updating = False
 
     def _make(self) -> tuple[Any, list[Any]]:
-        """The field of the setting, and what stands on the page."""
+        """The field of the setting, and the parts that stand on the page."""
         definition = self._definition
         more: dict[str, Any] = {
             "description": help_of(definition),
@@ -420,7 +420,7 @@ class Controls:
 
 
 def views_of(controls: Iterable[SettingControl]) -> list[Any]:
-    """What controls have on the page, in their order."""
+    """Parts of controls that stand on the page, in their order."""
     views = []
     for control in controls:
         views += control.views

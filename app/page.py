@@ -347,7 +347,7 @@ def open_page() -> pmui.Page:
         "katex",
         reconnect=True,
         respect_explicit_sizing=True,
-        # They help who writes programs, and take 8 ms of each page.
+        # Signatures help an editor that completes code, and take 8 ms of each page.
         apply_signatures=False,
     )
     # Panel sets this as it sends a page. One that is made anew by the socket, as its

@@ -110,17 +110,16 @@ def configure() -> None:
 
 
 def lighten() -> None:
-    """Have Bokeh leave out checks of programs, which tests have without a server.
+    """Have Bokeh leave out checks of the program; tests without a server have them.
 
-    Of each of the thousand callbacks of a page it would inspect the signature, a tenth
-    of the time in which a page is made.
+    The signatures of a page's thousand callbacks would take a tenth of the time in
+    which it is made.
     """
     settings.perform_error_diagnostics = False
     settings.perform_document_validation = False
-    # The defaults: what is not set here is looked for in the environment for each of a
-    # page's seven hundred models.
-    settings.simple_ids = True
-    settings.serialize_include_defaults = False
+    # Read once: else the environment is asked for each of a page's models.
+    settings.simple_ids = settings.simple_ids()
+    settings.serialize_include_defaults = settings.serialize_include_defaults()
 
 
 class PageServer(HTTPServer):

@@ -284,7 +284,7 @@ class Guide:
         return pane
 
     def _control(self, name: str) -> list[Any]:
-        """What the control of a setting has on the page."""
+        """The parts of the control of a setting, one below the other."""
         control = SettingControl(name, self._state)
         self._controls.append(control)
         return control.views
