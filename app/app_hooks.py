@@ -8,9 +8,10 @@ from typing import Any
 ROOT = str(Path(__file__).resolve().parents[1])
 sys.path.insert(0, ROOT)
 
-from app.server import configure  # noqa: E402  # the root is on the path only from here on
+from app.server import configure, lighten  # noqa: E402  # the root is on the path only from here on
 
 configure()
+lighten()
 
 
 def on_server_loaded(_server_context: Any) -> None:
@@ -26,5 +27,6 @@ def on_server_loaded(_server_context: Any) -> None:
     gc.collect()
     gc.freeze()
     # Pages are made of many small objects that stay: collections took a tenth of their
-    # making.
-    gc.set_threshold(50_000, 20, 20)
+    # making. Older objects are walked seldom, as Panel has all collected once a page is
+    # closed.
+    gc.set_threshold(50_000, 100, 20)

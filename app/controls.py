@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Iterable
 from functools import partial
 from typing import Any
 
@@ -55,8 +56,8 @@ GROUPS = (
 class SettingControl:
     """The widget of a setting, which shows the value in the state and changes it.
 
-    `field` takes the value; for a number it is a text field with a `slider`. Both stand
-    in `view`.
+    `field` takes the value; for a number it is a text field with a `slider`. `views`
+    are what stands on the page, one below the other.
     """
 
     def __init__(self, name: str, state: PageState) -> None:
@@ -70,8 +71,9 @@ class SettingControl:
         self._echoes = Echoes(state)
         self._positions = Echoes(state)
         self._dialog: CurveDialog | None = None
+        self._edit_button: pmui.Button | None = None
         self.slider: pmui.FloatSlider | None = None
-        self.field, self.view = self._make()
+        self.field, self.views = self._make()
         self.field.param.watch(lambda event: self._on_field(event.new), "value")
         self.update()
         # No browser has shown what the widgets were made with.
@@ -84,14 +86,16 @@ class SettingControl:
         # Widgets report these changes, too, as if a person had made them.
         self._is_updating = True
         try:
-            self.view.visible = settings.applies(self.name)
+            applies = settings.applies(self.name)
+            for view in self.views:
+                view.visible = applies
             self._show(getattr(settings, self.name))
             self._explain("")
         finally:
             self._is_updating = False
 
-    def _make(self) -> tuple[Any, Any]:
-        """The field of the setting, and the view that stands on the page."""
+    def _make(self) -> tuple[Any, list[Any]]:
+        """The field of the setting, and the parts that stand on the page."""
         definition = self._definition
         more: dict[str, Any] = {
             "description": help_of(definition),
@@ -103,41 +107,34 @@ class SettingControl:
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            self._edit_button = button(
-                "Edit points",
-                self._edit,
-                icon="show_chart",
-                variant="text",
-                margin=(-4, 0, 0, 0),
-            )
-            return field, pn.Column(field, self._edit_button, margin=0)
+            return field, [pn.Column(field, margin=0)]
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
-            return field, field
+            return field, [field]
         if isinstance(definition, TextParameter):
             return self._make_text(definition, more)
         if isinstance(definition, param.Selector):
             options = list(definition.objects)
             field = pmui.Select(options=options, variant="standard", **more)
-            return field, field
+            return field, [field]
         # All others are numbers: a field to type in, and below it a slider.
-        more |= {"margin": 0, "variant": "standard", **looks("number")}
+        more |= {"margin": (3, 0, 0, 0), "variant": "standard", **looks("number")}
         default = self._written(definition.default)
         field = pmui.TextInput(placeholder=f"{default} by default", **more)
         self._is_logarithmic = is_logarithmic(definition)
         self.slider = self._make_slider()
-        return field, pn.Column(field, self.slider, margin=(3, 0, 0, 0))
+        return field, [field, self.slider]
 
     def _make_text(
         self, definition: TextParameter, more: dict[str, Any]
-    ) -> tuple[Any, Any]:
+    ) -> tuple[Any, list[Any]]:
         """Field of a text: its presets and a file that is open, or text to type in."""
         if not definition.is_file:
             field = pmui.TextInput(variant="standard", **more)
-            return field, field
+            return field, [field]
         options = list(definition.presets)
         field = pmui.Select(options=options, variant="standard", **more)
-        return field, field
+        return field, [field]
 
     def _make_slider(self) -> pmui.FloatSlider:
         lowest, highest = self._definition.softbounds
@@ -190,7 +187,7 @@ class SettingControl:
         if isinstance(self._definition, CurveParameter):
             choice = POINTS if isinstance(value, tuple) else value
             self._echoes.show(self.field, choice)
-            self._edit_button.visible = isinstance(value, tuple)
+            self._offer_points(has_points=isinstance(value, tuple))
             if self._dialog is not None:
                 self._dialog.update()
         elif isinstance(self._definition, TextParameter) and self._definition.is_file:
@@ -206,6 +203,26 @@ class SettingControl:
             self._echoes.show(self.field, self._written(value))
             if not self._is_dragged:
                 self._show_on_slider(value)
+
+    def _offer_points(self, *, has_points: bool) -> None:
+        """Show the button that opens the points of a path, if it has any."""
+        if has_points:
+            self._add_edit_button()
+        if self._edit_button is not None:
+            self._edit_button.visible = has_points
+
+    def _add_edit_button(self) -> None:
+        """Have the button that opens the points of a path, which few paths need."""
+        if self._edit_button is None:
+            self._edit_button = button(
+                "Edit points",
+                self._edit,
+                icon="show_chart",
+                variant="text",
+                margin=(-4, 0, 0, 0),
+                visible=False,
+            )
+            self.views[0].append(self._edit_button)
 
     def _show_on_slider(self, value: float) -> None:
         slider = self.slider
@@ -294,8 +311,10 @@ class SettingControl:
     def _edit(self) -> None:
         """Open the points of a path."""
         if self._dialog is None:
+            # Nothing is to be added to the page while the dialog is open.
+            self._add_edit_button()
             self._dialog = CurveDialog(self.name, self._state)
-            self.view.append(self._dialog.view)
+            self.views[0].append(self._dialog.view)
         self.update()
         self._dialog.view.open = True
 
@@ -376,7 +395,7 @@ class Controls:
         self._scene.label = settings.title
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]
-        self._chief[:] = [control.view for control in self._controls]
+        self._chief[:] = views_of(self._controls)
         # The numbers of open groups would mean groups of the scene before.
         self._groups.active = []
         # Each group is a spacer until it is opened: it costs a page less than a column,
@@ -394,11 +413,18 @@ class Controls:
             if names:
                 controls = [SettingControl(name, self._state) for name in names]
                 self._controls += controls
-                views = [control.view for control in controls]
-                view = pn.Column(*views, margin=0)
+                view = pn.Column(*views_of(controls), margin=0)
             else:
                 view = files_panel(self._state, WIDTH)
             self._groups[number] = (title, view)
+
+
+def views_of(controls: Iterable[SettingControl]) -> list[Any]:
+    """Parts of controls that stand on the page, in their order."""
+    views = []
+    for control in controls:
+        views += control.views
+    return views
 
 
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:

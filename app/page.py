@@ -360,7 +360,13 @@ def follow_itself(template: pmui.Page) -> None:
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     # Without notifications: each page's would stay in Panel's table of views for good.
-    pn.extension("katex", reconnect=True, respect_explicit_sizing=True)
+    pn.extension(
+        "katex",
+        reconnect=True,
+        respect_explicit_sizing=True,
+        # Signatures help an editor that completes code, and take 8 ms of each page.
+        apply_signatures=False,
+    )
     # Panel sets this as it sends a page. One that is made anew by the socket, as its
     # session had ended while a slow browser was still loading, is not sent: its style
     # sheets would be asked from the internet.

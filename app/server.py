@@ -12,6 +12,7 @@ from urllib.parse import SplitResult, urlsplit
 
 import panel as pn
 from bokeh.server.urls import per_app_patterns
+from bokeh.settings import settings
 from panel.io.server import DocHandler, WSHandler
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPHeaders, HTTPServerRequest
@@ -106,6 +107,19 @@ def configure() -> None:
     ):
         logging.getLogger(name).addFilter(OneLine())
     logging.getLogger("asyncio").addFilter(is_of_an_open_page)
+
+
+def lighten() -> None:
+    """Have Bokeh leave out checks of the program; tests without a server have them.
+
+    The signatures of a page's thousand callbacks would take a tenth of the time in
+    which it is made.
+    """
+    settings.perform_error_diagnostics = False
+    settings.perform_document_validation = False
+    # Read once: else the environment is asked for each of a page's models.
+    settings.simple_ids = settings.simple_ids()
+    settings.serialize_include_defaults = settings.serialize_include_defaults()
 
 
 class PageServer(HTTPServer):

@@ -191,7 +191,9 @@ class Guide:
             margin=(8, 0),
         )
         texts = [self._markdown(text) for text in texts_of(case, self._state)]
-        controls = [self._control(name) for name in case.controls]
+        controls = []
+        for name in case.controls:
+            controls += self._control(name)
         return [*texts[:-1], formula_of(case), texts[-1], *controls, buttons]
 
     def _look(self, lesson: Lesson) -> None:
@@ -276,7 +278,7 @@ class Guide:
                 if number % 2 == 0:
                     panes.append(self._filled(part))
                 else:
-                    panes.append(self._control(part))
+                    panes += self._control(part)
         return panes
 
     def _filled(self, part: str) -> pn.pane.Markdown:
@@ -290,11 +292,11 @@ class Guide:
         self._texts.append((pane, text))
         return pane
 
-    def _control(self, name: str) -> Any:
-        """The control of a setting."""
+    def _control(self, name: str) -> list[Any]:
+        """The parts of the control of a setting, one below the other."""
         control = SettingControl(name, self._state)
         self._controls.append(control)
-        return control.view
+        return control.views
 
     def _follow_settings(self) -> None:
         """Leave the lesson or case for another scene; show settings in its controls."""

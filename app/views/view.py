@@ -14,7 +14,6 @@ from bokeh.core.properties import value
 from bokeh.events import LegendItemClick
 from bokeh.models import (
     AllIndices,
-    CDSView,
     ColorBar,
     ColumnDataSource,
     CrosshairTool,
@@ -291,16 +290,18 @@ class View:
     def _render(
         self, source: ColumnDataSource, glyph: Glyph, name: str | None = None
     ) -> GlyphRenderer:
-        return self._figure.add_glyph(
+        renderer = self._figure.add_glyph(
             source,
             glyph,
             name=name,
-            view=CDSView(filter=self._filter),
             # By default Bokeh makes further glyphs for selections, which none here has.
             selection_glyph=None,
             nonselection_glyph=None,
             muted_glyph=None,
         )
+        # In the renderer's own view: Bokeh makes that even where another is given.
+        renderer.view.filter = self._filter
+        return renderer
 
     def _source(self, columns: dict[str, Any]) -> ColumnDataSource:
         return ColumnDataSource(columns, **self._selects)

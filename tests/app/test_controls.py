@@ -251,9 +251,9 @@ def test_controls_that_do_nothing_here_are_hidden() -> None:
     state = of_scene("bar")
     controls = Controls(state)
     seed = next(control for control in controls._controls if control.name == "seed")
-    assert not seed.view.visible
+    assert not any(view.visible for view in seed.views)
     state.change(load="random")
-    assert seed.view.visible
+    assert all(view.visible for view in seed.views)
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)
@@ -339,6 +339,24 @@ def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_d
     assert dialog.text.error_state
     assert "line 3" in dialog.text.helper_text
     assert held(state, "load")[-1] == (2.0, 0.0)
+
+
+def test_a_path_has_a_button_to_edit_its_points_as_long_as_it_has_points() -> None:
+    state = of_scene("bar")
+    control = SettingControl("load", state)
+
+    def labels() -> list[str]:
+        column = control.views[0]
+        return [each.label for each in column if each.visible]
+
+    field = control.field.label
+    assert labels() == [field]
+    state.change(load=((0.0, 0.0), (1.0, 900.0)))
+    control.update()
+    assert labels() == [field, "Edit points"]
+    state.change(load="sine")
+    control.update()
+    assert labels() == [field]
 
 
 def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
