@@ -119,10 +119,14 @@ final one. Of a key value and final value come together, and are one."""
 
 
 class Pulse(DataModel):
-    """Number of the newest picture, and of the last one that is on the screen."""
+    """Number of the newest picture, and of the last one that is on the screen.
+
+    `looks` counts how often the server looked in vain for the answer.
+    """
 
     sent: int = Int(default=0)  # type: ignore[assignment]
     painted: int = Int(default=0)  # type: ignore[assignment]
+    looks: int = Int(default=0)  # type: ignore[assignment]
 
 
 class Display:
@@ -162,10 +166,17 @@ class Display:
             self._update()
 
     def catch_up(self) -> None:
-        """Ask again for the last picture, once its answer counts as lost."""
-        if self.pulse.painted == self.pulse.sent or self._is_waiting():
+        """Ask again for the last picture, once its answer counts as lost.
+
+        Until then any message will do. Panel keeps one that comes just as another has
+        been written, until it writes the next one.
+        """
+        if self.pulse.painted == self.pulse.sent:
             return
-        if self._is_due:
+        if self._is_waiting():
+            with pn.io.hold():
+                self.pulse.looks += 1
+        elif self._is_due:
             self._paint()
         else:
             with pn.io.hold():

@@ -27,8 +27,8 @@ LARGE = 0.026
 """Type size of plots on a projector over the window's height."""
 ROOM = 900
 """Height of a window, px, from which all cards have room."""
-LOOK = 1000
-"""Milliseconds between two looks for a picture that got lost."""
+LOOK = 500
+"""Milliseconds between two looks for a picture that got lost, or has not gone yet."""
 Kinds = tuple[type[View], ...]
 """Views of one card."""
 

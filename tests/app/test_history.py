@@ -158,11 +158,15 @@ def test_a_picture_whose_answer_got_lost_is_asked_for_again(
     sent = display.pulse.sent
     display.catch_up()
     assert display.pulse.sent == sent
+    # A message that may have another one go, which waits for it.
+    assert display.pulse.looks == 1
     monkeypatch.setattr(app.browser, "LOST", 0.0)
     display.catch_up()
     assert display.pulse.sent == sent + 1
     display.pulse.painted = display.pulse.sent
     assert orders == [Ready(), Ready()]
+    display.catch_up()
+    assert display.pulse.looks == 1
 
 
 def test_of_many_pages_each_leaves_the_others_time(

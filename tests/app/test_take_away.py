@@ -38,7 +38,6 @@ from app.views.timeline import Timeline
 from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
-from solver.scenes import CATALOGUE
 from solver.study.comparison import FRICTION, results_in
 
 KINDS = tuple(chain.from_iterable(CARDS))
@@ -176,8 +175,8 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     assert [view.figure.height for view in views] == before
 
 
-@pytest.mark.parametrize("scene", CATALOGUE)
-def test_the_offline_page_is_made_of_every_scene(scene: str) -> None:
+@pytest.mark.parametrize("scene", ["block", "rope", "wall", "arch", "belt", "mesh"])
+def test_the_offline_page_is_made_of_every_kind_of_scene(scene: str) -> None:
     settings = default_settings(scene).replace(**SMALLEST[scene])
     frame = frames.frame_of(settings, Needs(extras=frozenset()), ends=False)
     state = PageState(settings, frame=frame, newest=frame)
