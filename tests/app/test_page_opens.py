@@ -57,15 +57,20 @@ def test_a_first_run_goes_on_once_its_first_picture_is_painted(
     assert [order for order in orders if isinstance(order, Pace)] == [Pace(WHOLE)]
 
 
+def small_page() -> tuple[Page, Runner]:
+    """A page of a small bar, and what its worker would run."""
+    settings = default_settings("bar").replace(elements=10, instants=11)
+    page = Page(PageState(settings))
+    start = Start(page.state.number, settings, math.inf)
+    return page, Runner(start, ReferenceCache(), lambda: False)
+
+
 @pytest.mark.usefixtures("orders")
 def test_figures_that_come_in_sight_are_painted_once_the_browser_has_laid_them_out(
     document: Document,
 ) -> None:
-    settings = default_settings("bar").replace(elements=10, instants=11)
-    state = PageState(settings)
-    page = Page(state)
-    start = Start(state.number, settings, math.inf)
-    runner = Runner(start, ReferenceCache(), lambda: False)
+    page, runner = small_page()
+    state = page.state
     pulse = document.get_model_by_name("pulse")
     live = page._live
 
@@ -96,11 +101,8 @@ def test_figures_that_come_in_sight_are_painted_once_the_browser_has_laid_them_o
 
 @pytest.mark.usefixtures("orders")
 def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> None:
-    settings = default_settings("bar").replace(elements=10, instants=11)
-    state = PageState(settings)
-    page = Page(state)
-    start = Start(state.number, settings, math.inf)
-    runner = Runner(start, ReferenceCache(), lambda: False)
+    page, runner = small_page()
+    state = page.state
     pulse = document.get_model_by_name("pulse")
     last = 0
     for count in (2, 5, 9):
