@@ -12,7 +12,7 @@ import contextlib
 import io
 import struct
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any
@@ -86,17 +86,20 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
         file.write(data)
         file.flush()
         # It prints what it does not like, and then ends the program.
-        quiet = contextlib.redirect_stdout(io.StringIO())
+        said = io.StringIO()
         try:
-            with quiet, contextlib.redirect_stderr(io.StringIO()):
+            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
                 if end == GMSH:
                     mesh = meshio.gmsh.read(file.name)
                 else:
                     mesh = meshio.read(file.name)
         except (meshio.ReadError, *ERRORS) as problem:
-            reason = " ".join(str(problem).replace(file.name, source).split())
+            found = str(problem)
+            if isinstance(problem, SystemExit):
+                found = said.getvalue()
+            reason = " ".join(found.replace(file.name, source).split())
             remedy = f"save it again as Gmsh's .msh, format 4.1 ({reason or 'unread'})"
-            raise RefusedError("mesh", source, CAN, remedy) from None
+            raise RefusedError("mesh", Words("not readable"), CAN, remedy) from None
     return named(mesh)
 
 
@@ -138,11 +141,44 @@ def named(mesh: Any) -> NamedMesh:
                     "elements with the name of their body",
                     "make a physical group of the surface of each body, with a name",
                 )
+    bodies = {name: _of_one_kind(parts) for name, parts in surfaces.items()}
+    for name, edges in _along_named_points(mesh.point_sets, bodies):
+        lines.setdefault(name, []).append(edges)
     return NamedMesh(
         points=_in_plane(mesh.points),
-        surfaces={name: _of_one_kind(parts) for name, parts in surfaces.items()},
+        surfaces=bodies,
         lines={name: np.concatenate(parts) for name, parts in lines.items()},
     )
+
+
+def _along_named_points(
+    sets: Mapping[str, Indices], bodies: Mapping[str, Indices]
+) -> Iterator[tuple[str, Indices]]:
+    """Yield names of sets of points, (n,), and the outer edges of bodies in them.
+
+    Programs such as Abaqus name the nodes of a side. A set of all points of a body says
+    nothing on its sides.
+
+    Parameters
+    ----------
+    sets
+        Numbers of the points of each set, (n,).
+    bodies
+        Corners of the elements of each body, (n, 3) or (n, 4).
+    """
+    outer = list[Indices]()
+    for elements in bodies.values():
+        ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=-1)
+        edges, uses = np.unique(
+            np.sort(ends.reshape(-1, 2), axis=1), axis=0, return_counts=True
+        )
+        outer.append(edges[uses == 1])
+    for name, points in sets.items():
+        if any(np.isin(elements, points).all() for elements in bodies.values()):
+            continue
+        found = [edges[np.isin(edges, points).all(axis=1)] for edges in outer]
+        if any(map(len, found)):
+            yield name, np.concatenate(found)
 
 
 def _blocks(mesh: Any) -> Iterator[tuple[str, Indices, Any]]:

@@ -15,7 +15,13 @@ from solver.files.saved import settings_from_command
 from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
-from solver.scenes.mesh_files import as_text, from_text, named, read_example
+from solver.scenes.mesh_files import (
+    as_text,
+    from_text,
+    named,
+    read_example,
+    read_mesh,
+)
 from solver.scenes.named_sides import deeds_of
 from solver.settings.values import SettingError
 
@@ -228,6 +234,62 @@ def test_names_of_other_formats_are_read(tmp_path: Path) -> None:
     other.cell_sets = sets
     check_named(named(other))
     assert named(other).contacts[0].name == "contact"
+
+
+ABAQUS = """*NODE, NSET=all
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+5, 0, 1, 0
+6, 1, 1, 0
+7, 1, 2, 0
+8, 0, 2, 0
+*ELEMENT, TYPE=CPS4, ELSET=lower
+1, 1, 2, 3, 4
+*ELEMENT, TYPE=CPS4, ELSET=upper
+2, 5, 6, 7, 8
+*NSET, NSET=upper all
+5, 6, 7, 8
+*NSET, NSET=master
+3, 4
+*NSET, NSET=slave
+5, 6
+*NSET, NSET=bottom
+1, 2
+*NSET, NSET=top
+7, 8
+"""
+"""Two squares of a metre on each other, with names of elements and of nodes."""
+
+
+def test_named_nodes_of_abaqus_are_sides_and_contacts() -> None:
+    mesh = read_mesh(ABAQUS.encode(), "squares.inp")
+    check_named(mesh)
+    assert mesh.names == ("lower", "upper")
+    contacts = [(contact.above, contact.below) for contact in mesh.contacts]
+    assert contacts == [(1, 0)]
+    assert [(side.name, side.body) for side in mesh.sides] == [
+        ("bottom", 0),
+        ("top", 1),
+    ]
+
+
+def test_an_unknown_kind_of_element_is_told_by_its_name() -> None:
+    data = ABAQUS.replace("CPS4", "CPE4").encode()
+    with pytest.raises(SettingError, match="not available: CPE4"):
+        text_of_mesh(data, "squares.inp")
+
+
+def test_a_contact_that_is_named_twice_rubs_once() -> None:
+    mesh = read_example("bolted")
+    named_twice = NamedMesh(
+        mesh.points,
+        mesh.surfaces,
+        {**mesh.lines, "again": mesh.lines["upper faces"]},
+    )
+    names = [contact.name for contact in mesh.contacts]
+    assert [contact.name for contact in named_twice.contacts] == names
 
 
 def ring(count: int) -> NamedMesh:

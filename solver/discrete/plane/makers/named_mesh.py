@@ -174,12 +174,19 @@ class NamedMesh:
 
     @cached_property
     def groups(self) -> dict[tuple[str, tuple[int, ...]], Array]:
-        """Edges with a name, (n, 2), by the name and the bodies that have them."""
+        """Edges with a name, (n, 2), by the name and the bodies that have them.
+
+        Where bodies meet an edge has the first of its names: a second contact there
+        would rub once more.
+        """
         groups: dict[tuple[str, tuple[int, ...]], list[tuple[int, int]]] = {}
+        first_names: dict[tuple[int, int], str] = {}
         for name, ends in self.lines.items():
             for low, high in np.sort(self.places[ends], axis=1).tolist():
                 bodies = tuple(self.owners.get((low, high), ()))
-                groups.setdefault((name, bodies), []).append((low, high))
+                is_first = first_names.setdefault((low, high), name) == name
+                if is_first or len(bodies) < 2:
+                    groups.setdefault((name, bodies), []).append((low, high))
         return {key: np.unique(edges, axis=0) for key, edges in groups.items()}
 
     def scaled(self, factor: float) -> NamedMesh:
