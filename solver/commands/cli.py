@@ -39,7 +39,7 @@ from solver.reference.distance import distance_to, held_instants
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import about
+from solver.settings.definitions import about, lines_of
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError, allowed
 from solver.study.quantities import QUANTITIES, reading
@@ -383,6 +383,6 @@ def _settings(chosen: argparse.Namespace) -> int:
             default += f" (method=paper: {json.dumps(of_paper[name])})"
         print(f"{name:<{width}} {unit:<5} default {default:<10} {allowed(definition)}")
         print(f"{'':<{width}} {definition.doc}")
-        for preset, line in about(definition).presets.items():
-            print(f"{'':<{width}}   {preset}: {line}")
+        for line in lines_of(definition):
+            print(f"{'':<{width}}   {line}")
     return 0

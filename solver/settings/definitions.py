@@ -146,8 +146,19 @@ def about(parameter: Parameter) -> About:
 
 def help_of(definition: Parameter) -> str:
     """Help of a setting with a line on each of its presets, as one paragraph."""
-    lines = (f"{name}: {line}." for name, line in about(definition).presets.items())
+    lines = [f"{line}." for line in lines_of(definition)]
     return " ".join([definition.doc or "", *lines])
+
+
+def lines_of(definition: Parameter) -> list[str]:
+    """Lines on the presets of a setting, which begin with their names."""
+    presets = about(definition).presets
+    return [f"{named_preset(preset)}: {line}" for preset, line in presets.items()]
+
+
+def named_preset(preset: str) -> str:
+    """Name of a preset in a sentence, also of one that is an empty text."""
+    return preset or "nothing"
 
 
 def title_of(definition: Parameter) -> str:

@@ -18,6 +18,7 @@ from solver.settings.definitions import (
     Rows,
     TextParameter,
     about,
+    named_preset,
     title_of,
 )
 
@@ -46,7 +47,8 @@ def allowed(definition: Parameter) -> str:
     if isinstance(definition, CurveParameter):
         return f"{', '.join(definition.presets)}, or {_allowed_rows(definition)}"
     if isinstance(definition, TextParameter):
-        return ", ".join([*definition.presets, f"or {definition.others}"])
+        presets = map(named_preset, definition.presets)
+        return ", ".join([*presets, f"or {definition.others}"])
     if isinstance(definition, param.Boolean):
         return "true or false"
     if isinstance(definition, param.Selector):

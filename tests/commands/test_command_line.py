@@ -105,7 +105,7 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
         assert head.endswith(allowed(definition))
         assert text.strip() == definition.doc
         for preset, line in about(definition).presets.items():
-            assert next(rest).strip() == f"{preset}: {line}"
+            assert next(rest).strip() == f"{preset or 'nothing'}: {line}"
     assert next(rest, None) is None
 
 
@@ -122,7 +122,7 @@ def test_every_preset_of_a_path_or_a_table_has_a_line_of_its_own(scene):
             assert 5 < len(line) < 140
             assert "\n" not in line
             assert not line.endswith(".")
-            assert f"{preset}: {line}." in help_of(definition)
+            assert f"{preset or 'nothing'}: {line}." in help_of(definition)
 
 
 @pytest.mark.parametrize(
