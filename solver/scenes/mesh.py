@@ -382,5 +382,7 @@ class MeshSettings(PlaneSettings):
 
 def _of_setting(name: str, refusal: RefusedError) -> SettingError:
     """Refusal of a setting by what is refused in it."""
-    found = Words(f"{refusal.name} {refusal.value}")
+    found = refusal.value
+    if refusal.name != name:
+        found = Words(f"{refusal.name} {refusal.value}")
     return SettingError(name, found, refusal.allowed, refusal.remedy)
