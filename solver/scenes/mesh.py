@@ -304,6 +304,18 @@ class MeshSettings(PlaneSettings):
                 f"there are {len(numbers)}: give those of {names}, in this order",
             )
 
+    def left_out(self) -> Iterator[str]:
+        """Yield sentences on what names and tables say that a run leaves out."""
+        yield from super().left_out()
+        between = [name for name, bodies in self.parts.groups if len(bodies) > 1]
+        for name in dict.fromkeys(between):
+            _, deeds = taken_apart(name)
+            if deeds:
+                yield (
+                    f"mesh: “{name}” is a contact where it lies between two bodies; "
+                    f"{' and '.join(deeds)} says nothing there"
+                )
+
     @cached_property
     def bodies(self) -> Bodies:
         """The bodies; one metre thick."""

@@ -365,6 +365,18 @@ def test_sides_do_as_their_names_say_or_as_they_are_told() -> None:
         deeds_of(lines, "rim fixed")
 
 
+def test_a_run_says_that_nothing_presses_what_lies_between_bodies() -> None:
+    mesh = read_example("bolted")
+    lines = {
+        name.replace("upper faces", "upper faces pressed"): edges
+        for name, edges in mesh.lines.items()
+    }
+    text = as_text(NamedMesh(mesh.points, mesh.surfaces, lines))
+    (sentence,) = MESH.checked({"mesh": text}).left_out()
+    assert "“upper faces pressed” is a contact" in sentence
+    assert not list(MESH.checked({}).left_out())
+
+
 @pytest.mark.parametrize(
     ("changes", "name"),
     [
