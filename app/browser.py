@@ -18,6 +18,7 @@ from bokeh.models import CustomJS
 from app.messages import Ready
 from app.server import PAGES
 from app.state import PageState
+from app.views.scene import NEAR
 from app.views.view import View
 
 log = logging.getLogger(__name__)
@@ -99,6 +100,24 @@ try {
   browser.is_new = !location.search && localStorage.getItem("slipfront") == null
 } catch {}
 """
+HOLD = f"""
+const hold = (event) => {{
+  const path = event.composedPath()
+  const isScene = path.some((each) => each.getAttribute?.("aria-label") == "Scene")
+  const canvas = path.find((each) => each.matches?.(".bk-events"))
+  const handles = browser.document.get_model_by_name("handles")
+  if (!isScene || !canvas || !handles) {{ return }}
+  const [touch] = event.changedTouches
+  const box = canvas.getBoundingClientRect()
+  const at = [touch.clientX - box.x, box.bottom - touch.clientY]
+  const {{x, y}} = handles.data
+  const isNear = (x, y) => Math.hypot(at[0] - x, at[1] - y) <= {NEAR}
+  if (Array.from(x).some((each, n) => isNear(each, y[n]))) {{ event.preventDefault() }}
+}}
+document.addEventListener("touchstart", hold, {{passive: false}})
+"""
+"""Script that has a finger on a handle of the picture drag it. Elsewhere on the picture
+a finger scrolls the page, and then the browser breaks off what it drags."""
 
 
 AT_ONCE = """
@@ -311,6 +330,7 @@ class Browser(DataModel):
         document.add_root(self)
         document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
         document.js_on_event(DocumentReady, CustomJS(args=args, code=TELL))
+        document.js_on_event(DocumentReady, CustomJS(args=args, code=HOLD))
 
 
 class AtOnce(pn.custom.JSComponent):
