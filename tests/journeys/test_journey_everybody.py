@@ -43,7 +43,7 @@ HANDLE = f"""() => {{
   const {{x, y}} = ({MODEL})("handles").data
   return [x[0], y[0]]
 }}"""
-"""Script that tells where the first handle is, px from the lower left of the picture."""
+"""Script that tells where the first handle is, px from the lower left of the scene."""
 Place = tuple[float, float]
 
 
@@ -171,7 +171,7 @@ def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
     figure(page, 0).click(trial=True)
 
 
-def test_keys_open_dialogs_and_the_view_for_a_projector(page: Page) -> None:
+def test_keys_open_dialogs_selects_and_the_view_for_a_projector(page: Page) -> None:
     go(page, f"?{ANSWER}")
     expect(field(page, "Peak load")).to_be_visible()
     is_solved(page)
@@ -184,6 +184,25 @@ def test_keys_open_dialogs_and_the_view_for_a_projector(page: Page) -> None:
         page.keyboard.press("Enter")
         expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(1)
         close_dialog(page)
+        expect(button(page, name)).to_be_focused()
+    choice = page.get_by_role("combobox", name="Path of the force at the right end")
+    choice.focus()
+    for keys in ("Space", "Enter"):
+        # A letter looks for a choice that begins with it, and goes nowhere else.
+        page.keyboard.press(keys)
+        expect(page.get_by_role("listbox")).to_be_visible()
+        page.keyboard.press("t")
+        page.keyboard.press("Enter")
+        expect(choice).to_have_text("triangle")
+        expect(choice).to_be_focused()
+    page.keyboard.press("Enter")
+    page.keyboard.press("End")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog")).to_contain_text("Points")
+    close_dialog(page)
+    expect(choice).to_be_focused()
+    go(page, f"?{ANSWER}")
+    expect(choice).to_have_text("sine")
     count = page.locator(".bk-Figure").count()
     page.locator(".sentence").click()
     page.keyboard.press("p")
