@@ -18,6 +18,7 @@ from bokeh.models import CustomJS
 from app.messages import Ready
 from app.server import PAGES
 from app.state import PageState
+from app.views.scene import NEAR
 from app.views.view import View
 
 log = logging.getLogger(__name__)
@@ -33,7 +34,10 @@ SHORTEST = 0.02
 BEHIND = 200
 """Time for which a value that the browser sent before it told that it has shown all may
 still be on its way, ms: Panel gathers values for 50 ms."""
-TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
+TAKEN = (
+    "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
+    ", [role=combobox], [role=listbox]"
+)
 """Elements that take keys for themselves (a CSS selector)."""
 COPY = """
 const link = browser.copied
@@ -99,6 +103,60 @@ try {
   browser.is_new = !location.search && localStorage.getItem("slipfront") == null
 } catch {}
 """
+HOLD = f"""
+const hold = (event) => {{
+  const path = event.composedPath()
+  const isScene = path.some((each) => each.getAttribute?.("aria-label") == "Scene")
+  const canvas = path.find((each) => each.matches?.(".bk-events"))
+  const handles = browser.document.get_model_by_name("handles")
+  if (!isScene || !canvas || !handles) {{ return }}
+  const [touch] = event.changedTouches
+  const box = canvas.getBoundingClientRect()
+  const at = [touch.clientX - box.x, box.bottom - touch.clientY]
+  const {{x, y}} = handles.data
+  const isNear = (x, y) => Math.hypot(at[0] - x, at[1] - y) <= {NEAR}
+  if (Array.from(x).some((each, n) => isNear(each, y[n]))) {{ event.preventDefault() }}
+}}
+document.addEventListener("touchstart", hold, {{passive: false}})
+"""
+"""Script that has a finger on a handle of the picture drag it. Elsewhere on the picture
+a finger scrolls the page, and then the browser breaks off what it drags."""
+
+CHOOSE = """
+const openedBy = (keys) => (event) => {
+  const target = event.composedPath()[0]
+  if (target.matches?.("div[role=combobox]") && keys.includes(event.key)) {
+    target.click()
+  }
+}
+document.addEventListener("keydown", openedBy(["Enter", "ArrowDown", "ArrowUp"]))
+// As it comes up, this key chooses what has the focus.
+document.addEventListener("keyup", openedBy([" "]))
+"""
+"""Script that has keys open a select: a click alone opens panel-material-ui's."""
+RETURN = """
+let opener = null
+const isClosing = ({key}, target) =>
+  key == "Escape" || (key == "Enter" && target.closest("[aria-label=close]"))
+const giveBack = (tries) => setTimeout(() => {
+  if (document.activeElement == document.body) {
+    opener?.focus()
+  } else if (tries > 0) {
+    giveBack(tries - 1)
+  }
+}, 100)
+document.addEventListener("keydown", (event) => {
+  const path = event.composedPath()
+  if (!path.some((each) => each.matches?.("[role=dialog], [role=listbox]"))) {
+    opener = path[0]
+  } else if (isClosing(event, path[0])) {
+    giveBack(20)
+  }
+}, {capture: true})
+addEventListener("pointerdown", () => { opener = null }, {capture: true})
+"""
+"""Script that gives the focus back to where a key opened a dialog once a key closes it:
+MUI would give it to the part of the page around that, which takes none."""
 
 
 AT_ONCE = """
@@ -309,8 +367,8 @@ class Browser(DataModel):
             ["given", "is_stale"],
         )
         document.add_root(self)
-        document.js_on_event(DocumentReady, CustomJS(args=args, code=LISTEN))
-        document.js_on_event(DocumentReady, CustomJS(args=args, code=TELL))
+        for script in (LISTEN, TELL, HOLD, CHOOSE, RETURN):
+            document.js_on_event(DocumentReady, CustomJS(args=args, code=script))
 
 
 class AtOnce(pn.custom.JSComponent):

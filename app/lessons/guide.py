@@ -36,6 +36,13 @@ from app.widgets import dialog, download, looks
 from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
 
+TO_TOP = """
+cb_obj.scroll_position = 0
+Bokeh.index.find_one(cb_obj)?.el.scrollIntoView()
+"""
+"""Script that brings the title of a new text into sight: the text itself scrolls, or in
+a narrow window the page does."""
+
 
 class Guide:
     """The lesson or the case that a page is in, if any.
@@ -64,6 +71,7 @@ class Guide:
         self._shown: tuple[str, str, bool] | None = None
         self._type = TEXT
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8))
+        self.view.jscallback(children=TO_TOP)
         self.dialogs = {
             "lesson": dialog("Lessons", width_option="md"),
             "case": dialog("Cases of the trade", width_option="md"),

@@ -36,7 +36,9 @@ APART = 1.05
 SEEN_IN_TIME = (1e-2, 2.0)
 """Errors over run time that are in sight in any case."""
 SHORTEST = 20
-"""Least number of iterations for which the axis has room."""
+SHORTEST_AT_END = 8
+"""Least numbers of iterations for which the axis has room, during a run and once it has
+ended: an answer of two would be a line at the left edge."""
 CURVES = {
     "error_force": ("force", ERROR, 3.5, "solid"),
     "error_displacement": ("displ.", DISPLACEMENT, 2.0, "solid"),
@@ -166,7 +168,10 @@ class Convergence(ErrorPlot):
         self.y.hold(number, SEEN, [max(low, LEAST)], errors)
         ghosts = self.sources["ghost"].data["x"]
         ends = [float(newest.iteration), *map(float, ghosts[-1:])]
-        self.x.hold(number, [0.0, rounded_up(NAMED * max(*ends, SHORTEST))])
+        has_ended = newest.status is not None
+        shortest = SHORTEST_AT_END if has_ended else SHORTEST
+        end = rounded_up(NAMED * max(*ends, shortest))
+        self.x.hold((number, has_ended), [0.0, end])
 
     def _show_names(self, newest: Frame) -> None:
         """Write the names of curves at their ends, one above the other.

@@ -168,13 +168,21 @@ def _beside(word: Word, line: Array, obstacles: Obstacles) -> Word:
 
 
 def _slope(picture: Picture) -> Word:
-    """The angle of bodies that tilt, beside their foot."""
+    """The angle of bodies that tilt, beside their foot.
+
+    It stands at the side at which they rise, below them.
+    """
     layout = picture.layout
-    x = 0.5 * picture.description.length * layout.scale[0] + 30.0
+    side = 1.0
+    align = "left"
+    if picture.tilt < 0.0:
+        side = -1.0
+        align = "right"
+    x = side * (0.5 * picture.description.length * layout.scale[0] + 30.0)
     text = f"slope {number(float(np.degrees(picture.tilt)))}°"
     # The word is not turned with the bodies.
     anchor = np.array([x, -14.0]) + layout.origin
-    return Word(text, anchor, "left", FORCE)
+    return Word(text, anchor, align, FORCE)
 
 
 def _name_of_ground(picture: Picture) -> list[Word]:

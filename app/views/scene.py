@@ -75,6 +75,7 @@ class Scene(View):
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
         self.picture: Picture | None = None
         self._held: tuple[Arrows | Rest, Picture] | None = None
+        self._moved_to = 0.0
         plot.on_event(PanStart, self._hold)
         plot.on_event(Pan, self._drag)
         plot.on_event(PanEnd, self._let_go)
@@ -123,6 +124,8 @@ class Scene(View):
             text_baseline="middle",
         )
         if not self.is_bare:
+            # By this name a touch finds them (`HOLD`, `browser.py`).
+            self.sources["marks"].name = "handles"
             self.add(
                 "hints",
                 "Text",
@@ -278,14 +281,18 @@ class Scene(View):
 
     def _drag(self, event: Any) -> None:
         if self._held is not None:
-            self.state.drag(self._held[0].setting, self._value(event))
+            self._moved_to = self._value(event)
+            self.state.drag(self._held[0].setting, self._moved_to)
 
     def _let_go(self, event: Any) -> None:
+        """Release the arrow at the value of its last move.
+
+        The event itself has no place where the browser has broken off a touch.
+        """
         if self._held is not None:
             name = self._held[0].setting
-            value = self._value(event)
             self._held = None
-            self.state.release(name, value)
+            self.state.release(name, self._moved_to)
 
     def _value(self, event: Any) -> float:
         """Value of the held load at the pointer, within the range of its slider."""

@@ -86,6 +86,17 @@ for (const each of hidden) each.visible = !each.visible
 """Script that hides the glyph whose copy in the legend is clicked, or shows it again;
 marks stay as they are."""
 
+INSPECT = """
+const view = Bokeh.index.find_one(cb_obj)
+const turn = () => {
+  for (const tool of cb_obj.toolbar.inspectors) { tool.active = !cb_obj.hold_render }
+  view?.repainted.disconnect(turn)
+}
+if (cb_obj.hold_render) { turn() } else { view?.repainted.connect(turn) }
+"""
+"""Script that has a figure show what is under the pointer once it is painted, and not
+while it waits: what it draws has no place on the screen before."""
+
 
 class View:
     """A figure, made when it is first seen, below a legend of its curves.
@@ -142,6 +153,9 @@ class View:
         for plot in (self._figure, self.beside):
             if plot is not None:
                 plot.hold_render = is_held
+                # From then on `INSPECT` says when they look for what is under the
+                # pointer.
+                plot.toolbar.active_inspect = None
 
     def magnify(self, size: str) -> None:
         """Set the type size of all figures, as CSS has it."""
@@ -244,6 +258,7 @@ class View:
             **(ranges | more),
         )
         plot.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
+        plot.js_on_change("hold_render", CustomJS(code=INSPECT))
         plot.toolbar.autohide = True
         plot.toolbar.logo = None
         plot.min_border = 2

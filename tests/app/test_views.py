@@ -363,6 +363,16 @@ def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None
     assert max(names["x"]) < 0.9 * view.figure.x_range.end
 
 
+def test_an_answer_of_few_iterations_is_no_line_at_the_left_edge_of_its_axis() -> None:
+    first, _, answer = frames_of("bar")
+    view = view_of(Convergence, first)
+    # A search has room to go on.
+    assert view.figure.x_range.end >= 20.0
+    history = {name: values[:2] for name, values in answer.history.items()}
+    shown(view, replace(answer, iteration=2, history=history))
+    assert view.figure.x_range.end <= 10.0
+
+
 def test_each_curve_of_errors_is_hidden_by_the_legend_while_its_name_stays() -> None:
     answer = frames_of("bar")[2]
     view = view_of(Convergence, answer)

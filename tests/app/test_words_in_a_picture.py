@@ -8,6 +8,7 @@ from pictures import PHASES, boxes_of_words, frame_of, meet, shown, small
 
 from app.frame import Frame, Selection
 from app.lessons.catalogue import LESSONS
+from app.state import default_settings
 from app.views.picture import Picture
 from app.views.scene import HEIGHT, WIDTH, Scene
 from app.views.view import TEXT
@@ -113,3 +114,21 @@ def test_words_meet_no_arrow_at_the_end_of_a_body(phase: float) -> None:
     corners = np.stack([x, y], axis=1)
     for text, box in boxes_of_words(view, letter=7.0, half=7.0):
         assert not meet(box, corners, corners), text
+
+
+@pytest.mark.parametrize("slope", [-29.0, 29.0])
+def test_the_slope_stands_beside_a_wall_whichever_way_it_tilts(slope: float) -> None:
+    settings = default_settings("wall").replace(slope=slope, slope_load="ramp")
+    frame = frame_of(settings)
+    view = shown(frame)
+    view.magnify("28px")
+    view.lay_out(840.0, 640.0)
+    for phase in (0.25, 0.5, 1.0):
+        view.update(frame, Selection(phase), None)
+        picture = picture_of(view)
+        corners = picture.page(picture.nodes[frame.run.geometry.cells])
+        lowest = corners.min(axis=1)
+        highest = corners.max(axis=1)
+        for text, box in boxes_of_words(view, letter=14.0, half=10.0):
+            if text.startswith("slope"):
+                assert not meet(box, lowest, highest), phase

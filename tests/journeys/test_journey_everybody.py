@@ -11,12 +11,13 @@ from axe_playwright_python.sync_playwright import Axe
 from browser import Chrome, Server
 from pages import (
     ANSWER,
-    Visit,
+    MODEL,
     button,
     close_dialog,
     comes,
     field,
     figure,
+    figures,
     go,
     is_solved,
     status,
@@ -36,6 +37,14 @@ SIZE = """() => {
 
 OF_THE_WIDGETS = ("aria-prohibited-attr", "aria-progressbar-name", "button-name")
 """What panel-material-ui's own descriptions, bars and number fields break."""
+
+
+HANDLE = f"""() => {{
+  const {{x, y}} = ({MODEL})("handles").data
+  return [x[0], y[0]]
+}}"""
+"""Script that tells where the first handle is, px from the lower left of the scene."""
+Place = tuple[float, float]
 
 
 RULES = {
@@ -96,11 +105,58 @@ def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(page: Page) ->
     is_clean()
 
 
-def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
-    visit: Visit,
+@pytest.fixture(scope="module")
+def phone(chrome: Chrome, server: Server) -> Iterator[Page]:
+    """A page on a phone that is opened once."""
+    with visits(server, chrome) as visit:
+        yield visit(f"?{ANSWER}", WIDTH, HEIGHT, has_touch=True, is_mobile=True)
+
+
+def swipe(page: Page, start: Place, end: Place) -> None:
+    """Move a finger from a place in the window to another, px."""
+    client = page.context.new_cdp_session(page)
+
+    def touch(kind: str, *fingers: Place) -> None:
+        points = [{"x": x, "y": y} for x, y in fingers]
+        client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", start)
+    for share in (0.25, 0.5, 0.75, 1.0):
+        x, y = (a + share * (b - a) for a, b in zip(start, end, strict=True))
+        touch("touchMove", (x, y))
+    touch("touchEnd")
+    client.detach()
+
+
+def test_a_finger_drags_a_handle_of_the_picture_and_else_scrolls_the_page(
+    phone: Page,
 ) -> None:
-    page = visit(f"?{ANSWER}", WIDTH, HEIGHT, has_touch=True, is_mobile=True)
+    is_solved(phone)
+    expect(figures(phone)).to_contain_text("Force −900 N")
+    picture = figure(phone, 0)
+    box = picture.bounding_box()
+    assert box is not None
+    x, y = phone.evaluate(HANDLE)
+    handle = box["x"] + x, box["y"] + box["height"] - y
+    swipe(phone, handle, (handle[0] + 40.0, handle[1]))
+    expect(figures(phone)).to_contain_text(re.compile(r"Force −(1\.[5-9]|2).* kN"))
+    is_solved(phone)
+    middle = box["x"] + 0.5 * box["width"], box["y"] + 0.6 * box["height"]
+    swipe(phone, middle, (middle[0], middle[1] - 150.0))
+    moved = picture.bounding_box()
+    assert moved is not None
+    assert moved["y"] < box["y"] - 50.0
+    expect(figures(phone)).to_contain_text(re.compile(r"Force −(1\.[5-9]|2).* kN"))
+
+
+def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
+    phone: Page,
+) -> None:
+    page = phone
+    go(page, f"?{ANSWER}")
+    expect(figures(page)).to_contain_text("Force −900 N")
     is_solved(page)
+    page.locator(".status").scroll_into_view_if_needed()
     assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
     box = figure(page, 0).bounding_box()
     assert box is not None
@@ -115,7 +171,7 @@ def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
     figure(page, 0).click(trial=True)
 
 
-def test_keys_open_dialogs_and_the_view_for_a_projector(page: Page) -> None:
+def test_keys_open_dialogs_selects_and_the_view_for_a_projector(page: Page) -> None:
     go(page, f"?{ANSWER}")
     expect(field(page, "Peak load")).to_be_visible()
     is_solved(page)
@@ -128,6 +184,25 @@ def test_keys_open_dialogs_and_the_view_for_a_projector(page: Page) -> None:
         page.keyboard.press("Enter")
         expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(1)
         close_dialog(page)
+        expect(button(page, name)).to_be_focused()
+    choice = page.get_by_role("combobox", name="Path of the force at the right end")
+    choice.focus()
+    for keys in ("Space", "Enter"):
+        # A letter looks for a choice that begins with it, and goes nowhere else.
+        page.keyboard.press(keys)
+        expect(page.get_by_role("listbox")).to_be_visible()
+        page.keyboard.press("t")
+        page.keyboard.press("Enter")
+        expect(choice).to_have_text("triangle")
+        expect(choice).to_be_focused()
+    page.keyboard.press("Enter")
+    page.keyboard.press("End")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog")).to_contain_text("Points")
+    close_dialog(page)
+    expect(choice).to_be_focused()
+    go(page, f"?{ANSWER}")
+    expect(choice).to_have_text("sine")
     count = page.locator(".bk-Figure").count()
     page.locator(".sentence").click()
     page.keyboard.press("p")

@@ -112,6 +112,26 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     expect(field(page, "Friction coefficient")).to_be_visible()
 
 
+def test_an_answer_and_the_next_lesson_begin_with_their_titles_in_sight(
+    page: Page,
+) -> None:
+    page.set_viewport_size({"width": 1280, "height": 480})
+    choose(page, DRAWN)
+    title = page.get_by_role("heading", name=DRAWN)
+    page.locator(".lesson").get_by_role("button").last.scroll_into_view_if_needed()
+    expect(title).not_to_be_in_viewport()
+    button(page, "Show me").click()
+    expect(page.get_by_role("alert")).to_be_visible()
+    expect(title).to_be_in_viewport()
+    following = button(page, "Next lesson")
+    following.scroll_into_view_if_needed()
+    expect(title).not_to_be_in_viewport()
+    following.click()
+    expect(page.get_by_role("heading", name="More substructures")).to_be_in_viewport()
+    button(page, "Explore freely").click()
+    page.set_viewport_size({"width": 1280, "height": 720})
+
+
 @dataclass(frozen=True)
 class School:
     """A class: its code, and the pages of its leader and of one who follows.

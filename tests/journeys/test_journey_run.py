@@ -24,6 +24,7 @@ from pages import (
     holds,
     is_solved,
     iteration,
+    painted,
     slider,
     status,
     visits,
@@ -53,6 +54,27 @@ PIECES = """() => {
   return arrows?.data_source.get_array("x").length > 2
 }"""
 """Whether the pieces of the structure have forces."""
+
+
+REST = """() => {
+  const canvases = (root) => [...root.querySelectorAll("*")].flatMap((each) => [
+    ...(each.matches(".bk-events") ? [each] : []),
+    ...(each.shadowRoot ? canvases(each.shadowRoot) : []),
+  ])
+  let count = 0
+  const move = () => {
+    for (const canvas of canvases(document)) {
+      const {x, y, width, height} = canvas.getBoundingClientRect()
+      const place = {clientX: x + 0.5 * width, clientY: y + 0.5 * height}
+      const who = {isPrimary: true, bubbles: true, composed: true}
+      canvas.dispatchEvent(new PointerEvent("pointermove", {...place, ...who}))
+      count += 1
+    }
+  }
+  const timer = setInterval(move, 5)
+  window.stopped = () => { clearInterval(timer); return count }
+}"""
+"""Script that moves a pointer in the middle of each plot, until it is stopped."""
 
 
 @pytest.fixture(scope="module")
@@ -147,6 +169,32 @@ def has_plots_beside(page: Page) -> bool:
     """Check whether plots stand beside the picture, and not below it."""
     scene, plot = (figure(page, number).bounding_box() for number in (0, 2))
     return bool(scene and plot and scene["x"] + scene["width"] <= plot["x"])
+
+
+def test_a_pointer_that_rests_on_a_plot_may_be_there_before_it_is_painted(
+    page: Page,
+) -> None:
+    # What goes wrong in the browser meanwhile fails the page.
+    page.evaluate(REST)
+    for name in ("Loop", "Contact force", "Error over run time", "Convergence"):
+        page.get_by_role("tab", name=name, exact=True).click()
+        painted(page, 2)
+    assert page.evaluate("stopped()") > 20
+    box = figure(page, 2).bounding_box()
+    assert box is not None
+    # Once it is there the plot tells its values.
+    tip = page.locator(".bk-tooltip-row-value, .bk-Tooltip").first
+
+    def finds() -> bool:
+        for share in range(10, 90, 2):
+            page.mouse.move(
+                box["x"] + 0.5 * box["width"], box["y"] + 0.01 * share * box["height"]
+            )
+            if tip.is_visible():
+                return True
+        return False
+
+    wait_for(finds)
 
 
 def test_whoever_goes_through_the_scenes_finds_each_told_and_solved(
