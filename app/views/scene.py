@@ -277,6 +277,7 @@ class Scene(View):
         )
         if np.hypot(*(nearest.handle - at)) <= NEAR:
             self._held = nearest, picture
+            self._moved_to = self._value(event)
             self.state.is_dragged = True
 
     def _drag(self, event: Any) -> None:
