@@ -117,6 +117,43 @@ def test_steps_of_all_instants_together_lead_where_one_by_one_they_do(monkeypatc
     np.testing.assert_allclose(together, walked, rtol=0.0, atol=1e-2 * change)
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"voussoirs": 39, "friction": 0.49, "thickness": 0.29, "instants": 9},
+        {"voussoirs": 36, "friction": 0.58, "thickness": 0.34, "centres": 0.5},
+    ],
+    ids=str,
+)
+def test_thick_rings_of_a_quarter_circle_are_in_balance_after_each_local_stage(changes):
+    moved = {"span": 90.0, "displacement": 7e-4, "instants": 15}
+    settings = settings_of("arch", **(moved | changes))
+    for one in iterates(settings, 6):
+        missing, size = unbalanced(one.problem, one.boundary_local_force)
+        assert np.abs(missing).max() <= 1e-8 * size.max()
+    assert errors(settings, 30).min() <= 0.01
+
+
+def test_paths_from_instant_to_instant_lead_to_balance_without_newtons_steps(
+    monkeypatch,
+):
+    settled = rigid_balance.Balance.settled
+    ends = []
+
+    def followed(self, loading, sliders, guesses, before, last):
+        is_pressed = last is not None and last[0].load.any()
+        if not is_pressed:
+            return settled(self, loading, sliders, guesses, before, last)
+        end = self._followed(last, loading, sliders)
+        assert end.error <= self.enough
+        ends.append(end)
+        return end
+
+    monkeypatch.setattr(rigid_balance.Balance, "settled", followed)
+    assert errors(arch(instants=13), 25)[-1] <= 0.01
+    assert len(ends) > 10
+
+
 def test_bodies_that_move_far_are_in_balance_up_to_rounding(monkeypatch):
     settings = settings_of("arch", displacement=0.1)
     problem = discretise(settings)
@@ -125,7 +162,7 @@ def test_bodies_that_move_far_are_in_balance_up_to_rounding(monkeypatch):
     def never(*_):
         raise AssertionError("Rounding was taken for want of balance.")
 
-    monkeypatch.setattr(rigid_balance.Balance, "_by_known_bounds", never)
+    monkeypatch.setattr(rigid_balance.Balance, "_followed", never)
     field = np.zeros((problem.n_rows, problem.n_instants), order="F")
     assert np.abs(shifts.balanced(field)).max() > 0.0
 

@@ -194,7 +194,11 @@ class RigidBodies:
             if not is_lost:
                 guesses = self._guesses(shifts, instant)
                 state = self._balance.settled(
-                    loading.part(here), sliders, guesses, before - centre
+                    loading.part(here),
+                    sliders,
+                    guesses,
+                    before - centre,
+                    _instant_before(loading, shifts, instant),
                 )
                 is_lost = not state.error <= LOST
             if state is None or is_lost:
@@ -224,6 +228,16 @@ class RigidBodies:
             self._times_lost += 1
         else:
             self._times_lost = 0
+
+
+def _instant_before(
+    loading: Loading, shifts: Array, instant: int
+) -> tuple[Loading, Array] | None:
+    """Loading and shifts, (n_motions, 1), before an instant; None before the first."""
+    if instant == 0:
+        return None
+    before = slice(instant - 1, instant)
+    return loading.part(before), shifts[:, before]
 
 
 def _motions(

@@ -48,6 +48,10 @@ class Loading(NamedTuple):
         """The loading of some of the instants."""
         return Loading(self.jump[:, instants], self.load[:, instants])
 
+    def since(self, before: Loading) -> Loading:
+        """Changes of jumps and loads since others."""
+        return Loading(self.jump - before.jump, self.load - before.load)
+
 
 class RigidState(NamedTuple):
     """Positions of all bodies at some instants, and the forces there; all scaled.
@@ -68,10 +72,6 @@ class RigidState(NamedTuple):
     presses, slips
         Whether each pair presses, and the sign of its friction if it slips, else 0,
         shape (n_pairs, n_instants).
-    bound
-        Largest friction forces, shape (n_pairs, n_instants).
-    has_known_bound
-        Whether these were given, and do not follow what presses.
     error
         Largest unbalanced force, over the largest load of a body, (n_instants,).
     """
@@ -84,8 +84,6 @@ class RigidState(NamedTuple):
     sticking: Array
     presses: Flags
     slips: Array
-    bound: Array
-    has_known_bound: bool
     error: Array
 
     def part(self, instants: slice | Indices) -> RigidState:
@@ -99,8 +97,6 @@ class RigidState(NamedTuple):
             sticking=self.sticking[:, instants],
             presses=self.presses[:, instants],
             slips=self.slips[:, instants],
-            bound=self.bound[:, instants],
-            has_known_bound=self.has_known_bound,
             error=self.error[instants],
         )
 
@@ -165,14 +161,11 @@ class RigidForces:
         position: Array,
         loading: Loading,
         before: Array | None = None,
-        known_bound: Array | None = None,
     ) -> RigidState:
         """State where the bodies are at a position, (n_motions, n_instants).
 
         `before` are the sliders at the instant before each, (n_pairs, n_instants);
         without them instants are all, and friction goes on from one to the next.
-        `known_bound` is that of friction, of the same shape, where it does not follow
-        what presses.
         """
         size = self._n_pairs
         moved = self._jumps_and_springs(position)
@@ -180,9 +173,7 @@ class RigidForces:
         along = jump[size:]
         overlap = -self._gap - jump[:size]
         pressing = np.maximum(overlap, 0.0) / self.across
-        bound = known_bound
-        if bound is None:
-            bound = self.friction * pressing
+        bound = self.friction * pressing
         if before is None:
             after = self._play(along, self.along * bound)
             before = np.concatenate([self._start, after[:, :-1]], axis=1)
@@ -199,23 +190,18 @@ class RigidForces:
             sticking=sticking,
             presses=overlap > 0.0,
             slips=np.sign(sticking) * (np.abs(sticking) > bound),
-            bound=bound,
-            has_known_bound=known_bound is not None,
             error=np.abs(unbalanced).max(axis=0) / self.load_size,
         )
 
-    def factored(self, state: RigidState, held: float) -> BandFactors:
-        """Factors of the stiffness at a state, where no status changes.
+    def factored(self, presses: Flags, slips: Array, held: float) -> BandFactors:
+        """Factors of the stiffness where no status changes.
 
-        A share `held` of the springs at all rows holds every motion.
+        `presses` and `slips` are those of a `RigidState`; a share `held` of the springs
+        at all rows holds every motion.
         """
-        pressing = state.presses / self.across
-        sticks = state.presses & (state.slips == 0.0)
-        rubbing = state.slips * self.friction * pressing
-        if state.has_known_bound:
-            sticks = (state.bound > 0.0) & (state.slips == 0.0)
-            rubbing = np.zeros_like(rubbing)
-        sticking = sticks / self.along
+        pressing = presses / self.across
+        sticking = (presses & (slips == 0.0)) / self.along
+        rubbing = slips * self.friction * pressing
         return self._band.factored(np.concatenate([pressing, sticking, rubbing]), held)
 
     def moved(
@@ -233,10 +219,7 @@ class RigidForces:
             What the sliders at the instant before each move by in a whole step, shape
             (n_pairs, n_instants).
         """
-        known = None
-        if state.has_known_bound:
-            known = state.bound
-        whole = self.at(state.position + step, loading, state.before + moves, known)
+        whole = self.at(state.position + step, loading, state.before + moves)
         work = _work(state.unbalanced, step)
         end_work = _work(whole.unbalanced, step)
         goes_too_far = (work > 0.0) & (end_work < -TOO_FAR * work)
@@ -248,7 +231,7 @@ class RigidForces:
             state.part(some), step[:, some], moves[:, some], end_work[some]
         )
         position = state.position + share * step
-        return self.at(position, loading, state.before + share * moves, known)
+        return self.at(position, loading, state.before + share * moves)
 
     def _share(
         self, state: RigidState, step: Array, moves: Array, end_work: Array
@@ -300,9 +283,7 @@ class RigidForces:
         across = changes[: self._n_pairs]
         along = changes[self._n_pairs :]
         pressing = np.maximum(state.overlap - share * across, 0.0) / self.across
-        bound = state.bound
-        if not state.has_known_bound:
-            bound = self.friction * pressing
+        bound = self.friction * pressing
         sticking = state.sticking + share * (moves - along) / self.along
         friction = np.minimum(np.maximum(sticking, -bound), bound)
         return np.concatenate([pressing, friction])
