@@ -201,7 +201,8 @@ class Display:
         if frame is None:
             return
         began = time.thread_time()
-        with pn.io.hold():
+        # Frozen, as new layers are looked for in the whole document only once.
+        with pn.io.hold(freeze=True):
             for view in self.views:
                 try:
                     view.update(frame, state.selection, state.ghost)

@@ -9,8 +9,6 @@ import panel as pn
 from bokeh.models import (
     ColorBar,
     Glyph,
-    GlyphRenderer,
-    HoverTool,
     LayoutDOM,
     LinearColorMapper,
     Pane,
@@ -64,13 +62,6 @@ def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     )
     plot.add_layout(bar, "right")
     return bar
-
-
-def hover(
-    plot: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]
-) -> None:
-    """Show values at the pointer: titles, and columns of the renderers' sources."""
-    plot.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
 
 
 def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:
