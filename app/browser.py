@@ -18,7 +18,7 @@ from bokeh.models import CustomJS
 from app.messages import Ready
 from app.server import PAGES
 from app.state import PageState
-from app.views.view import View
+from app.views.view import View, place
 
 log = logging.getLogger(__name__)
 LOST = 5.0
@@ -201,14 +201,14 @@ class Display:
         if frame is None:
             return
         began = time.thread_time()
-        # Frozen, as new layers are looked for in the whole document only once.
-        with pn.io.hold(freeze=True):
+        with pn.io.hold():
             for view in self.views:
                 try:
-                    view.update(frame, state.selection, state.ghost)
+                    view.paint(frame, state.selection, state.ghost)
                 except Exception:
                     # The other views, and the page, outlive it.
                     log.exception("The view %s failed.", view.name)
+            place(self.views)
             self._also()
             is_seen = self.pulse.painted == self.pulse.sent
             self._count()

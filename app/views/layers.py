@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from bokeh.core.properties import value
+from bokeh.document import Document
 from bokeh.events import LegendItemClick
 from bokeh.models import (
     AllIndices,
@@ -84,7 +85,7 @@ class Layer:
         return self._kind(**visuals(self._kind, self._look))
 
     def make(self, filtered: AllIndices, *, is_seen: bool) -> None:
-        """Make the renderer, and have the tool that shows values know it."""
+        """Make the renderer, which `Layers.place` puts into the figure."""
         self.renderer = GlyphRenderer(
             data_source=self.source,
             glyph=self.glyph,
@@ -97,8 +98,6 @@ class Layer:
         )
         # In the renderer's own view: Bokeh makes that even where another is given.
         self.renderer.view.filter = filtered
-        if self.tool is not None:
-            self.tool.renderers = [*self.tool.renderers, self.renderer]
 
 
 class Layers:
@@ -106,7 +105,7 @@ class Layers:
 
     Each is made once it has something to show: half of a figure's curves are those of a
     reference, of another run, or of bodies in the plane, and a server with thirty pages
-    made them for nothing.
+    made them for nothing. Some are new (`is_new`) until they are put in `place`.
     """
 
     def __init__(self, plot: figure) -> None:
@@ -124,6 +123,12 @@ class Layers:
         self._titles: dict[str, str] = {}
         self._legend: Legend | None = None
         self._nowhere: ColumnDataSource | None = None
+        self.is_new = False
+
+    @property
+    def document(self) -> Document | None:
+        """The document of the figure; None until it has one."""
+        return self._plot.document
 
     def source(self, columns: Mapping[str, Any]) -> ColumnDataSource:
         """A source with columns."""
@@ -142,12 +147,12 @@ class Layers:
         return layer
 
     def draw(self, source: ColumnDataSource) -> list[Glyph]:
-        """Make the layers of a source that has data; return the glyphs of new ones."""
-        new = [
-            layer
-            for layer in self._layers
-            if layer.source is source and layer.renderer is None
-        ]
+        """Make the layers of a source that has data; return the glyphs of new ones.
+
+        They are in the figure once they are placed.
+        """
+        undrawn = [layer for layer in self._layers if layer.renderer is None]
+        new = [layer for layer in undrawn if layer.source is source]
         self._make(new)
         return [layer.glyph for layer in new]
 
@@ -156,9 +161,19 @@ class Layers:
             # A click on the legend may have hidden others of its name.
             hidden = {each.name for each in self._plot.renderers if not each.visible}
             layer.make(self._filter, is_seen=layer.name not in hidden)
-        if layers:
-            made = [layer.renderer for layer in self._layers]
-            self._plot.renderers = [each for each in made if each is not None]
+            self.is_new = True
+
+    def place(self) -> None:
+        """Put layers and entries that are new in their place."""
+        self.is_new = False
+        made = [layer for layer in self._layers if layer.renderer is not None]
+        self._plot.renderers = [layer.renderer for layer in made]
+        for tool in {layer.tool for layer in made if layer.tool is not None}:
+            tool.renderers = [each.renderer for each in made if each.tool is tool]
+        if self._legend is not None:
+            self._legend.items = [
+                self._items[name] for name in self._titles if name in self._items
+            ]
 
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
         """Add marks to the legend only, by name.
@@ -170,6 +185,7 @@ class Layers:
         look = {"marker": "square", "size": 10, "color": "color"} | look
         marks = self.add(None, self.source(columns), Scatter, look)
         self._make([marks])
+        self.place()
         for index, name in enumerate(colors):
             self._marks[name] = LegendItem(renderers=[marks.renderer], index=index)
 
@@ -218,9 +234,6 @@ class Layers:
         self._make([copy])
         item = LegendItem(renderers=[copy.renderer], label=value(self._titles[name]))
         self._items[name] = item
-        self._legend.items = [
-            self._items[each] for each in self._titles if each in self._items
-        ]
         return item
 
 

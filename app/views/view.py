@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from typing import Any, ClassVar
 
 import numpy as np
@@ -68,6 +69,7 @@ class View:
         self._figure: figure | None = None
         self.beside: figure | None = None
         self.is_held = False
+        self.is_painting = False
         self.sources: dict[str, ColumnDataSource] = {}
         self._layers: dict[figure, Layers] = {}
         self._undrawn = set[str]()
@@ -126,6 +128,19 @@ class View:
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show a frame; the ghost is the frame of the run that it is compared with."""
         raise NotImplementedError
+
+    def paint(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show a frame, but for layers that are new, which `place` puts in place."""
+        self.is_painting = True
+        try:
+            self.update(frame, selection, ghost)
+        finally:
+            self.is_painting = False
+
+    @property
+    def new_layers(self) -> list[Layers]:
+        """Layers of the figures of which some are still to be put in place."""
+        return [layers for layers in self._layers.values() if layers.is_new]
 
     @property
     def ghost_name(self) -> str:
@@ -267,6 +282,7 @@ class View:
         title = wanted if isinstance(wanted, str) else ""
         for layers in self._layers.values():
             layers.show(name, title, is_seen=bool(wanted))
+        self._place()
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
         """Fill a source; show its entry in the legend, by a title, if it has data."""
@@ -297,6 +313,12 @@ class View:
             for glyph in layers.draw(source):
                 if isinstance(glyph, models.Text) and self._type != TEXT:
                     glyph.text_font_size = self.words
+        self._place()
+
+    def _place(self) -> None:
+        """Put new layers in place, unless all views do so together."""
+        if not self.is_painting:
+            place([self])
 
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
         """Draw a curve of values in SI, shape (n,) each."""
@@ -329,6 +351,19 @@ class ExtraView(View):
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError
+
+
+def place(views: Iterable[View]) -> None:
+    """Put new layers of views in place.
+
+    All at once: after each change all models of the document are looked for.
+    """
+    new = list(chain.from_iterable(view.new_layers for view in views))
+    with contextlib.ExitStack() as stack:
+        for document in {layers.document for layers in new} - {None}:
+            stack.enter_context(document.models.freeze())
+        for layers in new:
+            layers.place()
 
 
 def _within(axis: Range1d, share: float) -> float:
