@@ -18,7 +18,7 @@ from bokeh.models import CustomJS
 from app.messages import Ready
 from app.server import PAGES
 from app.state import PageState
-from app.views.view import View, place
+from app.views.view import View
 
 log = logging.getLogger(__name__)
 LOST = 5.0
@@ -204,11 +204,10 @@ class Display:
         with pn.io.hold():
             for view in self.views:
                 try:
-                    view.paint(frame, state.selection, state.ghost)
+                    view.update(frame, state.selection, state.ghost)
                 except Exception:
                     # The other views, and the page, outlive it.
                     log.exception("The view %s failed.", view.name)
-            place(self.views)
             self._also()
             is_seen = self.pulse.painted == self.pulse.sent
             self._count()

@@ -276,11 +276,8 @@ def _written(value: Any, definition: Parameter) -> str:
 def _replay(page: Document, count: int, show: Callable[[int], None]) -> CustomJS:
     """A script that shows one of several pictures, from the values that differ."""
     changes: dict[tuple[Model, str], list[Any]] = {}
-    # The first round makes all that has data in some picture, the second one finds the
-    # properties that change, the third one their values.
-    for number in range(count):
-        show(number)
     page.on_change(lambda event: changes.setdefault((event.model, event.attr), []))
+    # The first round finds the properties that change, the second one their values.
     for number in range(count):
         show(number)
     for number in range(count):

@@ -8,8 +8,7 @@ from bokeh.models import ColumnDataSource, FreehandDrawTool
 from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
-from app.views.layers import legend
-from app.views.view import FONT, TEXT, magnify
+from app.views.view import FONT, TEXT, legend, magnify
 from solver.settings.definitions import title_of
 from solver.study.lessons import Lesson
 

@@ -11,8 +11,7 @@ from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
 from app.views.axis import whole
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.layers import hover
-from app.views.parts import color_bar
+from app.views.parts import color_bar, hover
 from app.views.view import ExtraView
 from app.worker.cells import thinned
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES

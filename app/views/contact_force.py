@@ -23,7 +23,7 @@ from app.views.colors import (
     PRESSURE,
     REFERENCE,
 )
-from app.views.layers import hover
+from app.views.parts import hover
 from app.views.view import View, joined
 from solver.reference.closed_forms import ExactCurve
 from solver.study.comparison import FRICTION, OtherResults

@@ -14,7 +14,7 @@ from app.frame import LOCAL, Floats, Frame, Selection
 from app.units import percent
 from app.views.axis import extent, rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.layers import hover
+from app.views.parts import hover
 from app.views.view import View
 from app.worker.references import has_reference
 

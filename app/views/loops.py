@@ -23,7 +23,7 @@ from app.views.colors import (
     UNSEEN,
     scaled,
 )
-from app.views.layers import hover
+from app.views.parts import hover
 from app.views.view import ExtraView, View
 from app.worker.cells import thinned
 from solver.arrays import Array

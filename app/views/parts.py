@@ -9,6 +9,8 @@ import panel as pn
 from bokeh.models import (
     ColorBar,
     Glyph,
+    GlyphRenderer,
+    HoverTool,
     LayoutDOM,
     LinearColorMapper,
     Pane,
@@ -62,6 +64,13 @@ def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     )
     plot.add_layout(bar, "right")
     return bar
+
+
+def hover(
+    plot: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]
+) -> None:
+    """Show values at the pointer: titles, and columns of the renderers' sources."""
+    plot.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
 
 
 def visuals(kind: type[Glyph], look: Mapping[str, Any]) -> dict[str, Any]:

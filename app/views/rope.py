@@ -13,8 +13,7 @@ from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.axis import extent
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
-from app.views.layers import hover
-from app.views.parts import color_bar
+from app.views.parts import color_bar, hover
 from app.views.view import ExtraView, joined
 from app.worker.geometry import MOST_WIRES
 

@@ -18,7 +18,7 @@ from app.frame import (
 )
 from app.views.axis import edges
 from app.views.colors import CUT, ERROR, EXACT, GHOST, KEYS, STATUS
-from app.views.layers import hover
+from app.views.parts import hover
 from app.views.view import View, joined
 
 

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from itertools import chain, zip_longest
+from itertools import zip_longest
 from typing import Any, ClassVar
 
 import numpy as np
 from bokeh import models
 from bokeh.core.properties import value
+from bokeh.events import LegendItemClick
 from bokeh.models import (
+    AllIndices,
     ColorBar,
     ColumnDataSource,
     CrosshairTool,
     CustomJS,
+    Glyph,
+    GlyphRenderer,
+    Legend,
+    LegendItem,
     Range1d,
+    Scatter,
     Title,
+    UnionRenderers,
 )
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
@@ -27,7 +34,7 @@ from app.frame import Floats, Frame, Selection
 from app.state import PageState
 from app.views.axis import Axis
 from app.views.colors import CUT, FLAG
-from app.views.layers import Layer, Layers
+from app.views.parts import visuals
 from solver.settings.scene import Settings
 
 TOOLS = "pan,wheel_zoom,reset,save,fullscreen"
@@ -44,6 +51,40 @@ FONT = value("Roboto, sans-serif")
 KEEP = "if (cb_obj.tags.length) { cb_obj.setv(cb_obj.tags[0]) }"
 """Script that keeps sizes that are not the theme's: the browser sets those of the theme
 as it draws a figure."""
+ABOVE = {"margin-left": "-52px", "top": "-1px"}
+"""Style of a legend that begins at the left end of the figure."""
+CLOSE = """
+.bk-grid { gap: 6px 5px !important; }
+.bk-item { gap: 4px !important; }
+.bk-item .bk-label { min-width: 0 !important; }
+"""
+"""Style sheet by which a legend of seven entries stands in one line; the theme keeps
+entries farther apart."""
+FLOWING = """
+.bk-grid {
+  display: flex !important;
+  flex-wrap: wrap;
+  width: auto !important;
+  gap: 0 5px !important;
+}
+:host(.column) .bk-grid { flex-direction: column; gap: 6px !important; }
+"""
+"""Style sheet by which the entries of a legend follow each other, and take a second
+line where the first has no room; or stand below each other."""
+WRAPPED = ":host { width: calc(100% + 52px); }"
+"""Style sheet of a legend above a plot, which is as wide whatever its entries are: a
+figure is painted once more when the size of its legend changes."""
+
+
+HIDE = """
+const [shown] = cb_obj.item.renderers
+const is_mark = shown.name == null
+const others = (each) => each.name == shown.name && each != shown
+const hidden = is_mark ? [shown] : plot.renderers.filter(others)
+for (const each of hidden) each.visible = !each.visible
+"""
+"""Script that hides the glyph whose copy in the legend is clicked, or shows it again;
+marks stay as they are."""
 
 
 class View:
@@ -69,14 +110,19 @@ class View:
         self._figure: figure | None = None
         self.beside: figure | None = None
         self.is_held = False
-        self.is_painting = False
         self.sources: dict[str, ColumnDataSource] = {}
-        self._layers: dict[figure, Layers] = {}
-        self._undrawn = set[str]()
+        self._items: dict[str, LegendItem] = {}
 
     @cached_property
     def figure(self) -> figure:
         """The figure, made by `make`."""
+        # In no source anything is selected or filtered: all share these models, as each
+        # model costs time.
+        self._selects = {
+            "selected": models.Selection(),
+            "selection_policy": UnionRenderers(),
+        }
+        self._filter = AllIndices()
         self.make()
         self._figure.html_attributes = {"role": "figure", "aria-label": self.name}
         # A size that was asked for before there was a figure.
@@ -128,19 +174,6 @@ class View:
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show a frame; the ghost is the frame of the run that it is compared with."""
         raise NotImplementedError
-
-    def paint(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show a frame, but for layers that are new, which `place` puts in place."""
-        self.is_painting = True
-        try:
-            self.update(frame, selection, ghost)
-        finally:
-            self.is_painting = False
-
-    @property
-    def new_layers(self) -> list[Layers]:
-        """Layers of the figures of which some are still to be put in place."""
-        return [layers for layers in self._layers.values() if layers.is_new]
 
     @property
     def ghost_name(self) -> str:
@@ -226,13 +259,6 @@ class View:
         self.y = Axis(plot, "y", *y)
         return plot
 
-    @property
-    def _present(self) -> Layers:
-        """Layers of the figure that is being made."""
-        if self._figure not in self._layers:
-            self._layers[self._figure] = Layers(self._figure)
-        return self._layers[self._figure]
-
     def add(
         self,
         name: str,
@@ -242,35 +268,82 @@ class View:
         also: str = "",
         on: str = "",
         **look: Any,
-    ) -> Layer:
+    ) -> GlyphRenderer:
         """Add a glyph of Bokeh's, by a name under which `fill` and `legend` know it.
 
         `columns` are the columns of its source, called as properties of the glyph;
         `also` are further ones, for tips or other glyphs. The source is called as the
-        glyph, or `on`, which several glyphs may share. The glyph comes to the figure
-        once its source has data.
+        glyph, or `on`, which several glyphs may share.
         """
+        kind = getattr(models, glyph)
         fields = columns.split()
         source_name = on or name
         if source_name not in self.sources:
             empty = {column: [] for column in (*fields, *also.split())}
-            self.sources[source_name] = self._present.source(empty)
-            self._undrawn.add(source_name)
+            self.sources[source_name] = self._source(empty)
         look = {column: column for column in fields} | look
         if glyph == "Text":
             look["text_font"] = FONT
-        return self._present.add(
-            name, self.sources[source_name], getattr(models, glyph), look
+        drawn = kind(**visuals(kind, look))
+        return self._render(self.sources[source_name], drawn, name)
+
+    def _render(
+        self, source: ColumnDataSource, glyph: Glyph, name: str | None = None
+    ) -> GlyphRenderer:
+        renderer = self._figure.add_glyph(
+            source,
+            glyph,
+            name=name,
+            # By default Bokeh makes further glyphs for selections, which none here has.
+            selection_glyph=None,
+            nonselection_glyph=None,
+            muted_glyph=None,
         )
+        # In the renderer's own view: Bokeh makes that even where another is given.
+        renderer.view.filter = self._filter
+        return renderer
+
+    def _source(self, columns: dict[str, Any]) -> ColumnDataSource:
+        return ColumnDataSource(columns, **self._selects)
 
     def mark(self, colors: Mapping[str, str], **look: Any) -> None:
-        """Add marks to the legend only, by name."""
-        self._present.mark(colors, **look)
+        """Add marks to the legend only, by name.
 
-    def legend(self, *names: str, place: str = "above", **titles: str) -> models.Legend:
-        """Name glyphs in a legend, in this order, by their own names or by titles."""
-        named = {name: name for name in names} | titles
-        return self._present.legend(named, place)
+        The marks share a glyph, as each glyph costs time.
+        """
+        nowhere = [np.nan] * len(colors)
+        columns = {"x": nowhere, "y": nowhere, "color": list(colors.values())}
+        look = {"marker": "square", "size": 10, "color": "color"} | look
+        marks = self._render(self._source(columns), Scatter(**visuals(Scatter, look)))
+        for index, name in enumerate(colors):
+            self._items[name] = LegendItem(renderers=[marks], index=index)
+
+    def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
+        """Name glyphs in a legend, in this order, by their own names or by titles.
+
+        The legend shows copies of them without data, as Bokeh makes it anew whenever
+        the data of a glyph in it change.
+        """
+        titles = {name: name for name in names} | titles
+        # Of glyphs of one name the first.
+        drawn: dict[str, GlyphRenderer] = {}
+        columns: dict[str, list[float]] = {}
+        for renderer in self._figure.renderers:
+            if renderer.name in titles:
+                drawn.setdefault(renderer.name, renderer)
+        for renderer in drawn.values():
+            columns |= {column: [np.nan] for column in renderer.data_source.data}
+        nowhere = self._source(columns)
+        for name, renderer in drawn.items():
+            copy = self._render(nowhere, renderer.glyph, name)
+            self._items[name] = LegendItem(renderers=[copy])
+        for name, title in titles.items():
+            self._items[name].label = value(title)
+        box = legend(self._figure, [self._items[name] for name in titles], place)
+        box.click_policy = "hide"
+        hide = CustomJS(args={"plot": self._figure}, code=HIDE)
+        box.js_on_event(LegendItemClick, hide)
+        return box
 
     def show(self, name: str, wanted: bool | str) -> None:
         """Show or hide an entry of the legend, or give it another title.
@@ -279,10 +352,11 @@ class View:
         """
         if self.state.is_fleeting and not wanted:
             return
-        title = wanted if isinstance(wanted, str) else ""
-        for layers in self._layers.values():
-            layers.show(name, title, is_seen=bool(wanted))
-        self._place()
+        item = self._items.get(name)
+        if item is not None:
+            item.visible = bool(wanted)
+            if isinstance(wanted, str) and wanted and item.label != value(wanted):
+                item.label = value(wanted)
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
         """Fill a source; show its entry in the legend, by a title, if it has data."""
@@ -299,26 +373,10 @@ class View:
         elif new:
             target.data = columns
         has_data = any(len(values) for values in columns.values())
-        if has_data and name in self._undrawn:
-            self._undrawn.remove(name)
-            self._draw_first(target)
         if has_data and title:
             self.show(name, title)
         else:
             self.show(name, has_data)
-
-    def _draw_first(self, source: ColumnDataSource) -> None:
-        """Draw the glyphs of a source that has data for the first time."""
-        for layers in self._layers.values():
-            for glyph in layers.draw(source):
-                if isinstance(glyph, models.Text) and self._type != TEXT:
-                    glyph.text_font_size = self.words
-        self._place()
-
-    def _place(self) -> None:
-        """Put new layers in place, unless all views do so together."""
-        if not self.is_painting:
-            place([self])
 
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
         """Draw a curve of values in SI, shape (n,) each."""
@@ -351,19 +409,6 @@ class ExtraView(View):
 
     def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
         raise NotImplementedError
-
-
-def place(views: Iterable[View]) -> None:
-    """Put new layers of views in place.
-
-    All at once: after each change all models of the document are looked for.
-    """
-    new = list(chain.from_iterable(view.new_layers for view in views))
-    with contextlib.ExitStack() as stack:
-        for document in {layers.document for layers in new} - {None}:
-            stack.enter_context(document.models.freeze())
-        for layers in new:
-            layers.place()
 
 
 def _within(axis: Range1d, share: float) -> float:
@@ -426,3 +471,27 @@ def magnify(plot: figure, size: str, words: str) -> None:
         model.update(tags=tags, **sizes)
         if not model.js_property_callbacks:
             model.js_on_change(names[0], keep)
+
+
+def legend(plot: figure, items: Sequence[Any], place: str = "above") -> Legend:
+    """A legend in one line: above the plot, where it covers no curve, or inside."""
+    styles = {"font-size": TEXT}
+    sheets = [CLOSE, FLOWING]
+    if place == "above":
+        styles |= ABOVE
+        sheets.append(WRAPPED)
+    box = Legend(
+        items=items,
+        orientation="horizontal",
+        location="top_left",
+        padding=0,
+        margin=2,
+        label_height=12,
+        glyph_height=12,
+        glyph_width=12,
+        background_fill_alpha=0.0,
+        styles=styles,
+        stylesheets=sheets,
+    )
+    plot.add_layout(box, place)
+    return box

@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 from app.frame import LINEAR, LOCAL, Floats, Frame, Selection
 from app.units import unit_for
 from app.views.colors import ERROR, EXACT, REFERENCE, STAGES, STICK
-from app.views.layers import hover
+from app.views.parts import hover
 from app.views.view import TEXT, ExtraView
 from solver.arrays import Array
 

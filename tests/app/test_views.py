@@ -490,22 +490,3 @@ def test_a_picture_follows_its_size_after_another_tab_was_shown(
     for name, size in (("inner_width", 476), ("inner_height", 410)):
         plot.set_from_json(name, size)
     assert (plot.x_range.end, plot.y_range.end) == (476.0, 410.0)
-
-
-def test_a_curve_comes_to_its_place_once_it_has_data() -> None:
-    first, last, answer = frames_of("bar")
-    view = view_of(ContactForce, first)
-    (legend,) = view.figure.legend
-    assert "reference" not in [each.name for each in view.figure.renderers]
-    assert "reference" not in [item.label.value for item in legend.items]
-    view.update(answer, Selection(), last)
-    drawn = [each.name for each in view.figure.renderers if each.name]
-    curves = ["cuts", "exact", "error", "bound", "ghost", "reference", "friction"]
-    assert [name for name in dict.fromkeys(drawn) if name in curves] == curves
-    names = [item.label.value for item in legend.items]
-    assert names == ["LATIN", "reference", "error", "±µp", "closed form", "last run"]
-    # Without data again it has no entry, and stays where it is.
-    view.update(first, Selection(), None)
-    assert [each.name for each in view.figure.renderers if each.name] == drawn
-    shown = [item.label.value for item in legend.items if item.visible]
-    assert shown == ["LATIN", "±µp"]
