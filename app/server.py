@@ -128,12 +128,12 @@ def share_looks() -> None:
     """Have components of a kind share the definitions of their sizes and margins.
 
     Param copies a definition for each component that asks for it, as it may be changed
-    there: 1800 copies for a page. Nothing changes these.
+    or referred to there: a page has 1800 copies. Nothing does so with these.
     """
+    looks = set(Layoutable.param) - {"name", "visible"}
     for kind in param.descendents(Layoutable):
-        for name in Layoutable.param:
-            if name != "name":
-                kind.param[name].per_instance = False
+        for name in looks:
+            kind.param[name].per_instance = False
 
 
 class PageServer(HTTPServer):
