@@ -8,7 +8,7 @@ from typing import Any
 ROOT = str(Path(__file__).resolve().parents[1])
 sys.path.insert(0, ROOT)
 
-from app.server import configure, lighten  # noqa: E402  # the root is on the path only from here on
+from app.server import configure, lighten, share_looks  # noqa: E402  # the root is on the path only from here on
 
 configure()
 lighten()
@@ -22,6 +22,7 @@ def on_server_loaded(_server_context: Any) -> None:
     import app.page  # noqa: F401
     from app.worker.process import Worker
 
+    share_looks()
     Worker(lambda worker, report: None).end()
     # What is imported stays: without this every full collection walks it for 0.15 s.
     gc.collect()

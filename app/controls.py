@@ -385,8 +385,9 @@ class Controls:
         with pn.io.hold():
             if settings.scene != self._built:
                 self._build()
-            for control in self._controls:
-                control.update()
+            else:
+                for control in self._controls:
+                    control.update()
 
     def _build(self) -> None:
         settings = self._state.settings

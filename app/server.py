@@ -11,9 +11,11 @@ from typing import Any
 from urllib.parse import SplitResult, urlsplit
 
 import panel as pn
+import param
 from bokeh.server.urls import per_app_patterns
 from bokeh.settings import settings
 from panel.io.server import DocHandler, WSHandler
+from panel.viewable import Layoutable
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPHeaders, HTTPServerRequest
 from tornado.routing import Matcher, Rule
@@ -120,6 +122,18 @@ def lighten() -> None:
     # Read once: else the environment is asked for each of a page's models.
     settings.simple_ids = settings.simple_ids()
     settings.serialize_include_defaults = settings.serialize_include_defaults()
+
+
+def share_looks() -> None:
+    """Have components of a kind share the definitions of their sizes and margins.
+
+    Param copies a definition for each component that asks for it, as it may be changed
+    or referred to there: a page has 1800 copies. Nothing does so with these.
+    """
+    looks = set(Layoutable.param) - {"name", "visible"}
+    for kind in param.descendents(Layoutable):
+        for name in looks:
+            kind.param[name].per_instance = False
 
 
 class PageServer(HTTPServer):

@@ -65,14 +65,14 @@ class Transport:
         self._pin = _button("push_pin", PIN, state.pin, "of-page")
         self.scrub = self._make_scrub()
         self._show_scene: Callable[[], None] | None = None
+        self._turns = wrapped(css_classes=["turn"])
         # Parts that are not always there are hidden by the style sheet.
         self.view = wrapped(
             self._run,
             _button("skip_previous", "From the start (r)", state.reset),
             _button("skip_next", "One stage of an iteration (s)", state.step),
             self._pin,
-            _button("arrow_upward", "Contact before (I)", self._turn_back, "turn"),
-            _button("arrow_downward", "Next contact (i)", state.turn, "turn"),
+            self._turns,
             *self._make_choices(),
             **looks("transport"),
         )
@@ -116,6 +116,14 @@ class Transport:
 
         close = _button("close", "Back to the page (p)", leave, "of-projector")
         self.view.extend([scene, close])
+
+    def _add_turns(self) -> None:
+        """Have the buttons for one contact of several, once a run has as many."""
+        frame = self._state.frame
+        if frame is not None and len(frame.run.surfaces) > 1 and not len(self._turns):
+            back = _button("arrow_upward", "Contact before (I)", self._turn_back)
+            on = _button("arrow_downward", "Next contact (i)", self._state.turn)
+            self._turns.extend([back, on])
 
     def _make_choices(self) -> list[Any]:
         """Widgets to choose search or answer, and the pace."""
@@ -307,6 +315,7 @@ class Transport:
         state = self._state
         if state.is_dragged:
             return
+        self._add_turns()
         if self._goes_on:
             self._run.icon = "pause"
         elif state.is_costly:

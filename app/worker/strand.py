@@ -8,8 +8,8 @@ the outermost fibre is below.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property
-from typing import Any
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -41,6 +41,68 @@ SHOWN_SHARE = 0.12 * np.pi
 rad."""
 
 
+class OuterWires(NamedTuple):
+    """Wires of the outer layer of a strand, as they are drawn.
+
+    Their number, lay angle, rad, radius of their helix, radius of the strand, and its
+    length, all in m, with a number of steps along it.
+    """
+
+    count: int
+    lay: float
+    helix: float
+    radius: float
+    length: float
+    n_steps: int
+
+    @property
+    def z(self) -> Array:
+        """Ends of the steps, shape (n_steps + 1,), m."""
+        return np.linspace(0.0, self.length, self.n_steps + 1)
+
+    def angle(self, wire: Array, position: Array) -> Array:
+        """Polar angle of wires, rad, at positions along the strand, m.
+
+        Numbers of the wires and positions have the shape of the result, or are scalars.
+        """
+        turned = position * np.tan(self.lay) / self.helix
+        return np.asarray(2.0 * np.pi * wire / self.count + turned)
+
+    def height(self, angle: Array) -> Array:
+        """Height of wires above the foot, m, at polar angles, rad, same shape."""
+        return np.asarray(self.radius * (1.0 - np.cos(angle)))
+
+    def strips(self) -> Iterator[tuple[int, Indices, Array]]:
+        """Stretches of wires in front: number, steps, (n,), and nodes, (2, n, 2), m."""
+        half = np.pi / self.count
+        for number in range(self.count):
+            middle = self.angle(number, self.z)
+            for turn in np.unique(np.floor((middle + half) / (2.0 * np.pi))):
+                edges = middle - 2.0 * np.pi * turn + np.array([[-half], [half]])
+                edges = np.clip(edges, 0.0, np.pi)
+                # The strip begins and ends a step behind its visible part.
+                steps = np.flatnonzero(binary_dilation(np.ptp(edges, axis=0) > 1e-9))
+                if len(steps):
+                    z = np.broadcast_to(self.z[steps], (2, len(steps)))
+                    heights = self.height(edges[:, steps])
+                    yield number, steps, np.stack([z, heights], axis=-1)
+
+
+# Moves of a slider seldom change the wires: making their mesh took 6 % of each run.
+@lru_cache(maxsize=4)
+def strips_of(wires: OuterWires) -> tuple[dict[str, Any], Array, Indices]:
+    """Mesh of the strips of wires, with two rows of nodes for each strip.
+
+    Then the positions of the middles of cells, (n_cells,), m, and the step of each
+    node, (n_nodes,).
+    """
+    numbers, steps, grids = zip(*wires.strips(), strict=True)
+    z = wires.z
+    middles = [0.5 * (z[strip[1:]] + z[strip[:-1]]) for strip in steps]
+    rows = np.concatenate([np.tile(strip, 2) for strip in steps])
+    return mesh_of(grids, numbers), np.concatenate(middles), rows
+
+
 class DrawnRope:
     """Strips of the wires in front, and a line of contact along each.
 
@@ -58,13 +120,20 @@ class DrawnRope:
         outer = max(wire.layer for wire in rope.wires)
         wires = [wire for wire in rope.wires if wire.layer == outer]
         self._first = len(rope.wires) - len(wires)
-        self._lay = wires[0].layer_data.lay
-        self._helix = wires[0].radius
+        lay = wires[0].layer_data.lay
+        helix = wires[0].radius
         self._radius = 0.5 * description.height
-        self._count = sum(wire.stands_for for wire in wires)
-        turns = description.length * np.tan(abs(self._lay)) / (2 * np.pi * self._helix)
+        turns = description.length * np.tan(abs(lay)) / (2 * np.pi * helix)
         n_steps = int(np.clip(A_TURN * turns, FEWEST_STEPS, MOST_STEPS))
-        self._z = np.linspace(0.0, description.length, n_steps + 1)
+        self._wires = OuterWires(
+            count=sum(wire.stands_for for wire in wires),
+            lay=lay,
+            helix=helix,
+            radius=self._radius,
+            length=description.length,
+            n_steps=n_steps,
+        )
+        self._z = self._wires.z
         mesh = self._mesh()
         rows, heights, chains, self._points, self._sides = self._lines()
         self._points_moved = self._moved(rows, np.nan_to_num(heights))
@@ -86,14 +155,9 @@ class DrawnRope:
 
     def _mesh(self) -> dict[str, Any]:
         """The mesh of the strips; sets wires and points of cells, and moves nodes."""
-        numbers, steps, grids = zip(*self._strips(), strict=True)
-        mesh = mesh_of(grids, numbers)
-        z = self._z
-        middles = [0.5 * (z[strip[1:]] + z[strip[:-1]]) for strip in steps]
-        nearest = self._nearest(mesh["parts"], np.concatenate(middles))
+        mesh, middles, rows = strips_of(self._wires)
+        nearest = self._nearest(mesh["parts"], middles)
         self._quad_wires, _, self._quad_points, _ = nearest
-        # Each strip has two rows of nodes.
-        rows = np.concatenate([np.tile(strip, 2) for strip in steps])
         self._nodes_moved = self._moved(rows, mesh["nodes"][:, 1])
         return mesh
 
@@ -102,33 +166,6 @@ class DrawnRope:
         stress = wire_stresses(self._rope, iterate.displacement, self._columns)
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
         return "wire stress", "Pa", floats(stress[self._quad_wires, element])
-
-    def _angle(self, wire: Array, position: Array) -> Array:
-        """Polar angle of outer wires, rad, at positions along the strand, m.
-
-        Numbers of the wires and positions have the shape of the result, or are scalars.
-        """
-        turned = position * np.tan(self._lay) / self._helix
-        return np.asarray(2.0 * np.pi * wire / self._count + turned)
-
-    def _height(self, angle: Array) -> Array:
-        """Height of outer wires above the foot, m, at polar angles, rad, same shape."""
-        return np.asarray(self._radius * (1.0 - np.cos(angle)))
-
-    def _strips(self) -> Iterator[tuple[int, Indices, Array]]:
-        """Stretches of wires in front: number, steps, (n,), and nodes, (2, n, 2), m."""
-        half = np.pi / self._count
-        for number in range(self._count):
-            middle = self._angle(number, self._z)
-            for turn in np.unique(np.floor((middle + half) / (2.0 * np.pi))):
-                edges = middle - 2.0 * np.pi * turn + np.array([[-half], [half]])
-                edges = np.clip(edges, 0.0, np.pi)
-                # The strip begins and ends a step behind its visible part.
-                steps = np.flatnonzero(binary_dilation(np.ptp(edges, axis=0) > 1e-9))
-                if len(steps):
-                    z = np.broadcast_to(self._z[steps], (2, len(steps)))
-                    heights = self._height(edges[:, steps])
-                    yield number, steps, np.stack([z, heights], axis=-1)
 
     def _nearest(
         self, numbers: Array, positions: Array
@@ -143,7 +180,7 @@ class DrawnRope:
         share = positions / self._z[-1]
         if not self._rope.is_clamped:
             # One wire stands for the layer: on its way back it slips the other way.
-            turned = np.sign(self._lay) * self._angle(numbers, positions)
+            turned = np.sign(self._wires.lay) * self._wires.angle(numbers, positions)
             wires = np.full(len(positions), self._first)
             share = np.arccos(np.cos(turned)) / np.pi
             sides = np.where(np.sin(turned) < 0.0, -1, 1).astype(np.int8)
@@ -162,11 +199,11 @@ class DrawnRope:
         The last two are the number of the point whose status each shows, and the sign
         of its slip. All have shape (n,).
         """
-        numbers = np.repeat(np.arange(self._count), len(self._z))
-        rows = np.tile(np.arange(len(self._z)), self._count)
-        angle = np.remainder(self._angle(numbers, self._z[rows]), 2.0 * np.pi)
+        numbers = np.repeat(np.arange(self._wires.count), len(self._z))
+        rows = np.tile(np.arange(len(self._z)), self._wires.count)
+        angle = np.remainder(self._wires.angle(numbers, self._z[rows]), 2.0 * np.pi)
         is_seen = (angle >= SHOWN_SHARE) & (angle <= np.pi - SHOWN_SHARE)
-        heights = np.where(is_seen, self._height(angle), np.nan)
+        heights = np.where(is_seen, self._wires.height(angle), np.nan)
         # The point behind each stretch stays: its NaN ends the line.
         kept = is_seen | np.append(False, is_seen[:-1])
         wires, points, _, sides = self._nearest(numbers[kept], self._z[rows[kept]])
