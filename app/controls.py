@@ -308,6 +308,9 @@ class SettingControl:
         self.update()
         self._explain(self._state.refusal)
 
+    # What is set here in a figure is to come after the figure, whoever holds the
+    # document's lock.
+    @pn.io.hold()
     def _edit(self) -> None:
         """Open the points of a path."""
         if self._dialog is None:
@@ -315,6 +318,8 @@ class SettingControl:
             self._add_edit_button()
             self._dialog = CurveDialog(self.name, self._state)
             self.views[0].append(self._dialog.view)
+            # The browser is to answer; see `Page._put`.
+            self._state.given += 1
         self.update()
         self._dialog.view.open = True
 
@@ -418,6 +423,8 @@ class Controls:
             else:
                 view = files_panel(self._state, WIDTH)
             self._groups[number] = (title, view)
+            # The browser is to answer; see `Page._put`.
+            self._state.given += 1
 
 
 def views_of(controls: Iterable[SettingControl]) -> list[Any]:

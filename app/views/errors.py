@@ -169,7 +169,9 @@ class Convergence(ErrorPlot):
         ghosts = self.sources["ghost"].data["x"]
         ends = [float(newest.iteration), *map(float, ghosts[-1:])]
         has_ended = newest.status is not None
-        shortest = SHORTEST_AT_END if has_ended else SHORTEST
+        shortest = SHORTEST
+        if has_ended:
+            shortest = SHORTEST_AT_END
         end = rounded_up(NAMED * max(*ends, shortest))
         self.x.hold((number, has_ended), [0.0, end])
 

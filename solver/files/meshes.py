@@ -35,6 +35,9 @@ def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
         found = f"{source}: {refusal.name} {value}"
         if refusal.name == name:
             found = f"{source} {value}"
+        if value == source:
+            # A file that cannot be read is refused as a whole.
+            found = source
         raise SettingError(
             name, Words(found), refusal.allowed, refusal.remedy
         ) from None
