@@ -55,7 +55,10 @@ class Rest:
 
     def scaled(self, present: float, pointer: Array) -> float:
         """Value of the setting with the handle at a pointer, (2,), px."""
-        return float((pointer - self.handle) @ self.per_px)
+        way = pointer - self.handle
+        if np.hypot(*way) < SNAP:
+            return 0.0
+        return float(way @ self.per_px)
 
 
 class Arrows:

@@ -99,7 +99,7 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
                 found = said.getvalue()
             reason = " ".join(found.replace(file.name, source).split())
             remedy = f"save it again as Gmsh's .msh, format 4.1 ({reason or 'unread'})"
-            raise RefusedError("mesh", Words("not readable"), CAN, remedy) from None
+            raise RefusedError("mesh", source, CAN, remedy) from None
     return named(mesh)
 
 

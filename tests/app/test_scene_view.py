@@ -270,6 +270,8 @@ def test_a_force_that_is_dragged_to_zero_keeps_its_handle() -> None:
     (rest,) = (each for each in view.picture.draggable if each.setting == "peak")
     at_rest = view.picture.page(rest.handle)
     assert np.hypot(*(at_rest - base)) < 20.0
+    drag(view, at_rest, at_rest + 1e-4)
+    assert state.settings.peak == 0.0
     drag(view, at_rest, at_rest + full - base)
     assert state.settings.peak == pytest.approx(settings.peak, rel=1e-2)
 
