@@ -11,6 +11,7 @@ import panel as pn
 import param
 
 from app.browser import Browser
+from app.experiments.questions import question_of
 from app.frame import Selection
 from app.lessons.catalogue import (
     CASES,
@@ -21,7 +22,7 @@ from app.lessons.catalogue import (
     settings_of,
 )
 from app.refusals import message_of
-from app.state import PageState, default_settings
+from app.state import WHAT_IF, PageState, default_settings
 from solver.files.saved import dump
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
@@ -230,10 +231,8 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     pairs.pop("theme", "")
     refused: list[str] = []
     # Each step takes its own parts out of the pairs: the settings are what is left.
-    shown: Shown = {
-        "room": pairs.pop("class", ""),
-        "question": pairs.pop("question", ""),
-    }
+    shown: Shown = {"room": pairs.pop("class", "")}
+    question = pairs.pop("question", "")
     base, opened = _base(pairs, refused)
     shown |= opened
     for kind, name in opened.items():
@@ -245,11 +244,27 @@ def read(query: str, present: Settings | None = None) -> tuple[Shown, str]:
     base = _with_file(base, pairs, present, refused)
     values = {name: parse(text) for name, text in pairs.items()}
     shown["settings"] = _together(base, values, refused)
+    shown["question"] = question
+    # Beside another tab the question may be that of a scene before.
+    if shown.get("tab") == WHAT_IF:
+        shown["question"] = _question(question, shown["settings"], refused)
     if not refused:
         return shown, ""
     reasons = "; ".join(text.rstrip(".") for text in refused)
     end = "" if reasons.endswith("?") else "."
     return shown, f"From the address: {reasons}{end}"
+
+
+def _question(text: str, settings: Settings, refused: list[str]) -> str:
+    """Question of the tab What if in an address; refuse one that settings lack."""
+    question = " ".join(text.split())
+    if question and str(question_of(question, settings)) != question:
+        refused.append(
+            f"the question {question[:40]} cannot be asked here: choose one under "
+            f"{WHAT_IF}"
+        )
+        return ""
+    return question
 
 
 def _plots(pairs: dict[str, str], case: str, refused: list[str]) -> list[str]:

@@ -21,7 +21,7 @@ from app.lessons.guide import Guide, kinds_beside
 from app.link import Link, read, show
 from app.live import STYLE, Live, column, first_needs, large_type, type_size
 from app.server import PAGES
-from app.state import TABS, PageState
+from app.state import TABS, WHAT_IF, PageState
 from app.status import spoken_status
 from app.supervisor import Supervisor
 from app.transport import TOUCHED
@@ -301,7 +301,7 @@ class Page:
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
         if tab not in self._tabs:
-            kind = {"What if": WhatIf, "Fit": FitTab, "Reports": Reports}[tab]
+            kind = {WHAT_IF: WhatIf, "Fit": FitTab, "Reports": Reports}[tab]
             self._tabs[tab] = kind(self.state).view
         self._place()
         self._live.look()

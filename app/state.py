@@ -35,7 +35,8 @@ PACES = {
     "20 a second": 20.0,
     "fastest": math.inf,
 }
-TABS = ["Live", "What if", "Fit", "Reports"]
+WHAT_IF = "What if"
+TABS = ["Live", WHAT_IF, "Fit", "Reports"]
 VIEWS = ["page", "present"]
 """The page with its controls, and the view for a projector."""
 

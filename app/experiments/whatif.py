@@ -21,7 +21,7 @@ from app.experiments.questions import (
     question_of,
 )
 from app.refusals import advice_in_titles, message_of
-from app.state import PageState, answer
+from app.state import WHAT_IF, PageState, answer
 from app.units import unit_for
 from app.widgets import PlainText, button, download
 from solver.files.saved import dump
@@ -156,7 +156,7 @@ class WhatIf:
 
         A question that was put together in the fields waits for the button.
         """
-        if self.state.tab != "What if":
+        if self.state.tab != WHAT_IF:
             return
         settings = self.state.settings
         before = self.question

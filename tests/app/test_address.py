@@ -106,6 +106,7 @@ def test_the_way_back_from_a_case_shows_nothing_in_between() -> None:
         ("tab=Moon", "Live, What if"),
         ("instant=2", "from 0 to 1"),
         ("plots=Convergence,Moon", "there is no plot Moon"),
+        ("tab=What if&question=moon", "the question moon cannot be asked here"),
         ("pace=", "5 a second"),
         ("file=load", "open its file"),
     ],
@@ -119,6 +120,12 @@ def test_a_part_that_is_refused_is_told_and_the_rest_holds(
     assert refusal[-1] in ".?"
     assert refusal[-2] not in ".?"
     assert (place["settings"].peak, place["view"]) == (1100.0, "present")
+
+
+def test_a_question_that_another_scene_has_waits_for_it_in_silence() -> None:
+    question = "peak=600:900:2 dissipation"
+    place, refusal = read(f"?scene=wall&question={question}")
+    assert (place["question"], refusal) == (question, "")
 
 
 def test_settings_whose_path_was_refused_go_to_the_worker_all_the_same() -> None:
