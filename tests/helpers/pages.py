@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 from browser import Chrome, Server
@@ -91,6 +91,33 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     lines = CLOSED.sub("", said).splitlines()
     faults = [line for line in lines if FAULT.search(line)]
     assert all(ALLOWED.search(line) for line in faults), said
+
+
+class Desk:
+    """A page that stays open: an opening takes as long as half a journey.
+
+    Each journey goes to an address of its own first, and leaves no dialog, file, theme
+    or class behind. A page on which a journey failed is closed, and the next has a new
+    one.
+    """
+
+    def __init__(self, server: Server, chrome: Chrome) -> None:
+        self._server = server
+        self._chrome = chrome
+        self._opened = ExitStack()
+        self._page: Page | None = None
+
+    def page(self) -> Page:
+        """The page, which is opened if there is none."""
+        if self._page is None:
+            visit = self._opened.enter_context(visits(self._server, self._chrome))
+            self._page = visit(f"?{ANSWER}")
+        return self._page
+
+    def close(self) -> None:
+        """Close the page; neither it nor the server may have complained."""
+        self._page = None
+        self._opened.close()
 
 
 def go(page: Page, query: str) -> None:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
-import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browser import Chrome, Server
 from pages import (
     ANSWER,
     Visit,
@@ -20,13 +17,13 @@ from pages import (
     go,
     is_solved,
     status,
-    visits,
 )
 from playwright.sync_api import Page, expect
 
 WIDTH = 390
 HEIGHT = 844
-LIGHT_TAB = "rgb(25, 118, 210)"
+DARK = "rgb(18, 18, 18)"
+DARK_TAB = "rgb(144, 202, 249)"
 BACKGROUND = "getComputedStyle(document.body).backgroundColor"
 SIZE = """() => {
   const models = Bokeh.documents[0].roots().flatMap((root) => [...root.references()])
@@ -62,29 +59,22 @@ def violations(page: Page, rules: dict[str, Any]) -> list[str]:
     return found
 
 
-@pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page in the dark that is opened once for those with mouse or keys."""
-    with visits(server, chrome) as visit:
-        yield visit(f"?{ANSWER}&theme=dark")
-
-
-def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(page: Page) -> None:
+def test_axe_finds_nothing_that_some_cannot_use_in_light_and_dark(page: Page) -> None:
     def is_clean(rules: dict[str, Any] = RULES) -> None:
         # No tooltip is on its way.
         page.mouse.move(640.0, 5.0)
         expect(page.get_by_role("tooltip")).to_have_count(0)
         assert not (found := violations(page, rules)), "\n".join(found)
 
+    go(page, f"?{ANSWER}")
+    expect(field(page, "Peak load")).to_have_value("900")
     is_solved(page)
     is_clean()
-    dark = page.evaluate(BACKGROUND)
+    light = page.evaluate(BACKGROUND)
     button(page, "Toggle theme").click()
-    comes(page, f"(dark) => {BACKGROUND} !== dark", dark)
+    comes(page, f"(light) => {BACKGROUND} !== light", light)
     # Tabs take their colour some frames later.
-    expect(page.get_by_text("Contact force", exact=True)).to_have_css(
-        "color", LIGHT_TAB
-    )
+    expect(page.get_by_text("Contact force", exact=True)).to_have_css("color", DARK_TAB)
     is_clean(COLOURS)
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
@@ -94,13 +84,16 @@ def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(page: Page) ->
     page.get_by_role("button", name="Is a small indicator a small error?").click()
     expect(button(page, "Show me")).to_be_visible()
     is_clean()
+    button(page, "Toggle theme").click()
+    comes(page, f"(light) => {BACKGROUND} === light", light)
 
 
-def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
+def test_on_a_phone_in_the_dark_nothing_is_wider_than_the_screen_and_the_scene_is_first(
     visit: Visit,
 ) -> None:
-    page = visit(f"?{ANSWER}", WIDTH, HEIGHT, has_touch=True, is_mobile=True)
+    page = visit(f"?{ANSWER}&theme=dark", WIDTH, HEIGHT, has_touch=True, is_mobile=True)
     is_solved(page)
+    assert page.evaluate(BACKGROUND) == DARK
     assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
     box = figure(page, 0).bounding_box()
     assert box is not None

@@ -11,6 +11,7 @@ import pytest
 from browser import Chrome, Server
 from pages import (
     ANSWER,
+    Desk,
     Visit,
     button,
     close_dialog,
@@ -79,13 +80,6 @@ def follow(visit: Visit, code: str) -> Page:
     return page
 
 
-@pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page that takes a lesson, and later leads a class."""
-    with visits(server, chrome) as visit:
-        yield visit(f"?{ANSWER}")
-
-
 def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     page: Page,
 ) -> None:
@@ -125,10 +119,10 @@ class School:
 
 
 @pytest.fixture(scope="module")
-def school(page: Page, chrome: Chrome, server: Server) -> Iterator[School]:
+def school(desk: Desk, chrome: Chrome, server: Server) -> Iterator[School]:
     """A class whose pages are opened once: that takes longer than what they do."""
     with visits(server, chrome) as visit:
-        leader = page
+        leader = desk.page()
         # Whoever took a lesson looks at another instant.
         go(leader, f"?{ANSWER}&instant=0.75")
         expect(status(leader)).to_contain_text("answer:")
@@ -136,6 +130,9 @@ def school(page: Page, chrome: Chrome, server: Server) -> Iterator[School]:
         code = lead(leader)
         enter(leader, "Peak load", "1100", over="900")
         yield School(code, leader, follow(visit, code))
+        button(leader, "A class").click()
+        button(leader, "End the class").click()
+        close_dialog(leader)
 
 
 def test_a_class_sees_what_its_leader_sees(school: School) -> None:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from urllib.parse import urlencode
 
-import pytest
-from browser import Chrome, Server
 from pages import (
     ANSWER,
     ENDLESS,
@@ -26,7 +23,6 @@ from pages import (
     iteration,
     slider,
     status,
-    visits,
 )
 from playwright.sync_api import Page, expect
 from processes import wait_for
@@ -55,18 +51,11 @@ PIECES = """() => {
 """Whether the pieces of the structure have forces."""
 
 
-@pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page that is opened once: that takes longer than what most do with it."""
-    with visits(server, chrome) as visit:
-        yield visit("?pace=fastest")
-
-
 MEANING = "(term) => getComputedStyle(term, '::after').content"
 MET = "localStorage.getItem('slipfront')"
 
 
-def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_once(
+def test_a_new_page_shows_a_search_plays_its_cycle_and_may_have_the_answer_at_once(
     visit: Visit,
 ) -> None:
     page = visit()
@@ -80,6 +69,12 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     term.focus()
     assert "balance" in term.evaluate(MEANING)
     assert page.evaluate(MET) is None
+
+    # It plays its load cycle until somebody does something.
+    expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
+    figure(page, 1).click()
+    expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
+    expect(figures(page)).to_contain_text(re.compile(r"Force −?\d\d? N"))
 
     last = iteration(page)
     scrub = slider(page, f"Answer after {last} iterations")
@@ -117,20 +112,10 @@ def test_a_new_page_shows_a_search_that_goes_back_and_may_have_the_answer_at_onc
     assert page.evaluate(MET) == "met"
 
 
-def test_a_scene_plays_its_load_cycle_until_somebody_does_something(
-    page: Page,
-) -> None:
-    # The first test of this page: nobody has done anything.
-    is_solved(page)
-    expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
-    figure(page, 1).click()
-    expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
-    expect(figures(page)).to_contain_text(re.compile(r"Force −?\d\d? N"))
-
-
 def test_what_is_of_a_run_before_fades_until_a_picture_of_the_new_one_is_there(
     page: Page,
 ) -> None:
+    go(page, f"?{ANSWER}")
     for is_stale, opacity in (("true", "0.3"), ("false", "1")):
         page.evaluate(f"({MODEL})('browser').is_stale = {is_stale}")
         for part in (".scene", ".plots", ".words"):
