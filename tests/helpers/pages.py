@@ -112,6 +112,8 @@ class Desk:
         if self._page is None:
             visit = self._opened.enter_context(visits(self._server, self._chrome))
             self._page = visit(f"?{ANSWER}")
+            # Where it goes before it is there, nobody hears
+            is_solved(self._page)
         return self._page
 
     def close(self) -> None:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import Any
 
-from axe_playwright_python.sync_playwright import Axe
+from everybody import COLOURS, all_can_use
 from pages import (
     ANSWER,
     Visit,
@@ -31,59 +30,18 @@ SIZE = """() => {
   return axis.major_label_text_font_size
 }"""
 
-OF_THE_WIDGETS = ("aria-prohibited-attr", "aria-progressbar-name", "button-name")
-"""What panel-material-ui's own descriptions, bars and number fields break."""
-
-
-RULES = {
-    "type": "tag",
-    "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"],
-}
-"""Rules of WCAG of level A and AA, and of good practice."""
-COLOURS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
-"""Those of them that ask for colours, which are all that differs between themes."""
-
-
-def violations(page: Page, rules: dict[str, Any]) -> list[str]:
-    """Violations of some rules."""
-    options = {
-        # What passes would come with all its elements, half a megabyte.
-        "resultTypes": ["violations"],
-        "runOnly": rules,
-    }
-    response = Axe().run(page, options=options).response
-    found = []
-    for rule in response["violations"]:
-        if rule["id"] not in OF_THE_WIDGETS:
-            found += [f"{rule['id']}: {node['html'][:160]}" for node in rule["nodes"]]
-    return found
-
 
 def test_axe_finds_nothing_that_some_cannot_use_in_light_and_dark(page: Page) -> None:
-    def is_clean(rules: dict[str, Any] = RULES) -> None:
-        # No tooltip is on its way.
-        page.mouse.move(640.0, 5.0)
-        expect(page.get_by_role("tooltip")).to_have_count(0)
-        assert not (found := violations(page, rules)), "\n".join(found)
-
     go(page, f"?{ANSWER}")
     expect(field(page, "Peak load")).to_have_value("900")
     is_solved(page)
-    is_clean()
+    all_can_use(page)
     light = page.evaluate(BACKGROUND)
     button(page, "Toggle theme").click()
     comes(page, f"(light) => {BACKGROUND} !== light", light)
     # Tabs take their colour some frames later.
     expect(page.get_by_text("Contact force", exact=True)).to_have_css("color", DARK_TAB)
-    is_clean(COLOURS)
-    button(page, "What if").click()
-    expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
-    is_clean()
-    button(page, "Live").click()
-    button(page, "Lessons").click()
-    page.get_by_role("button", name="Is a small indicator a small error?").click()
-    expect(button(page, "Show me")).to_be_visible()
-    is_clean()
+    all_can_use(page, COLOURS)
     button(page, "Toggle theme").click()
     comes(page, f"(light) => {BACKGROUND} === light", light)
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from browser import ROOT, Chrome, Server
+from everybody import all_can_use
 from markup import MARKUP, watched
 from pages import (
     ANSWER,
@@ -126,6 +127,7 @@ def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_and_program(
         page.get_by_text(re.compile(r"13 of 13 runs: \d+ converged"))
     ).to_be_visible()
     expect(page.locator(".bk-Figure").locator("visible=true")).to_have_count(1)
+    all_can_use(page)
     button(page, "Live").click()
     is_solved(page)
     button(page, "Take away").click()

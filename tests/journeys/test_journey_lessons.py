@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import pytest
 from browser import Chrome, Server
+from everybody import all_can_use
 from pages import (
     ANSWER,
     Desk,
@@ -88,6 +89,7 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     expect(page).to_have_url(re.compile("lesson=small-indicator"))
     expect(button(page, "Show me")).to_be_visible()
     expect(page.get_by_role("alert")).to_have_count(0)
+    all_can_use(page)
     button(page, "Some 75 %").click()
     expect(page.get_by_role("alert")).to_be_visible()
     expect(status(page)).to_contain_text("75 % wrong")
