@@ -215,8 +215,8 @@ def test_typed_values_run_or_are_refused_and_leave_the_pinned_run_and_the_views(
     expect(page.get_by_role("tab", name="Loop")).to_have_attribute(
         "aria-selected", "true"
     )
-    button(page, "Block").click()
-    expect(page.locator(".sentence")).to_contain_text("block")
+    button(page, "Rope").click()
+    expect(page.locator(".sentence")).to_contain_text("A strand")
     expect(page.get_by_role("tab", name="Loop")).to_have_attribute(
         "aria-selected", "true"
     )
