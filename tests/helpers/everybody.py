@@ -1,4 +1,4 @@
-"""What axe-core finds that some people cannot use on a page."""
+"""Violations that axe-core finds of rules on what everybody can use."""
 
 from __future__ import annotations
 

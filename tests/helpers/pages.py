@@ -99,11 +99,20 @@ class Desk:
     Each journey goes to an address of its own first, and leaves no dialog, file, theme
     or class behind. A page on which a journey failed is closed, and the next has a new
     one.
+
+    Attributes
+    ----------
+    worker
+        Process of the page, as it was when the page was opened or loaded again.
     """
 
-    def __init__(self, server: Server, chrome: Chrome) -> None:
+    def __init__(
+        self, server: Server, chrome: Chrome, query: str = f"?{ANSWER}", root: str = ""
+    ) -> None:
         self._server = server
         self._chrome = chrome
+        self._query = query
+        self._root = root
         self._opened = ExitStack()
         self._page: Page | None = None
 
@@ -111,10 +120,18 @@ class Desk:
         """The page, which is opened if there is none."""
         if self._page is None:
             visit = self._opened.enter_context(visits(self._server, self._chrome))
-            self._page = visit(f"?{ANSWER}")
-            # Where it goes before it is there, nobody hears
-            is_solved(self._page)
+            self._page = visit(self._query, root=self._root)
+            self.arrive()
         return self._page
+
+    def arrive(self) -> None:
+        """Wait until the page is there that was opened or loaded again last.
+
+        Where it goes before, nobody hears.
+        """
+        is_solved(self.page())
+        # Of its processes the server has begun that of this page last.
+        self.worker = self._server.processes()[-1]
 
     def close(self) -> None:
         """Close the page; neither it nor the server may have complained."""

@@ -9,15 +9,17 @@ import pytest
 from browser import Chrome, Server
 from pages import Desk
 from playwright.sync_api import Page
+from proxy import Proxy
 
 FAILED = pytest.StashKey[bool]()
-"""Whether a part of a test has failed."""
+"""Key of whether a part of a test has failed."""
 
 
 @pytest.fixture(scope="session")
-def desk(server: Server, chrome: Chrome) -> Iterator[Desk]:
-    """Where the page stays."""
-    with closing(Desk(server, chrome)) as made:
+def desk(server: Server, chrome: Chrome, proxy: Proxy) -> Iterator[Desk]:
+    """Desk of the journeys, with its page, which comes over a network."""
+    root = f"http://localhost:{proxy.port}"
+    with closing(Desk(server, chrome, root=root)) as made:
         yield made
 
 

@@ -8,6 +8,7 @@ import signal
 import time
 import urllib.request
 from collections.abc import Iterator
+from contextlib import closing
 from urllib.error import HTTPError
 from urllib.parse import quote
 
@@ -17,6 +18,7 @@ from markup import MARKUP, watched
 from pages import (
     ANSWER,
     ENDLESS,
+    Desk,
     button,
     enter,
     field,
@@ -25,7 +27,6 @@ from pages import (
     is_solved,
     painted,
     status,
-    visits,
 )
 from playwright.sync_api import Page, expect
 from processes import is_alive, wait_for
@@ -64,19 +65,21 @@ SPEAK = """async (address) => {
 
 
 @pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server, proxy: Proxy) -> Iterator[Page]:
-    """A page that is opened once, over a network and by a foolish address."""
+def stranger(chrome: Chrome, server: Server) -> Iterator[Desk]:
+    """A page that is opened by a foolish address, once, and is closed by a test."""
     text = quote(MARKUP, safe="")
     said = "&".join(f"{quote(place, safe='')}={text}" for place in PLACES)
     query = f"?friction=-1&moon=3&{ANSWER}&{said}"
-    with visits(server, chrome) as visit:
-        yield visit(query, root=f"http://localhost:{proxy.port}")
+    with closing(Desk(server, chrome, query)) as made:
+        yield made
 
 
 def test_what_a_foolish_address_has_is_said_on_its_page_and_nothing_of_it_runs(
-    page: Page,
+    stranger: Desk,
 ) -> None:
-    # The first test of this page: what its address has is still there.
+    # Only of a page that has just been opened.
+    stranger.close()
+    page = stranger.page()
     with watched(page):
         expect(page.locator(".status")).to_contain_text("From the address: ")
         expect(page.locator(".status")).to_contain_text("cannot be −1")
@@ -112,7 +115,9 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
     is_solved(page)
 
 
-def test_a_reload_keeps_the_settings_and_back_undoes_them(page: Page) -> None:
+def test_a_reload_keeps_the_settings_and_back_undoes_them(
+    page: Page, desk: Desk
+) -> None:
     go(page, f"?{ANSWER}")
     expect(field(page, "Peak load")).to_have_value("900")
     is_solved(page)
@@ -129,18 +134,14 @@ def test_a_reload_keeps_the_settings_and_back_undoes_them(page: Page) -> None:
     page.reload()
     expect(figures(page)).to_contain_text("Force −1.1 kN")
     expect(field(page, "Peak load")).to_have_value("1100")
+    desk.arrive()
 
 
 def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed(
-    page: Page, chrome: Chrome, server: Server
+    page: Page, desk: Desk, stranger: Desk, server: Server
 ) -> None:
+    other = stranger.page()
     before = server.processes()
-    endless = f"?{ENDLESS}&pace=5 a second"
-
-    def worker_of(opened: Page) -> int:
-        """The worker of a page that was opened last, and searches."""
-        expect(status(opened)).to_contain_text(re.compile(r"iteration \d"))
-        return server.processes()[-1]
 
     def goes_on(page: Page, worker: int, words: str) -> None:
         expect(page.locator(".status")).to_contain_text(
@@ -149,19 +150,19 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
         painted(page, 3)
         wait_for(lambda: not is_alive(worker))
 
-    page.goto(page.url.partition("?")[0] + endless)
-    stopped = worker_of(page)
+    for each in (page, other):
+        go(each, f"?{ENDLESS}&pace=5 a second")
+        expect(status(each)).to_contain_text(re.compile(r"iteration \d"))
     # Both waits at once: for the sign of life, and for the end of a page that is
     # closed.
-    with visits(server, chrome) as visit:
-        other = visit(endless)
-        killed = worker_of(other)
-        # Only now, as a page whose worker hangs soon has another, the newest.
-        os.kill(stopped, signal.SIGSTOP)
-        os.kill(killed, signal.SIGKILL)
-        goes_on(other, killed, "process ended")
-    goes_on(page, stopped, "no sign of life for some seconds")
+    os.kill(desk.worker, signal.SIGSTOP)
+    os.kill(stranger.worker, signal.SIGKILL)
+    goes_on(other, stranger.worker, "process ended")
+    stranger.close()
+    goes_on(page, desk.worker, "no sign of life for some seconds")
     wait_for(lambda: len(set(server.processes()) - set(before)) == 1)
+    go(page, f"?{ANSWER}")
+    desk.arrive()
 
 
 @pytest.mark.parametrize("query", FOOLISH, ids=range(len(FOOLISH)))

@@ -137,7 +137,7 @@ def school(desk: Desk, chrome: Chrome, server: Server) -> Iterator[School]:
         close_dialog(leader)
 
 
-def test_a_class_sees_what_its_leader_sees(school: School) -> None:
+def test_a_class_sees_what_its_leader_sees(school: School, desk: Desk) -> None:
     leader = school.leader
     page = school.follower
     for each in (leader, page):
@@ -150,6 +150,7 @@ def test_a_class_sees_what_its_leader_sees(school: School) -> None:
     assert typed.input_value() == "1100"
     expect(leader.locator(".class").first).to_contain_text("1 follows")
     expect(figures(leader)).to_contain_text("Force −1.1 kN")
+    desk.arrive()
     enter(leader, "Peak load", "1000", over="1100")
     expect(figures(page)).to_contain_text("Force −1 kN")
 
