@@ -14,9 +14,9 @@ ENDLESS = (
     "method=paper&max_iterations=100000&tolerance=1e-30&k_scale=0.1&pace=20 a second"
 )
 """In an address: a run that goes on."""
-ANSWER = "start=nested&finish=at-once&pace=fastest"
+ANSWER = "start=nested&finish=at-once&pace=fastest&instant=0.75"
 """In an address: a run whose answer is there at once, and after it searches, as those
-of lessons and cases, with as few pictures as there can be."""
+of lessons and cases, with as few pictures as there can be, where a new page looks."""
 IGNORED = re.compile(
     "GL Driver Message|Failed to repull session"
     "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not "

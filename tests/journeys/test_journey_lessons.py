@@ -125,8 +125,7 @@ def school(desk: Desk, chrome: Chrome, server: Server) -> Iterator[School]:
     """A class whose pages are opened once: that takes longer than what they do."""
     with visits(server, chrome) as visit:
         leader = desk.page()
-        # Whoever took a lesson looks at another instant.
-        go(leader, f"?{ANSWER}&instant=0.75")
+        go(leader, f"?{ANSWER}")
         expect(status(leader)).to_contain_text("answer:")
         is_solved(leader)
         code = lead(leader)

@@ -223,7 +223,7 @@ def test_typed_values_run_or_are_refused_and_leave_the_pinned_run_and_the_views(
 
 
 def test_the_load_path_is_the_time_line_which_one_plays_and_stops(page: Page) -> None:
-    go(page, f"?{ANSWER}&instant=0.75")
+    go(page, f"?{ANSWER}")
     expect(figures(page)).to_contain_text("Force −900 N")
     drag(page, figure(page, 1), 0.75, 0.26)
     expect(figures(page)).to_contain_text(re.compile(r"Force (8|9)\d\d N"))
