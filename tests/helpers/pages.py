@@ -122,6 +122,8 @@ class Desk:
             visit = self._opened.enter_context(visits(self._server, self._chrome))
             self._page = visit(self._query, root=self._root)
             self.arrive()
+        # What comes under a pointer that rests on a figure would be looked for there.
+        self._page.mouse.move(0.0, 0.0)
         return self._page
 
     def arrive(self) -> None:

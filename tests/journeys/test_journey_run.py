@@ -115,7 +115,9 @@ def test_a_new_page_shows_a_search_plays_its_cycle_and_may_have_the_answer_at_on
 def test_what_is_of_a_run_before_fades_until_a_picture_of_the_new_one_is_there(
     page: Page,
 ) -> None:
-    go(page, f"?{ANSWER}")
+    go(page, f"?{ANSWER}&peak=1000")
+    expect(figures(page)).to_contain_text("Force −1 kN")
+    is_solved(page)
     for is_stale, opacity in (("true", "0.3"), ("false", "1")):
         page.evaluate(f"({MODEL})('browser').is_stale = {is_stale}")
         for part in (".scene", ".plots", ".words"):
