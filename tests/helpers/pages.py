@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 from browser import Chrome, Server
@@ -14,9 +14,9 @@ ENDLESS = (
     "method=paper&max_iterations=100000&tolerance=1e-30&k_scale=0.1&pace=20 a second"
 )
 """In an address: a run that goes on."""
-ANSWER = "start=nested&finish=at-once&pace=fastest"
+ANSWER = "start=nested&finish=at-once&pace=fastest&instant=0.75"
 """In an address: a run whose answer is there at once, and after it searches, as those
-of lessons and cases, with as few pictures as there can be."""
+of lessons and cases, with as few pictures as there can be, where a new page looks."""
 IGNORED = re.compile(
     "GL Driver Message|Failed to repull session"
     "|WebSocket connection to .* failed|Failed to connect to Bokeh server: Could not "
@@ -52,12 +52,17 @@ Visit = Callable[..., Page]
 
 
 @contextmanager
-def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
+def visits(
+    server: Server, chrome: Chrome, complaints: list[str] | None = None
+) -> Iterator[Visit]:
     """Open pages, and close them;
     neither they nor the server may complain meanwhile.
+
+    What the pages say is added to the complaints that are given.
     """
     pages: list[Page] = []
-    complaints: list[str] = []
+    if complaints is None:
+        complaints = []
     before = len(server.log)
 
     def hear(message: ConsoleMessage) -> None:
@@ -91,6 +96,63 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     lines = CLOSED.sub("", said).splitlines()
     faults = [line for line in lines if FAULT.search(line)]
     assert all(ALLOWED.search(line) for line in faults), said
+
+
+class Desk:
+    """A page that stays open: an opening takes as long as half a journey.
+
+    Each journey goes to an address of its own first, and leaves no dialog, file, theme
+    or class behind. A page on which a journey failed is closed, and the next has a new
+    one.
+
+    Attributes
+    ----------
+    worker
+        Process of the page, as it was when the page was opened or loaded again.
+    """
+
+    def __init__(
+        self, server: Server, chrome: Chrome, query: str = f"?{ANSWER}", root: str = ""
+    ) -> None:
+        self._server = server
+        self._chrome = chrome
+        self._query = query
+        self._root = root
+        self._opened = ExitStack()
+        self._page: Page | None = None
+        self._complaints: list[str] = []
+
+    def page(self) -> Page:
+        """The page, which is opened if there is none."""
+        if self._page is None:
+            self._complaints = []
+            visit = self._opened.enter_context(
+                visits(self._server, self._chrome, self._complaints)
+            )
+            self._page = visit(self._query, root=self._root)
+            self.arrive()
+        # What comes under a pointer that rests on a figure would be looked for there.
+        self._page.mouse.move(0.0, 0.0)
+        return self._page
+
+    def arrive(self) -> None:
+        """Wait until the page is there that was opened or loaded again last.
+
+        Where it goes before, nobody hears.
+        """
+        is_solved(self.page())
+        # Of its processes the server has begun that of this page last.
+        self.worker = self._server.processes()[-1]
+
+    def check(self) -> None:
+        """Close a page that has complained."""
+        if self._complaints:
+            self.close()
+
+    def close(self) -> None:
+        """Close the page; neither it nor the server may have complained."""
+        self._page = None
+        self._opened.close()
 
 
 def go(page: Page, query: str) -> None:

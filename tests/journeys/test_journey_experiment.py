@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-from browser import Chrome, Server
 from pages import (
     ANSWER,
     button,
@@ -16,7 +13,6 @@ from pages import (
     figures,
     go,
     is_solved,
-    visits,
 )
 from playwright.sync_api import Page, expect
 
@@ -38,14 +34,9 @@ def measured() -> str:
     return "\n".join(["time [s],displacement [mm],force [kN]", *lines])
 
 
-@pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page that is opened once: that takes longer than what is done with it."""
-    with visits(server, chrome) as visit:
-        yield visit(f"?{ANSWER}")
-
-
 def test_a_case_is_opened_by_its_picture_and_left_by_back(page: Page) -> None:
+    go(page, f"?{ANSWER}")
+    expect(field(page, "Peak load")).to_have_value("900")
     is_solved(page)
     button(page, "Cases").click()
     # Its picture stands upright, so that the page is laid out anew with other data.
@@ -90,3 +81,7 @@ def test_a_measured_loop_is_compared_and_fitted_and_the_fit_is_run(
     is_solved(page)
     expect(field(page, "Friction coefficient")).to_have_value("0.25")
     expect(figures(page)).to_contain_text("Distance to rig.csv")
+    button(page, "Files").click()
+    button(page, "Remove rig.csv").click()
+    expect(figures(page)).not_to_contain_text("Distance to")
+    button(page, "Files").click()

@@ -8,14 +8,17 @@ import signal
 import time
 import urllib.request
 from collections.abc import Iterator
+from contextlib import closing
 from urllib.error import HTTPError
+from urllib.parse import quote
 
 import pytest
 from browser import Chrome, Server
+from markup import MARKUP, watched
 from pages import (
     ANSWER,
     ENDLESS,
-    Visit,
+    Desk,
     button,
     enter,
     field,
@@ -24,7 +27,6 @@ from pages import (
     is_solved,
     painted,
     status,
-    visits,
 )
 from playwright.sync_api import Page, expect
 from processes import is_alive, wait_for
@@ -36,6 +38,19 @@ FOOLISH = (
     "?tab=%00&view=&plots=,,,&pace=never&load=[[0,0],[0,1]]&instant=7",
     "?peak=" + "9" * 4000 + "&%3Cscript%3Ealert(1)%3C/script%3E=1",
 )
+PLACES = (
+    "class",
+    "scene",
+    "lesson",
+    "case",
+    "tab",
+    "question",
+    "plots",
+    "file",
+    "displacement",
+    MARKUP,
+)
+"""Parts of an address that a text may be given for."""
 QUIET = 1.0
 """Seconds without a message after which none is on its way."""
 SPEAK = """async (address) => {
@@ -49,26 +64,31 @@ SPEAK = """async (address) => {
 """Has the browser open a session, and say what is no message of Bokeh's."""
 
 
-def newest_worker(server: Server, before: list[int]) -> int:
-    """The process of a page that was opened since."""
-    new = [pid for pid in server.processes() if pid not in before]
-    return new[-1]
-
-
 @pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server, proxy: Proxy) -> Iterator[Page]:
-    """A page that is opened once, over a network and by a foolish address."""
-    query = f"?friction=-1&moon=3&scene=bar&{ANSWER}"
-    with visits(server, chrome) as visit:
-        yield visit(query, root=f"http://localhost:{proxy.port}")
+def stranger(chrome: Chrome, server: Server) -> Iterator[Desk]:
+    """A page that is opened by a foolish address, once, and is closed by a test."""
+    text = quote(MARKUP, safe="")
+    said = "&".join(f"{quote(place, safe='')}={text}" for place in PLACES)
+    query = f"?friction=-1&moon=3&{ANSWER}&{said}"
+    with closing(Desk(server, chrome, query)) as made:
+        yield made
 
 
-def test_what_a_foolish_address_has_is_said_on_its_page(page: Page) -> None:
-    # The first test of this page: what its address has is still there.
-    expect(page.locator(".status")).to_contain_text("From the address: ")
-    expect(page.locator(".status")).to_contain_text("cannot be −1")
-    expect(page.locator(".status")).to_contain_text("moon: there is no such setting")
-    is_solved(page)
+def test_what_a_foolish_address_has_is_said_on_its_page_and_nothing_of_it_runs(
+    stranger: Desk,
+) -> None:
+    # Only of a page that has just been opened.
+    stranger.close()
+    page = stranger.page()
+    with watched(page):
+        expect(page.locator(".status")).to_contain_text("From the address: ")
+        expect(page.locator(".status")).to_contain_text("cannot be −1")
+        expect(page.locator(".status")).to_contain_text(
+            "moon: there is no such setting"
+        )
+        expect(page.locator(".status")).to_contain_text("there is no scene <img")
+        expect(page.get_by_text("There is no class <img").first).to_be_visible()
+        is_solved(page)
     # Bokeh's figures would not follow what moves them.
     place = page.locator(".scene").bounding_box()
     enter(page, "Peak load", "1000", over="900")
@@ -95,14 +115,16 @@ def test_a_network_that_breaks_and_is_mended_costs_no_settings(
     is_solved(page)
 
 
-def test_a_reload_keeps_the_settings_and_back_undoes_them(page: Page) -> None:
+def test_a_reload_keeps_the_settings_and_back_undoes_them(
+    page: Page, desk: Desk
+) -> None:
     go(page, f"?{ANSWER}")
     expect(field(page, "Peak load")).to_have_value("900")
     is_solved(page)
     enter(page, "Peak load", "1100", over="900")
     expect(figures(page)).to_contain_text("Force −1.1 kN")
-    button(page, "Block").click()
-    expect(page.locator(".sentence")).to_contain_text("block")
+    button(page, "Rope").click()
+    expect(page.locator(".sentence")).to_contain_text("A strand")
     page.go_back()
     expect(figures(page)).to_contain_text("Force −1.1 kN")
     page.go_back()
@@ -112,19 +134,14 @@ def test_a_reload_keeps_the_settings_and_back_undoes_them(page: Page) -> None:
     page.reload()
     expect(figures(page)).to_contain_text("Force −1.1 kN")
     expect(field(page, "Peak load")).to_have_value("1100")
+    desk.arrive()
 
 
 def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed(
-    chrome: Chrome, server: Server
+    page: Page, desk: Desk, stranger: Desk, server: Server
 ) -> None:
+    other = stranger.page()
     before = server.processes()
-
-    def searching(visit: Visit) -> tuple[Page, int]:
-        """A page that searches, and its worker."""
-        known = server.processes()
-        page = visit(f"?{ENDLESS}&pace=5 a second")
-        expect(status(page)).to_contain_text(re.compile(r"iteration \d"))
-        return page, newest_worker(server, known)
 
     def goes_on(page: Page, worker: int, words: str) -> None:
         expect(page.locator(".status")).to_contain_text(
@@ -133,18 +150,19 @@ def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed
         painted(page, 3)
         wait_for(lambda: not is_alive(worker))
 
-    with visits(server, chrome) as visit:
-        stopped = searching(visit)
-        # Both waits at once: for the sign of life, and for the end of a page that is
-        # closed.
-        with visits(server, chrome) as visit_too:
-            killed = searching(visit_too)
-            # Only now, as a page whose worker hangs soon has another, the newest.
-            os.kill(stopped[1], signal.SIGSTOP)
-            os.kill(killed[1], signal.SIGKILL)
-            goes_on(*killed, "process ended")
-        goes_on(*stopped, "no sign of life for some seconds")
-        wait_for(lambda: len(set(server.processes()) - set(before)) == 1)
+    for each in (page, other):
+        go(each, f"?{ENDLESS}&pace=5 a second")
+        expect(status(each)).to_contain_text(re.compile(r"iteration \d"))
+    # Both waits at once: for the sign of life, and for the end of a page that is
+    # closed.
+    os.kill(desk.worker, signal.SIGSTOP)
+    os.kill(stranger.worker, signal.SIGKILL)
+    goes_on(other, stranger.worker, "process ended")
+    stranger.close()
+    goes_on(page, desk.worker, "no sign of life for some seconds")
+    wait_for(lambda: len(set(server.processes()) - set(before)) == 1)
+    go(page, f"?{ANSWER}")
+    desk.arrive()
 
 
 @pytest.mark.parametrize("query", FOOLISH, ids=range(len(FOOLISH)))

@@ -6,18 +6,16 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from itertools import combinations
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
-import pytest
 from browser import ROOT, Chrome, Server
+from everybody import all_can_use
+from markup import MARKUP, watched
 from pages import (
     ANSWER,
-    Visit,
     button,
     close_dialog,
     comes,
@@ -26,15 +24,13 @@ from pages import (
     figures,
     go,
     is_solved,
-    visits,
 )
-from playwright.sync_api import Browser, Dialog, Page, Request, expect
+from playwright.sync_api import Browser, Page, expect
 
-SMALL = f"elements=20&instants=21&substructures=4&{ANSWER}"
+SEARCH = "elements=20&instants=21&substructures=4&pace=fastest"
+SMALL = f"{SEARCH}&{ANSWER}"
 LOAD = "time (s),force (kN)\n0,0\n1,1.2\n2,-0.6\n"
 ROWS = "".join(f"{x},0.75,1.4\n" for x in range(0, 1001, 100))
-QUIET = 500.0
-"""Milliseconds in which what was made of markup has run."""
 RESULTS = f"x (mm),t (s),friction force (kN/m)\n{ROWS}"
 
 
@@ -109,13 +105,6 @@ def lie_apart(boxes: Sequence[Any]) -> None:
         assert is_beside or is_below, (one, other)
 
 
-@pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page that is opened once: that takes longer than what is done with it."""
-    with visits(server, chrome) as visit:
-        yield visit(f"?{SMALL}")
-
-
 def open_files(page: Page) -> None:
     """Show the run of the address anew, with the place where files are opened."""
     go(page, f"?{SMALL}")
@@ -129,6 +118,8 @@ def open_files(page: Page) -> None:
 def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_and_program(
     page: Page, tmp_path: Path
 ) -> None:
+    go(page, f"?{SEARCH}")
+    expect(field(page, "Peak load")).to_have_value("900")
     is_solved(page)
     button(page, "What if").click()
     expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
@@ -136,6 +127,7 @@ def test_what_if_draws_a_chart_and_a_run_is_taken_away_as_table_and_program(
         page.get_by_text(re.compile(r"13 of 13 runs: \d+ converged"))
     ).to_be_visible()
     expect(page.locator(".bk-Figure").locator("visible=true")).to_have_count(1)
+    all_can_use(page)
     button(page, "Live").click()
     is_solved(page)
     button(page, "Take away").click()
@@ -179,7 +171,7 @@ def test_a_file_is_opened_by_keys_and_what_is_said_of_it_is_spoken(
         page.keyboard.press("Tab")
         expect(label).to_have_css("outline-style", "solid")
         with page.expect_file_chooser() as chooser:
-            page.wait_for_timeout(QUIET)
+            page.wait_for_timeout(500.0)
             page.keyboard.press("Enter")
         chooser.value.set_files(tmp_path / "bad.csv")
         expect(spoken).to_contain_text("much")
@@ -212,8 +204,6 @@ def test_what_a_file_has_is_drawn_beside_or_run_and_what_was_understood_is_said(
     expect(page.get_by_text("much").first).to_be_visible()
 
 
-MARKUP = "<img/src='x'/onerror='window.ran=1'>[go](javascript:window.ran=1)"
-"""Runs wherever it is taken for HTML or Markdown."""
 HANDLER = "<img src='data:,' onerror='window.ran=1'>"
 NAME = "<img src=x onerror=window.ran=1>[go](javascript:window.ran=1)"
 """The same, as a file may be called."""
@@ -235,42 +225,6 @@ HOSTILE = {
     f"{NAME} {{0}} loop.csv": LOOP,
 }
 """Files by their names; those that are not refused come last."""
-PLACES = (
-    "class",
-    "scene",
-    "lesson",
-    "case",
-    "tab",
-    "question",
-    "plots",
-    "file",
-    "friction",
-    MARKUP,
-)
-"""In an address."""
-
-
-@contextmanager
-def watched(page: Page) -> Iterator[None]:
-    """Check that text written for a page has not become a part of it, nor run."""
-    done: list[str] = []
-
-    def ask(request: Request) -> None:
-        done.append(request.url)
-
-    def speak(dialog: Dialog) -> None:
-        done.append(f"dialog/{dialog.message}/x")
-        dialog.dismiss()
-
-    page.on("request", ask)
-    page.on("dialog", speak)
-    yield
-    page.wait_for_timeout(QUIET)
-    page.remove_listener("request", ask)
-    page.remove_listener("dialog", speak)
-    assert page.evaluate("window.ran") is None
-    assert page.locator("img[src='x'], a[href^='javascript:']").count() == 0
-    assert not [what for what in done if what.endswith("/x")]
 
 
 def test_nothing_runs_that_a_file_says_or_is_called_nor_in_the_page_taken_away(
@@ -295,6 +249,9 @@ def test_nothing_runs_that_a_file_says_or_is_called_nor_in_the_page_taken_away(
         close_dialog(page)
         button(page, "Fit").click()
         expect(page.locator(".fit .bk-Figure")).to_be_visible()
+        button(page, "Live").click()
+        button(page, "Remove").click()
+        expect(button(page, "Remove")).to_have_count(0)
     assert page.context.browser
     opens_alone(page.context.browser, offline)
 
@@ -312,13 +269,3 @@ def test_a_handler_in_an_element_does_not_run_should_a_text_become_one(
         )
     assert page.evaluate("window.ran") is None
     chrome.leave(page)
-
-
-def test_nothing_runs_that_an_address_says(visit: Visit) -> None:
-    text = quote(MARKUP, safe="")
-    said = "&".join(f"{quote(place, safe='')}={text}" for place in PLACES)
-    page = visit(f"?{ANSWER}&{said}")
-    with watched(page):
-        expect(page.locator(".status")).to_contain_text("there is no scene <img")
-        expect(page.get_by_text("There is no class <img").first).to_be_visible()
-        is_solved(page)

@@ -9,8 +9,10 @@ from dataclasses import dataclass
 
 import pytest
 from browser import Chrome, Server
+from everybody import all_can_use
 from pages import (
     ANSWER,
+    Desk,
     Visit,
     button,
     close_dialog,
@@ -79,13 +81,6 @@ def follow(visit: Visit, code: str) -> Page:
     return page
 
 
-@pytest.fixture(scope="module")
-def page(chrome: Chrome, server: Server) -> Iterator[Page]:
-    """A page that takes a lesson, and later leads a class."""
-    with visits(server, chrome) as visit:
-        yield visit(f"?{ANSWER}")
-
-
 def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     page: Page,
 ) -> None:
@@ -94,6 +89,7 @@ def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(
     expect(page).to_have_url(re.compile("lesson=small-indicator"))
     expect(button(page, "Show me")).to_be_visible()
     expect(page.get_by_role("alert")).to_have_count(0)
+    all_can_use(page)
     button(page, "Some 75 %").click()
     expect(page.get_by_role("alert")).to_be_visible()
     expect(status(page)).to_contain_text("75 % wrong")
@@ -145,20 +141,22 @@ class School:
 
 
 @pytest.fixture(scope="module")
-def school(page: Page, chrome: Chrome, server: Server) -> Iterator[School]:
+def school(desk: Desk, chrome: Chrome, server: Server) -> Iterator[School]:
     """A class whose pages are opened once: that takes longer than what they do."""
     with visits(server, chrome) as visit:
-        leader = page
-        # Whoever took a lesson looks at another instant.
-        go(leader, f"?{ANSWER}&instant=0.75")
+        leader = desk.page()
+        go(leader, f"?{ANSWER}")
         expect(status(leader)).to_contain_text("answer:")
         is_solved(leader)
         code = lead(leader)
         enter(leader, "Peak load", "1100", over="900")
         yield School(code, leader, follow(visit, code))
+        button(leader, "A class").click()
+        button(leader, "End the class").click()
+        close_dialog(leader)
 
 
-def test_a_class_sees_what_its_leader_sees(school: School) -> None:
+def test_a_class_sees_what_its_leader_sees(school: School, desk: Desk) -> None:
     leader = school.leader
     page = school.follower
     for each in (leader, page):
@@ -171,6 +169,7 @@ def test_a_class_sees_what_its_leader_sees(school: School) -> None:
     assert typed.input_value() == "1100"
     expect(leader.locator(".class").first).to_contain_text("1 follows")
     expect(figures(leader)).to_contain_text("Force −1.1 kN")
+    desk.arrive()
     enter(leader, "Peak load", "1000", over="1100")
     expect(figures(page)).to_contain_text("Force −1 kN")
 

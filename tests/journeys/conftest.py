@@ -1,0 +1,43 @@
+"""A page that stays open from one journey to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from contextlib import closing
+
+import pytest
+from browser import Chrome, Server
+from pages import Desk
+from playwright.sync_api import Page
+from proxy import Proxy
+
+FAILED = pytest.StashKey[bool]()
+"""Key of whether a part of a test has failed."""
+
+
+@pytest.fixture(scope="session")
+def desk(server: Server, chrome: Chrome, proxy: Proxy) -> Iterator[Desk]:
+    """Desk of the journeys, with its page, which comes over a network."""
+    root = f"http://localhost:{proxy.port}"
+    with closing(Desk(server, chrome, root=root)) as made:
+        yield made
+
+
+@pytest.fixture
+def page(request: pytest.FixtureRequest, desk: Desk) -> Iterator[Page]:
+    """The page that stays open."""
+    yield desk.page()
+    if FAILED in request.node.stash:
+        desk.close()
+    else:
+        desk.check()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item,
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    report = yield
+    if report.failed:
+        item.stash[FAILED] = True
+    return report
