@@ -21,7 +21,6 @@ from pages import (
     holds,
     is_solved,
     iteration,
-    painted,
     slider,
     status,
 )
@@ -166,8 +165,9 @@ def test_a_pointer_that_rests_on_a_plot_may_be_there_before_it_is_painted(
     # What goes wrong in the browser meanwhile fails the page.
     page.evaluate(REST)
     for name in ("Loop", "Contact force", "Error over run time", "Convergence"):
+        before = page.evaluate(f"({MODEL})('pulse').painted")
         page.get_by_role("tab", name=name, exact=True).click()
-        painted(page, 2)
+        holds(page, "model('pulse').painted > arg", before)
     assert page.evaluate("stopped()") > 20
     box = figure(page, 2).bounding_box()
     assert box is not None
