@@ -215,6 +215,7 @@ def test_a_load_that_travels_is_one_arrow_and_is_dragged_where_it_is() -> None:
     base = picture.page(arrows.base[0])  # type: ignore[union-attr]
     half = 0.5 * (handle + base)
     view._hold(SimpleNamespace(x=handle[0], y=handle[1]))
+    view._drag(SimpleNamespace(x=half[0], y=half[1]))
     view._let_go(SimpleNamespace(x=half[0], y=half[1]))
     assert view.state.settings.live == pytest.approx(1000.0, rel=0.02)
 
