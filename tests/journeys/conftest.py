@@ -15,9 +15,12 @@ FAILED = pytest.StashKey[bool]()
 """Key of whether a part of a test has failed."""
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def desk(server: Server, chrome: Chrome, proxy: Proxy) -> Iterator[Desk]:
-    """Desk of the journeys, with its page, which comes over a network."""
+    """Desk of the journeys, with its page, which comes over a network.
+
+    Left open beside all other tests, the page would take time from them.
+    """
     root = f"http://localhost:{proxy.port}"
     with closing(Desk(server, chrome, root=root)) as made:
         yield made

@@ -315,3 +315,5 @@ def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(
     page.keyboard.press(" ")
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
     expect(status(page)).not_to_contain_text("paused")
+    page.keyboard.press(" ")
+    expect(status(page)).to_contain_text("paused")
