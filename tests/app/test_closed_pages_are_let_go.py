@@ -9,6 +9,7 @@ from typing import Any
 
 from bokeh.document import Document
 from browser import ROOT
+from coroutines import awaited
 from measure_class import Visitor
 from pages import ANSWER
 from panel.io.server import get_server
@@ -77,4 +78,4 @@ async def states_left() -> list[Any]:
 
 
 def test_three_pages_that_were_closed_leave_nothing_in_memory() -> None:
-    assert asyncio.run(states_left()) == []
+    assert awaited(states_left()) == []

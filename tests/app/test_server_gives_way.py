@@ -12,6 +12,7 @@ from bokeh.application.handlers import FunctionHandler
 from bokeh.document import Document
 from bokeh.server.server import Server
 from bokeh.server.urls import per_app_patterns
+from coroutines import awaited
 from tornado.httpclient import AsyncHTTPClient
 from tornado.httpserver import HTTPServer
 
@@ -54,7 +55,7 @@ async def events_of_opening() -> list[str]:
 def test_of_pages_that_are_asked_for_together_each_is_made_after_others_had_turns() -> (
     None
 ):
-    groups = groupby(asyncio.run(events_of_opening()))
+    groups = groupby(awaited(events_of_opening()))
     rounds = {name: [] for name in ("page", "round")}
     for name, events in groups:
         rounds[name].append(len(list(events)))
