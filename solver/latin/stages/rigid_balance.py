@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.latin.stages.rigid_forces import Loading, RigidForces, RigidState
-from solver.latin.stages.rigid_path import BalancePath
+from solver.latin.stages.rigid_path import HELD, BalancePath
 
 BALANCED = 1e-9
 """Largest unbalanced force, over the largest load of a body, in balance."""
@@ -33,13 +33,10 @@ NEAR = 1.0
 STEPS_TOGETHER = 6
 """Largest number of these steps; most iterations take two, each in half the time of
 steps of all instants, one by one (measured)."""
-HELD = 1e-10
-"""Share of the springs at all rows that hold bodies in a step, so that one in the air
-does not go too far."""
 FIRM = 1e-6
-"""Larger share of these springs, where the first step is taken with all pairs stuck:
-138 arches of any shape take a tenth less time than with three shares in turn
-(measured)."""
+"""Larger share of these springs than `HELD`, where the first step is taken with all
+pairs stuck: 138 arches of any shape take a tenth less time than with three shares in
+turn (measured)."""
 
 
 class Balance:

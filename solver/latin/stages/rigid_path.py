@@ -17,8 +17,8 @@ from solver.arrays import Array, Flags
 from solver.latin.stages.rigid_forces import Loading, RigidForces, RigidState
 
 HELD = 1e-10
-"""Share of the springs at all rows that hold bodies along the path, so that one in the
-air does not go too far."""
+"""Share of the springs at all rows that hold bodies along a path and in a step, so that
+one in the air does not go too far."""
 KINKS = 8
 """Largest number of kinks over that of the pairs: 197 paths of arches of any shape have
 3.6 at most, and 1.1 in the mean (measured)."""
