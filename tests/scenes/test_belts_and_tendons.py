@@ -237,3 +237,18 @@ def test_friction_that_grows_with_slip_carries_by_its_largest():
 def test_elements_over_which_the_guide_turns_far_are_refused():
     with pytest.raises(SettingError, match="at least 36"):
         settings_of(wrap=1080.0, elements=35)
+
+
+def test_what_a_belt_that_flies_off_leaves_by_rounding_proves_nothing():
+    # Pushed off its drum it is held by one contact, as a lever, 1e4 m away.
+    settings = settings_of(
+        substructures=2,
+        driven="moved",
+        displacement=-1.2e-3,
+        pull_load="cycle",
+        tail_load=[[0.33, -11.9]],
+        elements=14,
+    )
+    solution = solve(discretise(settings), method_of(settings))
+    assert not solution.is_certified
+    assert "no equilibrium was found" in solution.status.advice
