@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -131,12 +132,26 @@ class MeshSides:
     def loads(
         self, bodies: Sequence[Body], traction: Array, pressure: Array
     ) -> Iterator[Load]:
-        """Yield sides that are pulled by the traction or pressed, (n_instants,), Pa."""
+        """Yield sides that are pulled by the traction or pressed, (n_instants,), Pa.
+
+        Each edge is pulled once and pressed once, by the first of its sides.
+        """
         inwards = {"pulled": -traction, "pressed": pressure}
+        taken: set[tuple[str, int, frozenset[int]]] = set()
         for name, deed, line in self._acted():
-            if deed in inwards:
-                body = bodies[line.body]
-                yield Load.of_pressure(name, line.body, body, line.nodes, inwards[deed])
+            if deed not in inwards:
+                continue
+            body = bodies[line.body]
+            edges = [frozenset(edge) for edge in pairwise(line.nodes.tolist())]
+            is_free = [(deed, line.body, edge) not in taken for edge in edges]
+            taken.update((deed, line.body, edge) for edge in edges)
+            runs = _runs(is_free)
+            for number, run in enumerate(runs, start=1):
+                label = name
+                if number > 1:
+                    label = f"{name}, part {number}"
+                nodes = line.nodes[run.start : run.stop + 1]
+                yield Load.of_pressure(label, line.body, body, nodes, inwards[deed])
 
     def _acted(self) -> Iterator[_Acted]:
         """Yield the deeds on all lines; of one name and body they have numbers."""
@@ -153,3 +168,15 @@ class MeshSides:
                 if counts[name] > 1:
                     name = f"{name} {counts[name]}"
                 yield _Acted(name, deed, line)
+
+
+def _runs(flags: Sequence[bool]) -> list[range]:
+    """Runs of places whose flags are set, in order."""
+    runs = []
+    start = 0
+    for is_set, run in groupby(flags):
+        stop = start + len(list(run))
+        if is_set:
+            runs.append(range(start, stop))
+        start = stop
+    return runs

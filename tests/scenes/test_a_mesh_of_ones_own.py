@@ -378,6 +378,23 @@ def test_a_run_says_that_nothing_presses_what_lies_between_bodies() -> None:
     assert not list(MESH.checked({}).left_out())
 
 
+def test_a_side_that_two_names_press_is_pressed_once() -> None:
+    mesh = read_example("bolted")
+    pressed = next(name for name in mesh.lines if name.endswith("pressed"))
+    edges = mesh.lines[pressed]
+    # The second name has part of what the first has, on both of its bodies.
+    lines = {"some pressed": edges[len(edges) // 4 :: 2], **mesh.lines}
+    text = as_text(NamedMesh(mesh.points, mesh.surfaces, lines))
+    sums = []
+    for values in ({}, {"mesh": text}):
+        found = np.zeros((3, 2))
+        for load in MESH.checked(values).structure().loads:
+            found[load.body] += load.force[:, :, -1].sum(axis=0)
+        sums.append(found)
+    assert np.abs(sums[0][1:]).max(axis=1) == pytest.approx(5e7 * 0.03)
+    assert sums[1] == pytest.approx(sums[0], rel=1e-12, abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ("changes", "name"),
     [
