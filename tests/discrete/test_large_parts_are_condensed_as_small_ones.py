@@ -1,0 +1,99 @@
+"""Large parts are condensed by one factor, small ones by their own: to one result."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from solver.arrays import Array, Indices
+from solver.discrete import schur_complement
+from solver.discrete.elements import Rectangle, dofs_of, elastic_matrix
+from solver.discrete.schur_complement import (
+    FewEliminated,
+    ManyEliminated,
+    SchurComplement,
+    separated,
+)
+
+BODY = Rectangle(20, 18, 0.05, 0.06, elastic_matrix(1.0, 0.3, "strain"))
+SIDES = [("bottom",), ("left", "top"), ("left", "right", "bottom", "top")]
+TIMES = np.linspace(0.0, 1.0, 9)
+
+
+def kept_on(sides: tuple[str, ...]) -> Indices:
+    return dofs_of(np.unique(np.concatenate([BODY.edge(side) for side in sides])))
+
+
+def close(found: Array, wanted: Array) -> bool:
+    return bool(np.abs(found - wanted).max() <= 1e-11 * np.abs(wanted).max())
+
+
+def by_both(
+    monkeypatch: pytest.MonkeyPatch, kept: Indices
+) -> tuple[SchurComplement, SchurComplement]:
+    large = SchurComplement(BODY.stiffness, kept)
+    monkeypatch.setattr(schur_complement, "MANY", 10**9)
+    return large, SchurComplement(BODY.stiffness, kept)
+
+
+@pytest.mark.parametrize("sides", SIDES)
+def test_both_ways_condense_and_recover_alike(
+    sides: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = kept_on(sides)
+    large, small = by_both(monkeypatch, kept)
+    assert isinstance(large._eliminated, ManyEliminated)
+    assert isinstance(small._eliminated, FewEliminated)
+    random = np.random.default_rng(3)
+    forces = random.normal(size=(2, 2 * BODY.n_nodes, 4))
+    moved = random.normal(size=(len(kept), 4))
+    assert close(large.stiffness, small.stiffness)
+    assert close(large.condense(forces), small.condense(forces))
+    for force in (forces[0], None):
+        assert close(large.recover(moved, force), small.recover(moved, force))
+    signs = np.where(np.arange(len(kept)) % 3, 1.0, -1.0)
+    turned = large.turned_round(signs).recover(moved, forces[1])
+    assert close(turned, small.turned_round(signs).recover(moved, forces[1]))
+
+
+@pytest.mark.parametrize("sides", SIDES)
+def test_a_large_body_moves_freely_as_a_rigid_one(sides: tuple[str, ...]) -> None:
+    kept = kept_on(sides)
+    row, column = np.divmod(np.arange(BODY.n_nodes), BODY.columns + 1)
+    x = BODY.width * column
+    y = BODY.height * row
+    motions = np.zeros((BODY.n_nodes, 2, 3))
+    motions[:, 0] = np.stack([np.ones_like(x), np.zeros_like(x), -y], axis=1)
+    motions[:, 1] = np.stack([np.zeros_like(x), np.ones_like(x), x], axis=1)
+    rigid = motions.reshape(-1, 3)
+    condensed = SchurComplement(BODY.stiffness, kept)
+    size = np.abs(condensed.stiffness).max()
+    assert np.abs(condensed.stiffness @ rigid[kept]).max() <= 1e-12 * size
+    assert close(condensed.recover(rigid[kept], None), rigid)
+
+
+def test_few_entries_are_multiplied_as_among_all_zeros(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    outline = kept_on(SIDES[-1])
+    monkeypatch.setattr(schur_complement, "MANY", 10**9)
+    dense = SchurComplement(BODY.stiffness, outline)
+    monkeypatch.setattr(schur_complement, "DENSE", 0)
+    assert close(SchurComplement(BODY.stiffness, outline).stiffness, dense.stiffness)
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_loads_of_a_few_paths_have_as_many_patterns(count: int) -> None:
+    places = np.random.default_rng(count).normal(size=(30, count))
+    paths = np.stack([np.sin((each + 1) * TIMES) for each in range(3)])[:count]
+    loads = places @ paths
+    patterns, sizes = separated(loads)
+    assert patterns.shape == (30, count)
+    assert np.allclose(patterns @ sizes, loads, rtol=0.0, atol=1e-14)
+
+
+def test_loads_without_a_common_path_are_kept_whole() -> None:
+    loads = np.random.default_rng(8).normal(size=(30, 9))
+    patterns, sizes = separated(loads)
+    assert patterns.shape == (30, 9)
+    assert np.allclose(patterns @ sizes, loads, rtol=0.0, atol=1e-13)
