@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 
-from solver.arrays import ROUNDING, Array, Indices, sparse_factor
+from solver.arrays import Array, Indices, separated, sparse_factor
 
 ENTRY = 12
 """Memory of an entry of a sparse factor, with its place, B."""
@@ -167,10 +167,10 @@ class ManyEliminated:
         What is kept is on its springs.
         """
         # A load mostly is the same at all instants, but for its size.
-        patterns, sizes = separated(force)
+        patterns, courses = separated(force)
         whole = np.zeros((self._factor.shape[0], patterns.shape[1]))
         whole[self._rest] = patterns
-        return np.asarray(self._factor.solve(whole) @ sizes)
+        return np.asarray(self._factor.solve(whole) @ courses)
 
 
 class SchurComplement:
@@ -280,30 +280,6 @@ class SchurComplement:
         if self._before is None:
             return whole
         return self._before.recover(whole, force)
-
-
-def separated(columns: Array) -> tuple[Array, Array]:
-    """Columns as sums of a few patterns: (n, n_patterns) and (n_patterns, n_columns).
-
-    Cross approximation with the largest remaining entry (Bebendorf, Numer. Math. 86,
-    2000), until rounding is left of the columns, (n, n_columns).
-    """
-    rest = np.array(columns)
-    smallest = ROUNDING * float(np.abs(rest).max(initial=0.0))
-    patterns = []
-    sizes = []
-    while rest.size:
-        place = np.unravel_index(np.abs(rest).argmax(), rest.shape)
-        largest = rest[place]
-        if abs(largest) <= smallest:
-            break
-        patterns.append(rest[:, place[1]] / largest)
-        sizes.append(rest[place[0]].copy())
-        rest -= np.multiply.outer(patterns[-1], sizes[-1])
-    return (
-        np.array(patterns).reshape(-1, len(columns)).T,
-        np.array(sizes).reshape(-1, columns.shape[1]),
-    )
 
 
 def _others(count: int, some: Indices) -> Indices:

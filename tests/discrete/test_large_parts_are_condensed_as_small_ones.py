@@ -12,12 +12,10 @@ from solver.discrete.schur_complement import (
     FewEliminated,
     ManyEliminated,
     SchurComplement,
-    separated,
 )
 
 BODY = Rectangle(20, 18, 0.05, 0.06, elastic_matrix(1.0, 0.3, "strain"))
 SIDES = [("bottom",), ("left", "top"), ("left", "right", "bottom", "top")]
-TIMES = np.linspace(0.0, 1.0, 9)
 
 
 def kept_on(sides: tuple[str, ...]) -> Indices:
@@ -80,20 +78,3 @@ def test_few_entries_are_multiplied_as_among_all_zeros(
     dense = SchurComplement(BODY.stiffness, outline)
     monkeypatch.setattr(schur_complement, "DENSE", 0)
     assert close(SchurComplement(BODY.stiffness, outline).stiffness, dense.stiffness)
-
-
-@pytest.mark.parametrize("count", [0, 1, 3])
-def test_loads_of_a_few_paths_have_as_many_patterns(count: int) -> None:
-    places = np.random.default_rng(count).normal(size=(30, count))
-    paths = np.stack([np.sin((each + 1) * TIMES) for each in range(3)])[:count]
-    loads = places @ paths
-    patterns, sizes = separated(loads)
-    assert patterns.shape == (30, count)
-    assert np.allclose(patterns @ sizes, loads, rtol=0.0, atol=1e-14)
-
-
-def test_loads_without_a_common_path_are_kept_whole() -> None:
-    loads = np.random.default_rng(8).normal(size=(30, 9))
-    patterns, sizes = separated(loads)
-    assert patterns.shape == (30, 9)
-    assert np.allclose(patterns @ sizes, loads, rtol=0.0, atol=1e-13)
