@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse.linalg import SuperLU
 
 from solver.arrays import Array, Indices, separated, sparse_factor
 
@@ -20,6 +21,11 @@ MORE = 2
 factor of both costs less than a solution for each that is kept. A wire of 2450 and 136
 is condensed in 7 ms instead of 19, a rectangle of 500 and 140 in 3 instead of 7, one of
 240 and 100 in 1.5 instead of 2, a line of beams of 250 and 500 in 30 instead of 5."""
+SOME = 50
+"""Degrees of freedom that are kept, up to which their solutions cost less than that."""
+WIDE = 3
+"""Size of the last block of the factor, over that of what is kept, up to which it is
+taken; of wires it is 1.2 to 1.3."""
 DENSE = 10_000_000
 """Multiplications of a product up to which a few entries are multiplied as quickly
 among all zeros."""
@@ -97,10 +103,12 @@ class ManyEliminated:
 
     Parameters
     ----------
-    whole
-        Stiffness, (n, n).
+    factor
+        Factor of the whole stiffness with the springs, (n, n).
     kept
         Degrees of freedom that are kept, (n_kept,).
+    spring
+        Stiffness of the springs.
 
     Attributes
     ----------
@@ -108,20 +116,14 @@ class ManyEliminated:
         Stiffness of what is kept, (n_kept, n_kept).
     """
 
-    def __init__(self, whole: sparse.csc_array, kept: Indices) -> None:
+    def __init__(self, factor: SuperLU, kept: Indices, spring: float) -> None:
+        self._factor = factor
         self._kept = kept
-        self._rest = _others(whole.shape[0], kept)
-        self._spring = float(whole.diagonal().max())
-        self._factor = sparse_factor(
-            _tied(whole, kept, self._spring),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
-        places = self._factor.perm_c
+        self._rest = _others(factor.shape[0], kept)
+        places = factor.perm_c
         first = int(places[kept].min())
-        lower = self._factor.L[first:, first:].toarray()
-        block = lower @ self._factor.U[first:, first:].toarray()
+        lower = factor.L[first:, first:].toarray()
+        block = lower @ factor.U[first:, first:].toarray()
         own = places[kept] - first
         between = _others(len(block), own)
         condensed = block[np.ix_(own, own)]
@@ -130,7 +132,28 @@ class ManyEliminated:
             inner = block[np.ix_(between, between)]
             condensed -= coupling.T @ cho_solve(cho_factor(inner), coupling)
         self._with_springs: Array = 0.5 * (condensed + condensed.T)
-        self.condensed: Array = self._with_springs - self._spring * np.eye(len(kept))
+        self.condensed: Array = self._with_springs - spring * np.eye(len(kept))
+
+    @classmethod
+    def of(cls, whole: sparse.csc_array, kept: Indices) -> ManyEliminated | None:
+        """Eliminate the rest of a stiffness, (n, n), by the size of both.
+
+        None where it is not as large as that, or where much of it comes after what is
+        kept, as in a body that has many more degrees of freedom.
+        """
+        count = len(kept)
+        if count < SOME or whole.shape[0] - count < max(MANY, MORE * count):
+            return None
+        spring = float(whole.diagonal().max())
+        factor = sparse_factor(
+            _tied(whole, kept, spring),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+        if len(factor.perm_c) - int(factor.perm_c[kept].min()) > WIDE * count:
+            return None
+        return cls(factor, kept, spring)
 
     @property
     def nbytes(self) -> int:
@@ -207,23 +230,31 @@ class SchurComplement:
         self._positions = positions
         self._rest = _others(self._size, positions)
         self._eliminated: Eliminated | None = None
-        is_large = len(self._rest) >= max(MANY, MORE * len(positions))
-        if is_large and not isinstance(stiffness, np.ndarray):
-            many = ManyEliminated(stiffness, positions)
+        many = None
+        if not isinstance(stiffness, np.ndarray):
+            many = ManyEliminated.of(stiffness, positions)
+        if many is not None:
             self._eliminated = many
             condensed = many.condensed
         else:
-            condensed = _dense(stiffness[positions][:, positions])
-            others = stiffness[self._rest]
-            if len(self._rest):
-                tied = others[:, positions]
-                coupling = _dense(tied)
-                self._eliminated = FewEliminated(others[:, self._rest], coupling)
-                if coupling.size * len(positions) < DENSE:
-                    tied = coupling
-                condensed -= tied.T @ self._eliminated.response
+            condensed = self._condensed_by_response(stiffness)
         self.stiffness: Array = condensed + condensed.T
         self.stiffness *= 0.5
+
+    def _condensed_by_response(self, stiffness: sparse.csc_array | Array) -> Array:
+        """Condense by the response of the rest, (n_kept, n_kept), from (n, n)."""
+        positions = self._positions
+        condensed = _dense(stiffness[positions][:, positions])
+        if not len(self._rest):
+            return condensed
+        others = stiffness[self._rest]
+        tied = others[:, positions]
+        coupling = _dense(tied)
+        self._eliminated = FewEliminated(others[:, self._rest], coupling)
+        if coupling.size * len(positions) < DENSE:
+            tied = coupling
+        condensed -= tied.T @ self._eliminated.response
+        return condensed
 
     def turned_round(self, signs: Array) -> SchurComplement:
         """Make the same stiffness with some directions turned round.

@@ -14,7 +14,7 @@ from solver.discrete.schur_complement import (
     SchurComplement,
 )
 
-BODY = Rectangle(20, 18, 0.05, 0.06, elastic_matrix(1.0, 0.3, "strain"))
+BODY = Rectangle(26, 18, 0.04, 0.06, elastic_matrix(1.0, 0.3, "strain"))
 SIDES = [("bottom",), ("left", "top"), ("left", "right", "bottom", "top")]
 
 
@@ -78,3 +78,12 @@ def test_few_entries_are_multiplied_as_among_all_zeros(
     dense = SchurComplement(BODY.stiffness, outline)
     monkeypatch.setattr(schur_complement, "DENSE", 0)
     assert close(SchurComplement(BODY.stiffness, outline).stiffness, dense.stiffness)
+
+
+def test_few_of_many_are_condensed_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Degrees of freedom that are kept come last in the factor where they are many."""
+    corner = dofs_of(BODY.edge("bottom")[:3])
+    assert ManyEliminated.of(BODY.stiffness, corner) is None
+    monkeypatch.setattr(schur_complement, "SOME", 0)
+    monkeypatch.setattr(schur_complement, "WIDE", 1)
+    assert ManyEliminated.of(BODY.stiffness, corner) is None
