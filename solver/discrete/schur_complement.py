@@ -11,7 +11,7 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import SuperLU
 
-from solver.arrays import Array, Indices, separated, sparse_factor
+from solver.arrays import Array, Indices, separated, space_time, sparse_factor
 
 ENTRY = 12
 """Memory of an entry of a sparse factor, with its place, B."""
@@ -26,6 +26,10 @@ SOME = 50
 WIDE = 3
 """Size of the last block of the factor, over that of what is kept, up to which it is
 taken; of wires it is 1.2 to 1.3."""
+FEW = 16
+"""Degrees of freedom that are kept, over columns, from which on these are solved for by
+themselves. Of 37 wires that takes 24 ms for one instant, 310 for 41 of them; by the
+response, which is made once in 200 ms, 15 and 110 (measured)."""
 DENSE = 10_000_000
 """Multiplications of a product up to which a few entries are multiplied as quickly
 among all zeros."""
@@ -33,10 +37,6 @@ among all zeros."""
 
 class Eliminated(Protocol):
     """Degrees of freedom of a stiffness that are not kept, eliminated."""
-
-    @property
-    def response(self) -> Array:
-        """Displacement inside, negative, for that of what is kept: (n_rest, n_kept)."""
 
     @property
     def nbytes(self) -> int:
@@ -48,8 +48,12 @@ class Eliminated(Protocol):
         Negative, of shape (..., n_kept, n_columns).
         """
 
-    def moved(self, force: Array) -> Array:
-        """Displacement inside, what is kept being held, under forces: (n_rest, n)."""
+    def moved(self, kept: Array, force: Array | None) -> Array:
+        """Displacement inside, (n_rest, n_columns), scaled.
+
+        From that of what is kept, (n_kept, n_columns), and forces inside, (n_rest,
+        n_columns), or None.
+        """
 
 
 class FewEliminated:
@@ -87,9 +91,12 @@ class FewEliminated:
         """Forces on what is kept, negative, (..., n_kept, n_columns)."""
         return np.asarray(self.response.T @ force)
 
-    def moved(self, force: Array) -> Array:
-        """Displacement inside, what is kept being held: (n_rest, n_columns)."""
-        return np.asarray(self._solve(force))
+    def moved(self, kept: Array, force: Array | None) -> Array:
+        """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
+        rest = -(self.response @ kept)
+        if force is not None:
+            rest += self._solve(force)
+        return rest
 
 
 class ManyEliminated:
@@ -162,13 +169,6 @@ class ManyEliminated:
         factor = ENTRY * int(self._factor.nnz)
         return factor + response + self._with_springs.nbytes
 
-    @cached_property
-    def response(self) -> Array:
-        """Displacement inside, negative, for that of what is kept: (n_rest, n_kept)."""
-        force = np.zeros((self._factor.shape[0], len(self._kept)))
-        force[self._kept] = self._with_springs
-        return np.asarray(-self._factor.solve(force)[self._rest])
-
     def carried(self, force: Array) -> Array:
         """Forces on what is kept, negative, (..., n_kept, n_columns)."""
         together = force.reshape(-1, *force.shape[-2:])
@@ -178,11 +178,29 @@ class ManyEliminated:
         ]
         return np.reshape(on_kept, (*force.shape[:-2], len(self._kept), -1))
 
-    def moved(self, force: Array) -> Array:
-        """Displacement inside, what is kept being held: (n_rest, n_columns)."""
-        sprung = self._sprung(force)
-        # What is kept went along, and is brought back.
-        return np.asarray(sprung[self._rest] + self.response @ sprung[self._kept])
+    def moved(self, kept: Array, force: Array | None) -> Array:
+        """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
+        further = kept
+        rest = np.zeros((len(self._rest), kept.shape[1]))
+        if force is not None:
+            sprung = self._sprung(force)
+            further = kept - sprung[self._kept]
+            rest += sprung[self._rest]
+        # A few columns are had without the response.
+        if FEW * kept.shape[1] < len(kept):
+            return rest + self._pulled_along(further)
+        return rest + self._response @ further
+
+    @cached_property
+    def _response(self) -> Array:
+        """Displacement inside by that of each that is kept: (n_rest, n_kept)."""
+        return self._pulled_along(np.eye(len(self._kept)))
+
+    def _pulled_along(self, kept: Array) -> Array:
+        """Displacement inside, (n_rest, n), by that of what is kept, (n_kept, n)."""
+        force = space_time(self._factor.shape[0], kept.shape[1])
+        force[self._kept] = self._with_springs @ kept
+        return np.asarray(self._factor.solve(force)[self._rest])
 
     def _sprung(self, force: Array) -> Array:
         """Displacement of all, (n, n_columns), by forces inside, (n_rest, n_columns).
@@ -250,10 +268,11 @@ class SchurComplement:
         others = stiffness[self._rest]
         tied = others[:, positions]
         coupling = _dense(tied)
-        self._eliminated = FewEliminated(others[:, self._rest], coupling)
+        few = FewEliminated(others[:, self._rest], coupling)
+        self._eliminated = few
         if coupling.size * len(positions) < DENSE:
             tied = coupling
-        condensed -= tied.T @ self._eliminated.response
+        condensed -= tied.T @ few.response
         return condensed
 
     def turned_round(self, signs: Array) -> SchurComplement:
@@ -303,11 +322,11 @@ class SchurComplement:
         whole = np.empty((self._size, kept.shape[1]))
         whole[self._positions] = kept
         if self._eliminated is not None:
-            rest = -(self._eliminated.response @ (self._signs[:, None] * kept))
+            inside = None
             if condensed is not None:
                 inside = np.ascontiguousarray(condensed[self._rest])
-                rest += self._eliminated.moved(inside)
-            whole[self._rest] = rest
+            turned = self._signs[:, None] * kept
+            whole[self._rest] = self._eliminated.moved(turned, inside)
         if self._before is None:
             return whole
         return self._before.recover(whole, force)
