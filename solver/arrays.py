@@ -96,3 +96,26 @@ def without_residue(values: Array, terms: Array) -> Array:
     `terms` are sizes of the terms, of any shape, in the unit of the sums.
     """
     return np.where(np.abs(values) <= RESIDUE * np.max(terms, initial=0.0), 0.0, values)
+
+
+def separated(load: Array) -> tuple[Array, Array]:
+    """Loads (n, n_instants) as patterns (n, rank) times courses (rank, n_instants).
+
+    The product is exact up to rounding.
+
+    A structure has few patterns of load, and instants many: so there is less to solve
+    for. Where it has many patterns, every instant counts as one.
+    """
+    patterns = np.zeros((0, len(load)))
+    rest = load / power_of_two(load)
+    smallest = float(np.finfo(float).eps * np.abs(rest).max(initial=0.0))
+    # Gram-Schmidt by the largest rest, as a factorisation with pivoting.
+    while len(patterns) < load.shape[1] // 2:
+        largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())
+        pattern = rest[:, largest] - patterns.T @ (patterns @ rest[:, largest])
+        if np.abs(pattern).max(initial=0.0) <= smallest:
+            return patterns.T, patterns @ load
+        pattern /= np.linalg.norm(pattern)
+        patterns = np.vstack([patterns, pattern])
+        rest -= pattern[:, None] * (pattern @ rest)
+    return load, np.eye(load.shape[1])

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from solver.arrays import Array, Indices, read_only
-from solver.discrete.elements import SchurComplement
+from solver.discrete.schur_complement import SchurComplement
 from solver.discrete.substructure import Elasticity
 
 N_AXES = 3

@@ -1,4 +1,4 @@
-"""Plane elasticity on rectangles of equal elements, and condensation of the stiffness.
+"""Plane elasticity on rectangles of equal elements.
 
 Corners of an element are numbered counter-clockwise from the lower left; degrees of
 freedom are x and y of every corner, or node, in turn.
@@ -6,18 +6,17 @@ freedom are x and y of every corner, or node, in turn.
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import product
 from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from scipy import sparse
-from scipy.linalg import cho_factor, cho_solve
 
-from solver.arrays import Array, Indices, sparse_factor
+from solver.arrays import Array, Indices
+from solver.discrete.schur_complement import SchurComplement
 from solver.discrete.substructure import tributary
 
 MOST_POISSON = 0.4999
@@ -34,8 +33,6 @@ HIGHEST_DEGREE = 10
 """Largest macro degree of a long side. With 6, layers of 200 times their
 thickness cut in two up take more than 150 iterations to 1 %; with 8 and 10, 37 and 25
 (measured)."""
-ENTRY = 12
-"""Memory of an entry of a sparse factor, with its place, B."""
 
 
 def elastic_matrix(young: float, poisson: float, state: str) -> Array:
@@ -237,116 +234,3 @@ def legendre_basis(positions: Array, slenderness: float, degree: int) -> Array:
     wanted = round(degree * max(LONG_SIDES * np.sqrt(slenderness), 1.0))
     highest = min(wanted, max(HIGHEST_DEGREE, degree), len(positions) - 1)
     return np.asarray(legvander(positions, highest))
-
-
-class SchurComplement:
-    """A symmetric stiffness condensed onto some of its degrees of freedom.
-
-    The whole stiffness is sparse, (n, n), or has been condensed before. Those `kept`
-    ascend, (n_kept,), and have the dense `stiffness`, shape (n_kept, n_kept), scaled.
-
-    Raises
-    ------
-    np.linalg.LinAlgError
-        For a stiffness condensed before that could move while the kept degrees of
-        freedom are held.
-    """
-
-    def __init__(
-        self, whole: sparse.csc_array | SchurComplement, kept: Indices
-    ) -> None:
-        self.kept = kept
-        self._signs = np.ones(len(kept))
-        self._before = None
-        # Positions of what is kept, and of the rest, in the whole stiffness.
-        positions = kept
-        stiffness: sparse.csc_array | Array
-        if isinstance(whole, SchurComplement):
-            self._before = whole
-            # What was condensed before is condensed further: its inside is eliminated
-            # already.
-            stiffness = whole.stiffness
-            positions = np.searchsorted(whole.kept, kept)
-        else:
-            stiffness = whole
-        self._size = stiffness.shape[0]
-        self._positions = positions
-        self._rest = np.setdiff1d(np.arange(self._size), positions)
-        condensed = _dense(stiffness[positions][:, positions])
-        others = stiffness[self._rest]
-        if len(self._rest):
-            coupling = _dense(others[:, positions])
-            inner = others[:, self._rest]
-            if isinstance(inner, np.ndarray):
-                self._solve = partial(cho_solve, cho_factor(inner))
-                self._factor_nbytes = inner.nbytes
-            else:
-                factor = sparse_factor(sparse.csc_array(inner))
-                self._solve = factor.solve
-                self._factor_nbytes = ENTRY * factor.nnz
-            self._response = self._solve(coupling)
-            condensed -= coupling.T @ self._response
-        self.stiffness: Array = condensed + condensed.T
-        self.stiffness *= 0.5
-
-    def turned_round(self, signs: Array) -> SchurComplement:
-        """Make the same stiffness with some directions turned round.
-
-        `signs` are -1 for these and 1 for others, (n_kept,). All but the condensed
-        stiffness is shared. Not for a stiffness that was condensed before.
-        """
-        assert self._before is None
-        turned = copy(self)
-        turned._signs = self._signs * signs
-        if np.any(signs < 0.0):
-            turned.stiffness = signs[:, None] * self.stiffness
-            turned.stiffness *= signs
-        return turned
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of matrices and factors, also of the condensation before, B."""
-        nbytes = self.stiffness.nbytes
-        if len(self._rest):
-            nbytes += self._response.nbytes + self._factor_nbytes
-        if self._before is not None:
-            nbytes += self._before.nbytes
-        return nbytes
-
-    def condense(self, force: Array) -> Array:
-        """Condense forces, (..., n, n_columns), to (..., n_kept, n_columns)."""
-        if self._before is not None:
-            force = self._before.condense(force)
-        on_kept = force.take(self._positions, axis=-2)
-        if len(self._rest):
-            carried = self._response.T @ force.take(self._rest, axis=-2)
-            carried *= self._signs[:, None]
-            on_kept -= carried
-        return on_kept
-
-    def recover(self, kept: Array, force: Array | None) -> Array:
-        """Displacement of all degrees of freedom, shape (n, n_columns).
-
-        From those that are kept, (n_kept, n_columns), and the forces on all, (n,
-        n_columns), or None.
-        """
-        condensed = force
-        if self._before is not None and force is not None:
-            condensed = self._before.condense(force)
-        whole = np.empty((self._size, kept.shape[1]))
-        whole[self._positions] = kept
-        if len(self._rest):
-            rest = -(self._response @ (self._signs[:, None] * kept))
-            if condensed is not None:
-                rest += self._solve(np.ascontiguousarray(condensed[self._rest]))
-            whole[self._rest] = rest
-        if self._before is None:
-            return whole
-        return self._before.recover(whole, force)
-
-
-def _dense(block: sparse.csc_array | Array) -> Array:
-    """A block of a stiffness as a dense array, of the same shape."""
-    if isinstance(block, np.ndarray):
-        return np.asarray(block, order="C")
-    return np.asarray(block.toarray(order="C"))

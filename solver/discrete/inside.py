@@ -9,8 +9,8 @@ import numpy as np
 
 from solver.arrays import Array, Indices, read_only
 from solver.discrete.condensed_part import N_AXES, CondensedPart
-from solver.discrete.elements import SchurComplement
 from solver.discrete.scales import Scales
+from solver.discrete.schur_complement import SchurComplement
 from solver.discrete.substructure import Substructure
 
 HELD = 1e-9

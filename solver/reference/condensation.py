@@ -29,7 +29,15 @@ from scipy import sparse
 from scipy.linalg import solve_triangular
 from scipy.sparse.linalg import SuperLU
 
-from solver.arrays import ROUNDING, Array, Flags, Indices, read_only, sparse_factor
+from solver.arrays import (
+    ROUNDING,
+    Array,
+    Flags,
+    Indices,
+    read_only,
+    separated,
+    sparse_factor,
+)
 from solver.discrete.problem import Problem
 from solver.kept import KEPT, content_of
 from solver.reference.assembly import (
@@ -38,7 +46,6 @@ from solver.reference.assembly import (
     assembled_stiffness,
     external_force,
     jumps,
-    separated,
 )
 from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.rules import rules_of

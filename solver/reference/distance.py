@@ -183,15 +183,15 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
     at_rest = ~np.logical_or.accumulate(acts)
     # Mostly the contacts that hold whenever any do hold the bodies already.
     always = holds[:, acts].all(axis=1)
-    if _are_independent(moved[always]):
+    if are_independent(moved[always]):
         return np.asarray(acts | at_rest)
     # Few patterns of contact occur, each at many instants: one rank for each pattern.
     patterns, kind = np.unique(holds, axis=1, return_inverse=True)
-    sure = [_are_independent(moved[pattern]) for pattern in patterns.T]
+    sure = [are_independent(moved[pattern]) for pattern in patterns.T]
     return np.asarray(np.asarray(sure)[kind.ravel()] | at_rest)
 
 
-def _are_independent(columns: Array) -> bool:
+def are_independent(columns: Array) -> bool:
     """Check that columns of a matrix, (n, m), are independent."""
     squares = np.linalg.eigvalsh(columns.T @ columns)
     # Singular values are dearer, and tell columns apart that are nearly dependent.

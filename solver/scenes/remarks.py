@@ -17,7 +17,9 @@ from solver.discrete.rope.rope import Rope
 from solver.discrete.rope.wire_forces import wire_forces
 from solver.discrete.structure import Structure
 from solver.latin import Iterate
+from solver.latin.end.certified import Answer
 from solver.laws import OPEN
+from solver.reference.other_positions import other_positions
 from solver.settings.scene import Settings
 
 MOST_GROWTH = 2
@@ -67,7 +69,7 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
     """Sentences on an iterate, final or not, that its status does not tell.
 
     They are on points left out of tables, strains beyond small ones, a body that tips,
-    and a contact that grows too fast for the instants.
+    a contact that grows too fast for the instants, and bodies that may stand elsewhere.
     """
     remarks = list(settings.left_out())
     beyond = beyond_small_strain(
@@ -85,7 +87,30 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
             "so that friction jumps from point to point: raise instants until it grows "
             f"by {MOST_GROWTH} at most."
         )
+    if isinstance(iterate, Answer):
+        others = _one_of_several(iterate)
+        if others:
+            remarks.append(others)
     return remarks
+
+
+def _one_of_several(answer: Answer) -> str:
+    """Sentence on a certified answer beside which there are others; empty without."""
+    problem = answer.problem
+    others = other_positions(problem, answer.displacement, answer.contact_force)
+    if not others:
+        return ""
+    apart = [
+        float(np.abs(other - answer.displacement[:, instant]).max())
+        for instant, other in others.items()
+    ]
+    first = problem.instants[min(others)]
+    return (
+        f"This is one of several solutions: at {len(others)} of {problem.n_instants} "
+        f"instants, the first at {first:.4g} s, the same contact forces also hold some "
+        f"body up to {max(apart):.2g} m away from where it is shown, and which one is "
+        "found depends on the start. Forces are determined there, positions are not."
+    )
 
 
 def _tipping(problem: Problem, first: int) -> str:

@@ -31,7 +31,7 @@ from solver.discrete import (
     Mesh,
     Problem,
     discretise,
-    elements,
+    schur_complement,
 )
 from solver.discrete.probes import reaction
 from solver.kept import KEPT
@@ -312,13 +312,13 @@ def test_as_many_factors_are_made_as_there_are_parts_that_differ(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     made = []
-    original = elements.sparse_factor
+    original = schur_complement.sparse_factor
 
     def counted(matrix: Any) -> Any:
         made.append(matrix.shape)
         return original(matrix)
 
-    monkeypatch.setattr(elements, "sparse_factor", counted)
+    monkeypatch.setattr(schur_complement, "sparse_factor", counted)
     for voussoirs in (9, 61):
         made.clear()
         KEPT.clear()

@@ -12,7 +12,6 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete import discretise
-from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.cut_rectangles import ends_along
 from solver.discrete.plane.rectangles.cut_stack import CutStack
@@ -21,6 +20,7 @@ from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
 from solver.discrete.rods.rods import End, Rods
+from solver.discrete.schur_complement import SchurComplement
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.incremental import reference_of
 

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from shaped import arch, belt, block_on_ground, distorted, grid, in_triangles, sides
+from shaped import (
+    arch,
+    belt,
+    block_on_ground,
+    distorted,
+    grid,
+    in_triangles,
+    leaf,
+    leaf_spring,
+    sides,
+)
 
 from solver.arrays import Array
 from solver.discrete import Beam, Bodies, Body, Held, Joint, Load, Problem, discretise
 from solver.latin import Latin, iterations
 from solver.latin.direction.directions import automatic
+from solver.laws import NodalStiffness
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 
@@ -96,3 +107,33 @@ def test_a_line_of_beams_rubs_on_a_mesh() -> None:
     assert rubbing == pytest.approx(-tug, abs=1e-6)
     assert np.any(contact.status == 1)
     assert iterations_to_goal(problem, 60) <= 60
+
+
+@pytest.mark.parametrize(("elements", "count", "most"), [(50, 2, 60), (100, 2, 90)])
+def test_leaves_that_slide_on_each_other_converge(
+    elements: int, count: int, most: int
+) -> None:
+    problem = discretise(leaf(elements, friction=0.3, count=count))
+    # With the k of bodies it takes 144 and 217 iterations.
+    assert iterations_to_goal(problem, most) <= most
+
+
+@pytest.mark.parametrize(("elements", "count", "most"), [(80, 2, 20), (40, 3, 30)])
+def test_leaves_that_bend_together_converge(
+    elements: int, count: int, most: int
+) -> None:
+    problem = discretise(leaf_spring(elements, count))
+    # With macro forces of degree 1 it takes more than 120 iterations.
+    assert iterations_to_goal(problem, most) <= most
+
+
+def test_lines_rest_on_each_other_where_no_mesh_is_between() -> None:
+    """A strip on a block has the k of bodies, a leaf on the ground that of a belt."""
+    alone = discretise(leaf(20, friction=0.3)).rubbing["ground"]
+    stacked = discretise(leaf(20, friction=0.3, count=3)).rubbing["ground"]
+    path = np.minimum(3.0 * TIME, 1.0)
+    bed = discretise(strip_on_block(path, path)).rubbing["bed"]
+    for law, count in ((alone, 0), (stacked, 3), (bed, 0)):
+        beside = law.stiffness_beside
+        assert isinstance(beside, NodalStiffness)
+        assert np.all(beside.lines == count)

@@ -10,10 +10,10 @@ from scipy.sparse.linalg import spsolve
 from solver.discrete.elements import (
     EDGE_MASS,
     Rectangle,
-    SchurComplement,
     dofs_of,
     elastic_matrix,
 )
+from solver.discrete.schur_complement import SchurComplement
 
 STATES = ["strain", "stress"]
 

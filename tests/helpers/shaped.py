@@ -154,6 +154,60 @@ def belt(
     return Bodies([Body("belt", shape, 1e11)], [drum], [], loads, t, 1.0)
 
 
+def leaf(elements: int, *, friction: float, count: int = 1, cuts: int = 1) -> Bodies:
+    """Leaves of 1 m, one on the other and on the ground, pressed and pulled."""
+    t = np.linspace(0.0, 1.0, 9)
+    x = np.linspace(0.0, 1.0, elements + 1)
+    every = np.arange(elements + 1)
+    up = np.tile([0.0, 1.0], (elements + 1, 1))
+    line = Beam(np.stack([x, 0.0 * x], axis=1), area=1e-2, second_moment=1e-6)
+    bodies = [
+        Body(f"leaf {number}", line, 1e9, substructures=cuts) for number in range(count)
+    ]
+    joints = [Joint("ground", 0, every, None, None, up, friction=friction)]
+    for number in range(1, count):
+        below = number - 1
+        name = f"joint {number}"
+        joints.append(Joint(name, number, every, below, every, up, friction=friction))
+    press = np.zeros((elements + 1, 2, len(t)))
+    press[:, 1] = -1e4 * line.shares(every)[:, None]
+    pull = np.zeros((1, 2, len(t)))
+    pull[0, 0] = 1250.0 * np.sin(2.0 * np.pi * t)
+    loads = [Load("press", count - 1, every, press), Load("pull", 0, every[-1:], pull)]
+    held = [Held("left", count - 1, every[:1], 0, np.zeros_like(t))]
+    return Bodies(bodies, joints, held, loads, t, 1.0)
+
+
+def leaf_spring(elements: int, count: int, *, friction: float = 0.3) -> Bodies:
+    """Clamped leaves of 0.5 m by 5 mm, pressed together, whose end is moved up."""
+    t = np.linspace(0.0, 1.0, 9)
+    still = 0.0 * t
+    x = np.linspace(0.0, 0.5, elements + 1)
+    every = np.arange(elements + 1)
+    line = Beam(np.stack([x, 0.0 * x], axis=1), area=5e-3, second_moment=1.04e-8)
+    bodies = [Body(f"leaf {number}", line, 2e11) for number in range(count)]
+    free = every[1:]
+    up = np.tile([0.0, 1.0], (elements, 1))
+    joints = [
+        Joint(f"joint {number}", number, free, number - 1, free, up, friction=friction)
+        for number in range(1, count)
+    ]
+    press = np.zeros((elements + 1, 2, len(t)))
+    press[:, 1] = -2e5 * np.outer(line.shares(every), np.minimum(4.0 * t, 1.0))
+    loads = [
+        Load("press", count - 1, every, press),
+        Load("press from below", 0, every, -press),
+    ]
+    held = []
+    for number in range(count):
+        for axis in range(3):
+            name = f"clamp {number} {axis}"
+            held.append(Held(name, number, every[:1], axis, still))
+    path = 0.01 * np.clip(2.0 * t - 0.5, 0.0, 1.0)
+    held.append(Held("end", 0, every[-1:], 1, path))
+    return Bodies(bodies, joints, held, loads, t, 1.0)
+
+
 def rotation(angle: float) -> NDArray[np.float64]:
     """Matrix that turns vectors by an angle, rad, (2, 2)."""
     c = np.cos(angle)

@@ -10,7 +10,7 @@ import pytest
 from small_scenes import SMALL
 
 from solver.arrays import Array
-from solver.discrete.elements import SchurComplement
+from solver.discrete.schur_complement import SchurComplement
 from solver.kept import KEPT, Kept, content_of
 from solver.reference.condensation import Condensation
 from solver.reference.incremental import reference_of

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shaped import belt
+from shaped import belt, leaf
 
-from solver.discrete import Beam, Bodies, Body, Held, Joint, Load, discretise
+from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import Checkpoint, Ending, Latin, Nested, Paper, iterations, solve
 from solver.latin.direction.directions import automatic
@@ -52,30 +52,6 @@ def iterations_to(problem: Problem, latin: Latin, error: float, most: int) -> in
             return iterate.number
         assert iterate.number < most
     raise AssertionError
-
-
-def leaf(elements: int, *, friction: float, count: int = 1, cuts: int = 1) -> Bodies:
-    """Leaves of 1 m, one on the other and on the ground, pressed and pulled."""
-    t = np.linspace(0.0, 1.0, 9)
-    x = np.linspace(0.0, 1.0, elements + 1)
-    every = np.arange(elements + 1)
-    up = np.tile([0.0, 1.0], (elements + 1, 1))
-    line = Beam(np.stack([x, 0.0 * x], axis=1), area=1e-2, second_moment=1e-6)
-    bodies = [
-        Body(f"leaf {number}", line, 1e9, substructures=cuts) for number in range(count)
-    ]
-    joints = [Joint("ground", 0, every, None, None, up, friction=friction)]
-    for number in range(1, count):
-        below = number - 1
-        name = f"joint {number}"
-        joints.append(Joint(name, number, every, below, every, up, friction=friction))
-    press = np.zeros((elements + 1, 2, len(t)))
-    press[:, 1] = -1e4 * line.shares(every)[:, None]
-    pull = np.zeros((1, 2, len(t)))
-    pull[0, 0] = 1250.0 * np.sin(2.0 * np.pi * t)
-    loads = [Load("press", count - 1, every, press), Load("pull", 0, every[-1:], pull)]
-    held = [Held("left", count - 1, every[:1], 0, np.zeros_like(t))]
-    return Bodies(bodies, joints, held, loads, t, 1.0)
 
 
 @pytest.mark.parametrize("changes", DRIVEN, ids=str)

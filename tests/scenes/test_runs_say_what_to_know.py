@@ -301,3 +301,12 @@ def test_times_are_written_with_the_one_digit_that_they_have() -> None:
         "2 min and 2 GB",
         "2 h and 2 GB",
     ]
+
+
+def test_a_certified_arch_whose_hinges_are_free_says_that_it_is_one_of_several() -> (
+    None
+):
+    free = ran("arch", voussoirs=7, thickness=0.4, displacement=-4e-4)
+    (remark,) = remarks(free)
+    assert "one of several solutions" in remark
+    assert remarks(ran("arch", voussoirs=7, thickness=0.4, displacement=-1e-5)) == []

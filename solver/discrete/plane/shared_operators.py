@@ -9,8 +9,8 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.condensed_part import Operator, Trace, kept_by
-from solver.discrete.elements import SchurComplement
 from solver.discrete.plane.body_parts import ShapePart
+from solver.discrete.schur_complement import SchurComplement
 from solver.kept import KEPT, content_of
 
 DIGITS = 9

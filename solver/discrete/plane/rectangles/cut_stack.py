@@ -22,7 +22,6 @@ from solver.discrete.condensed_part import (
 )
 from solver.discrete.elements import (
     Rectangle,
-    SchurComplement,
     elastic_matrix,
     legendre_basis,
 )
@@ -32,6 +31,7 @@ from solver.discrete.plane.rectangles.cut_rectangles import SIDES, CutRectangles
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.plane.rectangles.stack_loads import StackLoads
 from solver.discrete.scales import Scales
+from solver.discrete.schur_complement import SchurComplement
 from solver.kept import KEPT
 
 

@@ -1,0 +1,359 @@
+"""Stiffness condensed onto some of its degrees of freedom."""
+
+from __future__ import annotations
+
+from copy import copy
+from functools import cached_property, partial
+from typing import Protocol
+
+import numpy as np
+from scipy import sparse
+from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse.linalg import SuperLU
+
+from solver.arrays import Array, Indices, separated, space_time, sparse_factor
+
+ENTRY = 12
+"""Memory of an entry of a sparse factor, with its place, B."""
+MANY = 500
+MORE = 2
+"""Degrees of freedom inside, and the same over those that are kept, from which on one
+factor of both costs less than a solution for each that is kept. A wire of 2450 and 136
+is condensed in 7 ms instead of 19, a rectangle of 500 and 140 in 3 instead of 7, one of
+240 and 100 in 1.5 instead of 2, a line of beams of 250 and 500 in 30 instead of 5."""
+SOME = 50
+"""Degrees of freedom that are kept, up to which their solutions cost less than that."""
+WIDE = 3
+"""Size of the last block of the factor, over that of what is kept, up to which it is
+taken; of wires it is 1.2 to 1.3."""
+FEW = 16
+"""Degrees of freedom that are kept, over columns, from which on these are solved for by
+themselves. Of 37 wires that takes 24 ms for one instant, 310 for 41 of them; by the
+response, which is made once in 200 ms, 15 and 110 (measured)."""
+DENSE = 10_000_000
+"""Multiplications of a product up to which a few entries are multiplied as quickly
+among all zeros."""
+
+
+class Eliminated(Protocol):
+    """Degrees of freedom of a stiffness that are not kept, eliminated."""
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of factor and response, B."""
+
+    def carried(self, force: Array) -> Array:
+        """Forces inside, (..., n_rest, n_columns), as what is kept has to hold them.
+
+        Negative, of shape (..., n_kept, n_columns).
+        """
+
+    def moved(self, kept: Array, force: Array | None) -> Array:
+        """Displacement inside, (n_rest, n_columns), scaled.
+
+        From that of what is kept, (n_kept, n_columns), and forces inside, (n_rest,
+        n_columns), or None.
+        """
+
+
+class FewEliminated:
+    """A rest that is eliminated by its own factor.
+
+    Parameters
+    ----------
+    inner
+        Stiffness of the rest, (n_rest, n_rest), dense or sparse.
+    coupling
+        Its coupling with what is kept, (n_rest, n_kept).
+
+    Raises
+    ------
+    np.linalg.LinAlgError
+        For a dense stiffness that could move while what is kept is held.
+    """
+
+    def __init__(self, inner: sparse.csc_array | Array, coupling: Array) -> None:
+        if isinstance(inner, np.ndarray):
+            self._solve = partial(cho_solve, cho_factor(inner))
+            self._factor_nbytes = inner.nbytes
+        else:
+            factor = sparse_factor(sparse.csc_array(inner))
+            self._solve = factor.solve
+            self._factor_nbytes = ENTRY * factor.nnz
+        self.response: Array = self._solve(coupling)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of factor and response, B."""
+        return self._factor_nbytes + self.response.nbytes
+
+    def carried(self, force: Array) -> Array:
+        """Forces on what is kept, negative, (..., n_kept, n_columns)."""
+        return np.asarray(self.response.T @ force)
+
+    def moved(self, kept: Array, force: Array | None) -> Array:
+        """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
+        rest = -(self.response @ kept)
+        if force is not None:
+            rest += self._solve(force)
+        return rest
+
+
+class ManyEliminated:
+    """A large sparse rest, eliminated by one factor of the whole stiffness.
+
+    The factor's last block is what elimination has made of the stiffness by then. For
+    an ordering by degree what is kept comes last, as if each of it were tied to all
+    others of it; a few of the rest that are tied to as many come between, and are
+    eliminated from the dense block. A spring beside each that is kept makes a body
+    that can move regular, and is taken off the block again.
+
+    Parameters
+    ----------
+    factor
+        Factor of the whole stiffness with the springs, (n, n).
+    kept
+        Degrees of freedom that are kept, (n_kept,).
+    spring
+        Stiffness of the springs.
+
+    Attributes
+    ----------
+    condensed
+        Stiffness of what is kept, (n_kept, n_kept).
+    """
+
+    def __init__(self, factor: SuperLU, kept: Indices, spring: float) -> None:
+        self._factor = factor
+        self._kept = kept
+        self._rest = _others(factor.shape[0], kept)
+        places = factor.perm_c
+        first = int(places[kept].min())
+        lower = factor.L[first:, first:].toarray()
+        block = lower @ factor.U[first:, first:].toarray()
+        own = places[kept] - first
+        between = _others(len(block), own)
+        condensed = block[np.ix_(own, own)]
+        if len(between):
+            coupling = block[np.ix_(between, own)]
+            inner = block[np.ix_(between, between)]
+            condensed -= coupling.T @ cho_solve(cho_factor(inner), coupling)
+        self._with_springs: Array = 0.5 * (condensed + condensed.T)
+        self.condensed: Array = self._with_springs - spring * np.eye(len(kept))
+
+    @classmethod
+    def of(cls, whole: sparse.csc_array, kept: Indices) -> ManyEliminated | None:
+        """Eliminate the rest of a stiffness, (n, n), by the size of both.
+
+        None where it is not as large as that, or where much of it comes after what is
+        kept, as in a body that has many more degrees of freedom.
+        """
+        count = len(kept)
+        if count < SOME or whole.shape[0] - count < max(MANY, MORE * count):
+            return None
+        spring = float(whole.diagonal().max())
+        factor = sparse_factor(
+            _tied(whole, kept, spring),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+        if len(factor.perm_c) - int(factor.perm_c[kept].min()) > WIDE * count:
+            return None
+        return cls(factor, kept, spring)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of factor and response, B; the response is made when it is read."""
+        response = self._with_springs.itemsize * len(self._rest) * len(self._kept)
+        factor = ENTRY * int(self._factor.nnz)
+        return factor + response + self._with_springs.nbytes
+
+    def carried(self, force: Array) -> Array:
+        """Forces on what is kept, negative, (..., n_kept, n_columns)."""
+        together = force.reshape(-1, *force.shape[-2:])
+        on_kept = [
+            -self._with_springs @ self._sprung(of_one)[self._kept]
+            for of_one in together
+        ]
+        return np.reshape(on_kept, (*force.shape[:-2], len(self._kept), -1))
+
+    def moved(self, kept: Array, force: Array | None) -> Array:
+        """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
+        further = kept
+        rest = np.zeros((len(self._rest), kept.shape[1]))
+        if force is not None:
+            sprung = self._sprung(force)
+            further = kept - sprung[self._kept]
+            rest += sprung[self._rest]
+        # A few columns are had without the response.
+        if FEW * kept.shape[1] < len(kept):
+            return rest + self._pulled_along(further)
+        return rest + self._response @ further
+
+    @cached_property
+    def _response(self) -> Array:
+        """Displacement inside by that of each that is kept: (n_rest, n_kept)."""
+        return self._pulled_along(np.eye(len(self._kept)))
+
+    def _pulled_along(self, kept: Array) -> Array:
+        """Displacement inside, (n_rest, n), by that of what is kept, (n_kept, n)."""
+        force = space_time(self._factor.shape[0], kept.shape[1])
+        force[self._kept] = self._with_springs @ kept
+        return np.asarray(self._factor.solve(force)[self._rest])
+
+    def _sprung(self, force: Array) -> Array:
+        """Displacement of all, (n, n_columns), by forces inside, (n_rest, n_columns).
+
+        What is kept is on its springs.
+        """
+        # A load mostly is the same at all instants, but for its size.
+        patterns, courses = separated(force)
+        whole = np.zeros((self._factor.shape[0], patterns.shape[1]))
+        whole[self._rest] = patterns
+        return np.asarray(self._factor.solve(whole) @ courses)
+
+
+class SchurComplement:
+    """A symmetric stiffness condensed onto some of its degrees of freedom.
+
+    The whole stiffness is sparse, (n, n), or has been condensed before. Those `kept`
+    ascend, (n_kept,), and have the dense `stiffness`, shape (n_kept, n_kept), scaled.
+
+    Raises
+    ------
+    np.linalg.LinAlgError
+        For a stiffness condensed before that could move while the kept degrees of
+        freedom are held.
+    """
+
+    def __init__(
+        self, whole: sparse.csc_array | SchurComplement, kept: Indices
+    ) -> None:
+        self.kept = kept
+        self._signs = np.ones(len(kept))
+        self._before = None
+        # Positions of what is kept, and of the rest, in the whole stiffness.
+        positions = kept
+        stiffness: sparse.csc_array | Array
+        if isinstance(whole, SchurComplement):
+            self._before = whole
+            # What was condensed before is condensed further: its inside is eliminated
+            # already.
+            stiffness = whole.stiffness
+            positions = np.searchsorted(whole.kept, kept)
+        else:
+            stiffness = whole
+        self._size = stiffness.shape[0]
+        self._positions = positions
+        self._rest = _others(self._size, positions)
+        self._eliminated: Eliminated | None = None
+        many = None
+        if not isinstance(stiffness, np.ndarray):
+            many = ManyEliminated.of(stiffness, positions)
+        if many is not None:
+            self._eliminated = many
+            condensed = many.condensed
+        else:
+            condensed = self._condensed_by_response(stiffness)
+        self.stiffness: Array = condensed + condensed.T
+        self.stiffness *= 0.5
+
+    def _condensed_by_response(self, stiffness: sparse.csc_array | Array) -> Array:
+        """Condense by the response of the rest, (n_kept, n_kept), from (n, n)."""
+        positions = self._positions
+        condensed = _dense(stiffness[positions][:, positions])
+        if not len(self._rest):
+            return condensed
+        others = stiffness[self._rest]
+        tied = others[:, positions]
+        coupling = _dense(tied)
+        few = FewEliminated(others[:, self._rest], coupling)
+        self._eliminated = few
+        if coupling.size * len(positions) < DENSE:
+            tied = coupling
+        condensed -= tied.T @ few.response
+        return condensed
+
+    def turned_round(self, signs: Array) -> SchurComplement:
+        """Make the same stiffness with some directions turned round.
+
+        `signs` are -1 for these and 1 for others, (n_kept,). All but the condensed
+        stiffness is shared. Not for a stiffness that was condensed before.
+        """
+        assert self._before is None
+        turned = copy(self)
+        turned._signs = self._signs * signs
+        if np.any(signs < 0.0):
+            turned.stiffness = signs[:, None] * self.stiffness
+            turned.stiffness *= signs
+        return turned
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of matrices and factors, also of the condensation before, B."""
+        nbytes = self.stiffness.nbytes
+        if self._eliminated is not None:
+            nbytes += self._eliminated.nbytes
+        if self._before is not None:
+            nbytes += self._before.nbytes
+        return nbytes
+
+    def condense(self, force: Array) -> Array:
+        """Condense forces, (..., n, n_columns), to (..., n_kept, n_columns)."""
+        if self._before is not None:
+            force = self._before.condense(force)
+        on_kept = force.take(self._positions, axis=-2)
+        if self._eliminated is not None:
+            carried = self._eliminated.carried(force.take(self._rest, axis=-2))
+            carried *= self._signs[:, None]
+            on_kept -= carried
+        return on_kept
+
+    def recover(self, kept: Array, force: Array | None) -> Array:
+        """Displacement of all degrees of freedom, shape (n, n_columns).
+
+        From those that are kept, (n_kept, n_columns), and the forces on all, (n,
+        n_columns), or None.
+        """
+        condensed = force
+        if self._before is not None and force is not None:
+            condensed = self._before.condense(force)
+        whole = np.empty((self._size, kept.shape[1]))
+        whole[self._positions] = kept
+        if self._eliminated is not None:
+            inside = None
+            if condensed is not None:
+                inside = np.ascontiguousarray(condensed[self._rest])
+            turned = self._signs[:, None] * kept
+            whole[self._rest] = self._eliminated.moved(turned, inside)
+        if self._before is None:
+            return whole
+        return self._before.recover(whole, force)
+
+
+def _others(count: int, some: Indices) -> Indices:
+    """All of a count of numbers but some, ascending, (count - n,)."""
+    is_other = np.ones(count, dtype=bool)
+    is_other[some] = False
+    return np.flatnonzero(is_other)
+
+
+def _tied(whole: sparse.csc_array, kept: Indices, spring: float) -> sparse.csc_array:
+    """Stiffness, (n, n), with a spring beside each that is kept, (n_kept,).
+
+    All pairs of these are entries, if of zero.
+    """
+    ties = spring * np.eye(len(kept))
+    entries = whole.tocoo()
+    rows = np.concatenate([entries.row, np.repeat(kept, len(kept))])
+    columns = np.concatenate([entries.col, np.tile(kept, len(kept))])
+    values = np.concatenate([entries.data, ties.ravel()])
+    return sparse.csc_array((values, (rows, columns)), shape=whole.shape)
+
+
+def _dense(block: sparse.csc_array | Array) -> Array:
+    """A block of a stiffness as a dense array, of the same shape."""
+    if isinstance(block, np.ndarray):
+        return np.asarray(block, order="C")
+    return np.asarray(block.toarray(order="C"))
