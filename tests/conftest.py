@@ -44,6 +44,9 @@ LONGEST_FIRST = (
 OPENS = "test_journey_run"
 """Journeys the first of which opens the page that stays open for all others."""
 
+# Modules are no garbage, however many are imported: a tenth of the time of collection
+gc.disable()
+
 # What the first process compiles is there for the hundreds after it, servers and
 # commands too
 sys.dont_write_bytecode = False
@@ -86,8 +89,10 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Together:
     return Together(config, log)
 
 
-def pytest_collection_finish() -> None:
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop() -> None:
     """Keep the garbage collector from searching the imported modules again."""
+    gc.enable()
     gc.collect()
     gc.freeze()
     # Pages and figures are rings of thousands of models: as the server does
