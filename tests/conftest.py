@@ -20,7 +20,6 @@ import pytest
 from browser import NO_BROWSER, Chrome, Server, free_port, serving
 from hypothesis import settings
 from hypothesis.internal.constants_ast import Constants
-from pages import Visit, visits
 from playwright.sync_api import sync_playwright
 from proxy import Proxy
 from xdist.scheduler import LoadFileScheduling
@@ -42,6 +41,11 @@ LONGEST_FIRST = (
     "test_paper_figures",
 )
 """Files of many seconds: whoever came to one of these last would work on alone."""
+OPENS = "test_journey_run"
+"""Journeys the first of which opens the page that stays open for all others."""
+
+# Modules are no garbage, however many are imported: a tenth of the time of collection
+gc.disable()
 
 # What the first process compiles is there for the hundreds after it, servers and
 # commands too
@@ -64,7 +68,12 @@ draws._get_local_constants = Constants
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take longest, and keep the order of all else."""
-    items.sort(key=lambda item: not item.path.stem.startswith(LONGEST_FIRST))
+
+    def place(item: pytest.Item) -> tuple[bool, bool]:
+        name = item.path.stem
+        return name != OPENS, not name.startswith(LONGEST_FIRST)
+
+    items.sort(key=place)
 
 
 class Together(LoadFileScheduling):
@@ -80,8 +89,10 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Together:
     return Together(config, log)
 
 
-def pytest_collection_finish() -> None:
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop() -> None:
     """Keep the garbage collector from searching the imported modules again."""
+    gc.enable()
     gc.collect()
     gc.freeze()
     # Pages and figures are rings of thousands of models: as the server does
@@ -126,11 +137,4 @@ def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[S
 def chrome() -> Iterator[Chrome]:
     """The browser."""
     with sync_playwright() as playwright, closing(Chrome(playwright)) as opened:
-        yield opened
-
-
-@pytest.fixture
-def visit(chrome: Chrome, server: Server) -> Iterator[Visit]:
-    """Opens pages; neither they nor the server may complain."""
-    with visits(server, chrome) as opened:
         yield opened

@@ -22,7 +22,7 @@ from solver.study.known_numbers import Number, SolvedCase
 from solver.study.mesh import size_of
 from solver.study.page import text_of, write_csv, write_page
 from solver.study.quantities.finished import FinishedRun
-from solver.study.trade_case import Case, all_cases
+from solver.study.trade_case import Case, cases_by_name
 
 CLOSED_FORMS = "Closed forms"
 PUBLISHED = "Published numbers"
@@ -173,7 +173,7 @@ def cases() -> list[KnownCase]:
                 part=group.get("part", CLOSED_FORMS),
             )
             known.append(case)
-    return known + [known_case(case) for case in all_cases()]
+    return known + [known_case(case) for case in cases_by_name().values()]
 
 
 def holds(row: Row) -> bool:

@@ -173,11 +173,7 @@ def _part(kind: type[Part], values: dict[str, Any], name: str) -> Part:
 @cache
 def cases_by_name() -> dict[str, Case]:
     """Cases of the folder `cases` by name, in their order."""
-    return {case.name: case for case in all_cases()}
-
-
-def all_cases() -> list[Case]:
-    """Read all cases of the folder `cases`, in their order."""
     files = Path(__file__).with_name("cases").glob("*.toml")
     cases = [case_from_file(file) for file in files]
-    return sorted(cases, key=lambda case: case.order)
+    cases.sort(key=lambda case: case.order)
+    return {case.name: case for case in cases}

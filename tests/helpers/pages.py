@@ -125,14 +125,23 @@ class Desk:
     def page(self) -> Page:
         """The page, which is opened if there is none."""
         if self._page is None:
-            self._complaints = []
-            visit = self._opened.enter_context(
-                visits(self._server, self._chrome, self._complaints)
-            )
-            self._page = visit(self._query, root=self._root)
+            self._open(self._query)
             self.arrive()
         # What comes under a pointer that rests on a figure would be looked for there.
         self._page.mouse.move(0.0, 0.0)
+        return self._page
+
+    def anew(self, query: str = "") -> Page:
+        """A page that has just been opened, in place of the one that is there."""
+        self.close()
+        return self._open(query)
+
+    def _open(self, query: str) -> Page:
+        self._complaints = []
+        visit = self._opened.enter_context(
+            visits(self._server, self._chrome, self._complaints)
+        )
+        self._page = visit(query, root=self._root)
         return self._page
 
     def arrive(self) -> None:

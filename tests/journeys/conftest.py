@@ -30,6 +30,20 @@ def desk(server: Server, chrome: Chrome, proxy: Proxy) -> Iterator[Desk]:
 def page(request: pytest.FixtureRequest, desk: Desk) -> Iterator[Page]:
     """The page that stays open."""
     yield desk.page()
+    _look_back(request, desk)
+
+
+@pytest.fixture
+def new_page(request: pytest.FixtureRequest, desk: Desk) -> Iterator[Page]:
+    """A page that has just been opened, and stays open for the journeys after."""
+    yield desk.anew()
+    if FAILED not in request.node.stash:
+        desk.arrive()
+    _look_back(request, desk)
+
+
+def _look_back(request: pytest.FixtureRequest, desk: Desk) -> None:
+    """Close a page on which a journey has failed, or which has complained."""
     if FAILED in request.node.stash:
         desk.close()
     else:

@@ -9,7 +9,6 @@ from pages import (
     ANSWER,
     ENDLESS,
     MODEL,
-    Visit,
     button,
     comes,
     drag,
@@ -77,9 +76,9 @@ MET = "localStorage.getItem('slipfront')"
 
 
 def test_a_new_page_shows_a_search_plays_its_cycle_and_may_have_the_answer_at_once(
-    visit: Visit,
+    new_page: Page,
 ) -> None:
-    page = visit()
+    page = new_page
     expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
     expect(status(page)).to_contain_text("% wrong")
     first = iteration(page)

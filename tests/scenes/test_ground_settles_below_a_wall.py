@@ -14,7 +14,7 @@ from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.values import SettingError
-from solver.study.trade_case import all_cases
+from solver.study.trade_case import cases_by_name
 
 BRICK = 2e4 * 0.25 * 0.12
 """Weight of a brick, N."""
@@ -205,7 +205,7 @@ def test_the_settlement_is_drawn_below_what_settles():
 
 def test_what_the_case_says_to_change_first_is_so():
     """A twentieth of a millimetre is enough; in stack bond nothing reaches over."""
-    (case,) = [case for case in all_cases() if case.name == "settling-ground"]
+    case = cases_by_name()["settling-ground"]
     found = {}
     for name, changes in {
         "less": {"settlement": 5e-5},

@@ -14,9 +14,9 @@ from solver.settings.values import SettingError
 from solver.study import proof
 from solver.study.quantities import reading
 from solver.study.quantities.finished import finished_run
-from solver.study.trade_case import all_cases, case_from_file
+from solver.study.trade_case import case_from_file, cases_by_name
 
-CASES = all_cases()
+CASES = list(cases_by_name().values())
 OWN = """scene = "bar"
 load = [[0, 0], [1, 900]]
 {setting}
