@@ -179,7 +179,7 @@ class Page:
         self._class.view.param.watch(lambda event: self._place(), "visible")
         acts = [*TOUCHED, "plots", "view"]
         watch = self.state.param.watch
-        watch(lambda *events: self._browser.tell(is_new=False), acts)
+        watch(lambda *events: self.state.param.update(is_new=False), acts)
         told = ["newest", "frame", "running", "message", "refusal"]
         watch(
             lambda *events: self._browser.tell(spoken=spoken_status(self.state)),

@@ -32,6 +32,10 @@ ROW = re.compile(r"^\| (.+) \| (.+) \|$", re.MULTILINE)
 FOCUS = {"&:focus-within": {"outline": "2px solid", "outlineOffset": "2px"}}
 """Look of a file button while keys go to it: its focus lies on a field within it."""
 
+WRAPPED = {"& .MuiDialogTitle-root": {"flex": "1 1 0", "minWidth": 0}}
+"""Look of a dialog whose title wraps: on a phone it would push the button that closes
+the dialog out of sight."""
+
 
 def _meanings() -> dict[str, str]:
     """Meanings of the glossary by word."""
@@ -114,10 +118,23 @@ def wrapped(*objects: Any, **look: Any) -> pn.Row:
     return pn.Row(*objects, margin=0, **{"styles": {"flex-wrap": "wrap"}, **look})
 
 
+def up_to(width: int, margin: int) -> dict[str, Any]:
+    """Width of a part, px, which is less where a phone has no room for it.
+
+    The margins on its left and right are px, too.
+    """
+    return {"width": width, "styles": {"max-width": f"calc(100% - {2 * margin}px)"}}
+
+
 def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:
     """A dialog that a click beside it closes, too."""
     return pmui.Dialog(
-        *objects, title=title, show_close_button=True, close_on_click=True, **look
+        *objects,
+        title=title,
+        show_close_button=True,
+        close_on_click=True,
+        sx=WRAPPED,
+        **look,
     )
 
 

@@ -243,6 +243,9 @@ class Layout:
             yield "bottom", FOOTING + 1.2 * self.row
         elif not self.is_told_above(act, count):
             size += self.letter * (len(act.symbol) + len(act.unit) + 9)
+        else:
+            # Beside words an arrow has room, without them it needs its own.
+            size = max(size, self.arrow + 10.0)
         if act.outward is not None:
             size += self.arrow
         yield act.side, size
