@@ -118,12 +118,9 @@ def wrapped(*objects: Any, **look: Any) -> pn.Row:
     return pn.Row(*objects, margin=0, **{"styles": {"flex-wrap": "wrap"}, **look})
 
 
-def up_to(width: int, margin: int) -> dict[str, Any]:
-    """Width of a part, px, which is less where a phone has no room for it.
-
-    The margins on its left and right are px, too.
-    """
-    return {"width": width, "styles": {"max-width": f"calc(100% - {2 * margin}px)"}}
+def up_to(width: int) -> dict[str, Any]:
+    """Width of a part, px, which is less where a phone has no room for it."""
+    return {"sizing_mode": "stretch_width", "max_width": width}
 
 
 def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:

@@ -73,7 +73,7 @@ class WhatIf:
             SettingRange("Vary", self._change, is_optional=False),
             SettingRange("and", self._change, is_optional=True),
         )
-        self._of = pmui.Select(label="See what happens to", **up_to(386, 6), **FIELD)
+        self._of = pmui.Select(label="See what happens to", **up_to(386), **FIELD)
         self._at = pmui.TextInput(label="at", width=110, **FIELD)
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")

@@ -36,7 +36,7 @@ from solver.settings.definitions import Parameter, title_of
 from solver.settings.scene import Settings
 from solver.study.comparison import PER
 
-LOOK: dict[str, Any] = {"size": "small", "margin": (4, 8), **up_to(340, 8)}
+LOOK: dict[str, Any] = {"size": "small", "margin": (4, 8), **up_to(340)}
 PROGRAM = """\
 from solver.files import scene_settings
 from solver.study.quantities.finished import finished_run

@@ -335,7 +335,7 @@ def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
             if lesson.subject == subject
         ]
         heading = pn.pane.Markdown(title, margin=(0, 8))
-        columns.append(pn.Column(heading, *buttons, margin=0, **up_to(380, 0)))
+        columns.append(pn.Column(heading, *buttons, margin=0, **up_to(380)))
     return pn.FlexBox(*columns, gap="8px 32px", margin=0)
 
 

@@ -16,6 +16,7 @@ from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
 import app.supervisor
+from app.browser import Browser
 from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
 from app.page import Page, open_page
@@ -120,6 +121,19 @@ def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> 
 
 
 @pytest.mark.usefixtures("orders", "document")
+@pytest.mark.usefixtures("orders", "document")
+def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # A slider that is dragged has not the document's lock: what is told then comes to
+    # the browser alone.
+    monkeypatch.setattr(Browser, "tell", lambda browser, **values: None)
+    page, _ = small_page()
+    page.state.is_new = True
+    page.state.drag("peak", 1000.0)
+    assert not page.state.is_new
+
+
 def test_what_gives_an_answer_away_is_hidden_until_the_question_is_answered() -> None:
     lesson = LESSONS["broken-wire"]
     state = PageState(settings_of(lesson), lesson=lesson.name)
