@@ -437,13 +437,33 @@ def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:
     assert "much" in said
     # The button does not say what became of the file.
     assert opener.file.uploaded_label == "Open"
-    assert "empty.csv was refused" in open_file("empty.csv", "")
+    assert "empty.csv was refused. The table" in open_file("empty.csv", "")
     assert "bad.csv" not in open_file("load.csv", "time,force\n0,0\n1,800\n")
     assert state.refusal == ""
     assert opener.columns_button.visible
     state.choose_scene("block")
     assert opener.message.object == ""
     assert not opener.columns_button.visible
+
+
+def test_settings_are_read_as_tables_are_and_what_is_none_is_not_shown() -> None:
+    state = of_scene("bar")
+    opener = TableOpener(state, "Open", ".toml,.csv", 280)
+
+    def open_file(name: str, data: bytes) -> str:
+        opener.file.filename = name
+        opener.file.value = data
+        return str(opener.message.object)
+
+    text = dump(state.settings.replace(peak=700.0))
+    open_file("of_an_editor.toml", text.encode("utf-16"))
+    assert held(state, "peak") == 700.0
+    cut = open_file("cut.toml", text[:40].encode())
+    assert cut.startswith("cut.toml was refused. The settings file cannot be “cut")
+    picture = open_file("picture.toml", bytes(range(1, 200)))
+    assert "it is no text: save the settings again" in picture
+    assert "scene cannot be missing" in open_file("part.toml", b"peak = 600.0")
+    assert held(state, "peak") == 700.0
 
 
 def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
