@@ -146,14 +146,21 @@ def file_button(
         label=label, uploaded_label=label, accept=accept, sx=FOCUS, **look
     )
 
-    def pass_on(event: Any) -> None:
-        # An empty file is one, too, and has its message.
-        if event.new is not None:
-            name = file.filename
-            # The same file may be opened once more.
-            file.clear()
-            take(event.new, name)
+    def wait() -> None:
+        """Wait for the next file, which may be the same once more, or an empty one.
 
+        Of an empty file the browser sends neither name nor content.
+        """
+        file.param.update(value=b"", filename=None)
+
+    def pass_on(event: Any) -> None:
+        if event.new == b"":
+            return
+        name = file.filename or "The file"
+        wait()
+        take(event.new or b"", name)
+
+    wait()
     file.param.watch(pass_on, "value")
     return file
 

@@ -8,6 +8,8 @@ from itertools import chain, product
 from pathlib import Path
 from typing import Any
 
+import panel as pn
+import panel_material_ui as pmui
 import param
 import pytest
 
@@ -308,6 +310,25 @@ def test_groups_of_another_scene_take_the_places_of_the_closed_ones() -> None:
     assert is_kept == [False] + [True] * (len(before) - 1)
 
 
+def test_a_message_on_settings_of_another_scene_stays_in_sight() -> None:
+    state = of_scene("bar")
+    controls = Controls(state)
+    groups = controls._groups
+    groups.active = [len(groups) - 1]
+    (opened,) = groups[-1].select(pmui.FileInput)
+    of_fault = b'scene = "fault"\nfriction_law = "slip-dependent"\nslip_length = 1e-3'
+    opened.param.update(filename="old.toml", value=of_fault)
+    assert state.settings.scene == "fault"
+    assert groups.active == [len(groups) - 1]
+    said = " ".join(str(pane.object) for pane in groups[-1].select(pn.pane.HTML))
+    assert "old.toml: settings of the scene fault. " in said
+    assert "both sides" in said
+    # A scene that a person chooses has none.
+    state.choose_scene("block")
+    said = " ".join(str(pane.object) for pane in groups[-1].select(pn.pane.HTML))
+    assert "old.toml" not in said
+
+
 def test_each_scene_keeps_its_settings() -> None:
     state = of_scene("bar")
     controls = Controls(state)
@@ -437,7 +458,9 @@ def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:
     assert "much" in said
     # The button does not say what became of the file.
     assert opener.file.uploaded_label == "Open"
-    assert "empty.csv was refused. The table" in open_file("empty.csv", "")
+    # As the browser has an empty file: without a name.
+    opener.file.param.update(filename=None, value=None)
+    assert "The file was refused. The table" in str(opener.message.object)
     assert "bad.csv" not in open_file("load.csv", "time,force\n0,0\n1,800\n")
     assert state.refusal == ""
     assert opener.columns_button.visible
