@@ -406,8 +406,8 @@ class Controls:
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = views_of(self._controls)
-        # The numbers of open groups would mean groups of the scene before. That of files
-        # alone stays open: settings that a file brings with their scene have a message.
+        # The numbers of open groups would mean groups of the scene before. Files alone
+        # stay open: settings that a file brings with their scene have a message.
         has_files = FILES in [self._titles[number] for number in self._groups.active]
         self._groups.active = []
         self._titles = [*groups, FILES]

@@ -62,9 +62,7 @@ def settings_from_toml(text: str) -> Settings:
     return read_settings(text, "settings file")[0]
 
 
-def read_settings(
-    text: bytes | str, source: str
-) -> tuple[Settings, Mapping[str, str]]:
+def read_settings(text: bytes | str, source: str) -> tuple[Settings, Mapping[str, str]]:
     """Settings of a saved file in TOML, and messages on settings of an older meaning.
 
     The messages stand under the names of the settings. The file has a scene's name
