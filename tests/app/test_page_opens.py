@@ -121,7 +121,6 @@ def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> 
 
 
 @pytest.mark.usefixtures("orders", "document")
-@pytest.mark.usefixtures("orders", "document")
 def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -134,6 +133,7 @@ def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
     assert not page.state.is_new
 
 
+@pytest.mark.usefixtures("orders", "document")
 def test_what_gives_an_answer_away_is_hidden_until_the_question_is_answered() -> None:
     lesson = LESSONS["broken-wire"]
     state = PageState(settings_of(lesson), lesson=lesson.name)

@@ -348,3 +348,14 @@ def test_handles_at_the_ends_of_a_bar_are_within_reach_on_a_phone(phase: float) 
     assert len(handles["x"]) >= 2
     assert min(handles["x"]) > 0.0
     assert max(handles["x"]) < 390.0
+
+
+@pytest.mark.parametrize("share", [1.14, 1.2, 1.45])
+def test_the_handle_of_a_pressure_that_has_grown_stays_in_the_picture(
+    share: float,
+) -> None:
+    settings = small("strand")
+    view = shown(frame_of(settings))
+    frame = frame_of(settings.replace(pressure=share * settings.pressure))
+    view.update(frame, Selection(0.75), None)
+    assert max(view.sources["marks"].data["y"]) < HEIGHT - 3.0
