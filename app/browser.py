@@ -362,9 +362,11 @@ class Browser(DataModel):
             ),
         )
         self.given = state.given
+        # The state first: what is told without the document's lock comes to the browser
+        # alone, and no callback of this model hears of it.
         state.param.watch(
             lambda *events: self.tell(**{event.name: event.new for event in events}),
-            ["given", "is_stale"],
+            ["given", "is_stale", "is_new"],
         )
         document.add_root(self)
         for script in (LISTEN, TELL, HOLD, CHOOSE, RETURN):

@@ -33,6 +33,8 @@ WIDTH = 286
 STEPS = 80
 """Least number of steps of a slider."""
 POINTS = "points"
+FILES = "Files"
+"""Title of the group that saves and opens files; the other groups have settings."""
 OWN = "a file"
 """Choice of a text that is the content of a file: the files group opens one."""
 GROUPS = (
@@ -367,7 +369,9 @@ class Controls:
             self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12)
         )
         self._spacers = defaultdict(partial(pn.Spacer, height=0))
+        self._files: pn.Column | None = None
         self._built = ""
+        self._titles: list[str] = []
         state.param.watch(lambda event: self.update(), "settings")
         self.update()
 
@@ -402,15 +406,20 @@ class Controls:
         chief, groups = _groups_of(type(settings))
         self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = views_of(self._controls)
-        # The numbers of open groups would mean groups of the scene before.
+        # The numbers of open groups would mean groups of the scene before. Files alone
+        # stay open: settings that a file brings with their scene have a message.
+        has_files = FILES in [self._titles[number] for number in self._groups.active]
         self._groups.active = []
+        self._titles = [*groups, FILES]
         # Each group is a spacer until it is opened: it costs a page less than a column,
         # and nothing in another scene.
-        self._closed = dict(enumerate([*groups.items(), ("Files", [])]))
+        self._closed = dict(enumerate([*groups.items(), (FILES, [])]))
         self._groups[:] = [
             (title, self._spacers[number])
             for number, (title, _) in self._closed.items()
         ]
+        if has_files:
+            self._groups.active = [len(groups)]
 
     def _open(self) -> None:
         """Fill the groups that are opened for the first time."""
@@ -421,7 +430,9 @@ class Controls:
                 self._controls += controls
                 view = pn.Column(*views_of(controls), margin=0)
             else:
-                view = files_panel(self._state, WIDTH)
+                if self._files is None:
+                    self._files = files_panel(self._state, WIDTH)
+                view = self._files
             self._groups[number] = (title, view)
             # The browser is to answer; see `Page._put`.
             self._state.given += 1

@@ -179,7 +179,7 @@ class Page:
         self._class.view.param.watch(lambda event: self._place(), "visible")
         acts = [*TOUCHED, "plots", "view"]
         watch = self.state.param.watch
-        watch(lambda *events: self._browser.tell(is_new=False), acts)
+        watch(lambda *events: self.state.param.update(is_new=False), acts)
         told = ["newest", "frame", "running", "message", "refusal"]
         watch(
             lambda *events: self._browser.tell(spoken=spoken_status(self.state)),
@@ -300,10 +300,14 @@ class Page:
 
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
-        if tab not in self._tabs:
+        is_first = tab not in self._tabs
+        if is_first:
             kind = {WHAT_IF: WhatIf, "Fit": FitTab, "Reports": Reports}[tab]
             self._tabs[tab] = kind(self.state).view
         self._place()
+        if is_first:
+            # As for dialogs, the browser is to answer.
+            self.state.given += 1
         self._live.look()
 
     def _place(self) -> None:

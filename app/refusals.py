@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from app.units import Unit, number, unit_of, units_of_points
-from solver.refusal import RefusedError
+from solver.refusal import RefusedError, Words
 from solver.settings.definitions import CurveParameter, about, title_of
 from solver.settings.scene import Settings
 from solver.settings.values import allowed
@@ -32,7 +32,9 @@ def message_of(
     if definition is None:
         limits = _in_titles(settings, refusal.allowed)
         refused = _written(refusal.value)
-        return f"{refusal.name} cannot be {refused}: {remedy}. Allowed: {limits}."
+        # What is no setting may be named by words.
+        subject = re.sub("^the ", "The ", refusal.name)
+        return f"{subject} cannot be {refused}: {remedy}. Allowed: {limits}."
     title = title_of(definition)
     si, unit = _units(settings, refusal.name)
     limits = refusal.allowed
@@ -135,6 +137,8 @@ def _written(value: object, unit: Unit | None = None) -> str:
     if isinstance(value, int | float) and abs(value) < 1e300:
         return (unit or Unit(""))(value, EXACT)
     text = str(value)
+    if isinstance(value, Words):
+        return text
     if len(text) > LONGEST:
         text = f"{text[: LONGEST - 3]}..."
     return f"“{text}”"

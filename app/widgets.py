@@ -32,6 +32,10 @@ ROW = re.compile(r"^\| (.+) \| (.+) \|$", re.MULTILINE)
 FOCUS = {"&:focus-within": {"outline": "2px solid", "outlineOffset": "2px"}}
 """Look of a file button while keys go to it: its focus lies on a field within it."""
 
+WRAPPED = {"& .MuiDialogTitle-root": {"flex": "1 1 0", "minWidth": 0}}
+"""Look of a dialog whose title wraps: on a phone it would push the button that closes
+the dialog out of sight."""
+
 
 def _meanings() -> dict[str, str]:
     """Meanings of the glossary by word."""
@@ -114,10 +118,20 @@ def wrapped(*objects: Any, **look: Any) -> pn.Row:
     return pn.Row(*objects, margin=0, **{"styles": {"flex-wrap": "wrap"}, **look})
 
 
+def up_to(width: int) -> dict[str, Any]:
+    """Width of a part, px, which is less where a phone has no room for it."""
+    return {"sizing_mode": "stretch_width", "max_width": width}
+
+
 def dialog(title: str, *objects: Any, **look: Any) -> pmui.Dialog:
     """A dialog that a click beside it closes, too."""
     return pmui.Dialog(
-        *objects, title=title, show_close_button=True, close_on_click=True, **look
+        *objects,
+        title=title,
+        show_close_button=True,
+        close_on_click=True,
+        sx=WRAPPED,
+        **look,
     )
 
 
@@ -132,14 +146,21 @@ def file_button(
         label=label, uploaded_label=label, accept=accept, sx=FOCUS, **look
     )
 
-    def pass_on(event: Any) -> None:
-        # An empty file is one, too, and has its message.
-        if event.new is not None:
-            name = file.filename
-            # The same file may be opened once more.
-            file.clear()
-            take(event.new, name)
+    def wait() -> None:
+        """Wait for the next file, which may be the same once more, or an empty one.
 
+        Of an empty file the browser sends neither name nor content.
+        """
+        file.param.update(value=b"", filename=None)
+
+    def pass_on(event: Any) -> None:
+        if event.new == b"":
+            return
+        name = file.filename or "The file"
+        wait()
+        take(event.new or b"", name)
+
+    wait()
     file.param.watch(pass_on, "value")
     return file
 

@@ -33,6 +33,7 @@ class FitTab(CommandTab):
 
     def __init__(self, state: PageState) -> None:
         opener = TableOpener(state, "Open a measured loop", TABLES, 230)
+        opener.view.margin = (0, 6)
         self.chosen = pmui.CheckBoxGroup(label="", inline=True, margin=(5, 6))
         self.use_button = button("Use these settings", self.use, icon="check", **LOOKS)
         self._chart = LiveChart()

@@ -50,7 +50,7 @@ class CommandTab(ABC):
         )
         self._words = PlainText(margin=(0, 8))
         self.progress = PlainText(margin=(6, 8))
-        self.files = pn.Row(margin=0)
+        self.files = wrapped()
         self.buttons = wrapped(self.start_button, self.cancel_button, self.files)
         self.page = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 8))
         self.view = pn.Column(

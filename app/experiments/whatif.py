@@ -23,7 +23,7 @@ from app.experiments.questions import (
 from app.refusals import advice_in_titles, message_of
 from app.state import WHAT_IF, PageState, answer
 from app.units import unit_for
-from app.widgets import PlainText, button, download
+from app.widgets import PlainText, button, download, up_to
 from solver.files.saved import dump
 from solver.refusal import RefusedError
 from solver.settings.scene import Settings
@@ -73,7 +73,7 @@ class WhatIf:
             SettingRange("Vary", self._change, is_optional=False),
             SettingRange("and", self._change, is_optional=True),
         )
-        self._of = pmui.Select(label="See what happens to", width=386, **FIELD)
+        self._of = pmui.Select(label="See what happens to", **up_to(386), **FIELD)
         self._at = pmui.TextInput(label="at", width=110, **FIELD)
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")

@@ -28,7 +28,7 @@ from app.units import unit_for, unit_of
 from app.views.layout import shape_of
 from app.views.scene import Scene
 from app.views.view import View
-from app.widgets import TEMPLATES, download
+from app.widgets import TEMPLATES, download, up_to
 from app.worker.cells import thinned
 from app.worker.references import has_reference
 from solver.files.saved import dump
@@ -36,7 +36,7 @@ from solver.settings.definitions import Parameter, title_of
 from solver.settings.scene import Settings
 from solver.study.comparison import PER
 
-LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
+LOOK: dict[str, Any] = {"size": "small", "margin": (4, 8), **up_to(340)}
 PROGRAM = """\
 from solver.files import scene_settings
 from solver.study.quantities.finished import finished_run

@@ -166,7 +166,7 @@ class TableOpener:
     def _read(self, source: str, data: bytes) -> tuple[Content, str]:
         """Content of a file, and a message on it."""
         if source.lower().endswith(".toml"):
-            return settings_in(data.decode("utf-8-sig", "replace"), source)
+            return settings_in(data, source)
         if source.lower().endswith(MESHES):
             settings = CATALOGUE["mesh"].checked({"mesh": text_of_mesh(data, source)})
             return settings, f"{source}: {settings.sentence()}"
@@ -245,7 +245,7 @@ class TableOpener:
             self.remove_button.label = "Remove"
 
 
-def settings_in(text: str, source: str) -> tuple[Settings, str]:
+def settings_in(text: bytes, source: str) -> tuple[Settings, str]:
     """Settings in a file, and a message on them and on what was changed in them."""
     settings, changed = read_settings(text, source)
     sentences = [f"{source}: settings of the scene {settings.scene}."]

@@ -24,7 +24,10 @@ from solver.settings.definitions import title_of
 MOST_DRAGGED = 200
 """Largest number of points that are dragged and typed; longer tables are of files."""
 LOOK: dict[str, Any] = {"sizing_mode": "stretch_width", "height": 220, "margin": 5}
-HINT = "Drag a point; tap to add one, tap it and press Backspace to take it away."
+HINT = (
+    "Drag a point; tap to add one, tap it and press Backspace to take it away, or edit "
+    "the rows."
+)
 MARGINS = {"x": 0.05, "y": 0.2}
 """Room on either side of the points, over their range along each axis."""
 

@@ -32,7 +32,7 @@ from app.lessons.handout import handout
 from app.state import PageState
 from app.transport import Transport
 from app.views.view import TEXT, View
-from app.widgets import dialog, download, looks
+from app.widgets import dialog, download, looks, up_to
 from solver.study.lessons import SUBJECTS, Lesson
 from solver.study.trade_case import Case
 
@@ -335,7 +335,7 @@ def _titles(begin: Callable[[str], None]) -> pn.FlexBox:
             if lesson.subject == subject
         ]
         heading = pn.pane.Markdown(title, margin=(0, 8))
-        columns.append(pn.Column(heading, *buttons, width=380, margin=0))
+        columns.append(pn.Column(heading, *buttons, margin=0, **up_to(380)))
     return pn.FlexBox(*columns, gap="8px 32px", margin=0)
 
 

@@ -9,17 +9,22 @@ import numpy as np
 
 from app.units import Unit, settled, unit_for
 from app.views.colors import DISPLACEMENT, FORCE
-from app.views.layout import BAND, WALL, Layout, beside, is_aside
+from app.views.layout import (
+    BAND,
+    LONGEST,
+    WALL,
+    WORD,
+    Layout,
+    beside,
+    is_aside,
+    is_at_left,
+)
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, Footing, on_side
 
 SHORTEST = 0.02
 """Value over the largest one below which an arrow is not drawn, nor dragged."""
-LONGEST = 1.6
-"""Largest length over that of the largest value when arrows were scaled."""
-WORD = 12
-"""Letters of a value, about."""
 SNAP = 4.0
 """Distance from zero within which a dragged load is zero, px."""
 HEAD = 9.0
@@ -232,7 +237,7 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
     """
     act = arrows.act
     up = OUTWARD[side][1]
-    is_left = float(np.mean(arrows.places[:, 0])) < 0.45
+    is_left = is_at_left(arrows.places)
     nearest = arrows.points[0 if is_left else -1]
     ends = np.append(arrows.lines[:, :, 0], nearest[0])
     if is_aside(act):
@@ -240,7 +245,7 @@ def _anchor_above(arrows: Arrows, layout: Layout, side: str) -> tuple[Array, str
         above = max(beside(layout.description, side), 0.5 * layout.row)
     else:
         above = 0.75 * layout.arrow
-    if not _has_room(arrows, layout, is_left):
+    if not layout.has_room_beside(act, arrows.places):
         middle = 0.5 * (ends.min() + ends.max())
         heights = up * arrows.lines[:, :, 1].ravel()
         top = up * max(heights, default=up * nearest[1] + above)
@@ -276,21 +281,6 @@ def _has_aside(layout: Layout, side: str) -> bool:
     """Check whether a load acts along a side."""
     acts = [act for act in layout.description.acts if act.side == side]
     return any(is_aside(act) for act in acts)
-
-
-def _has_room(arrows: Arrows, layout: Layout, is_left: bool) -> bool:
-    """Check whether the words of a load on top have room beside its longest arrows."""
-    act = arrows.act
-    across = layout.local(arrows.places * layout.size)[:, 0] + layout.origin[0]
-    if is_left:
-        room = across.min()
-    else:
-        room = layout.width - across.max()
-    if is_aside(act):
-        room -= LONGEST * layout.arrow
-    # A load that varies along its side has the values at both ends.
-    values = 2 if act.values.ndim > 1 else 1
-    return bool(room > layout.letter * (len(act.symbol) + values * WORD))
 
 
 def text_of(act: Act, column: int) -> str:

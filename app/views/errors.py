@@ -24,7 +24,9 @@ they are numbers of other sizes."""
 HEIGHT = 160.0
 """Height of a plot until the browser reports its own, px."""
 LEAST = 1e-14
-"""Least value that is in sight: what is smaller is rounding."""
+"""Value at which smaller ones, which are rounding, and zero are drawn."""
+FOOT = 8.0
+"""Height at which the answer stands above the lower edge, px: a ring has room there."""
 NAMED = 1.25
 """Length of the axis of iterations over that of the curves, at whose ends their names
 stand."""
@@ -67,13 +69,13 @@ class ErrorPlot(View):
         up: str,
         title: str = "",
     ) -> None:
-        """Draw a column of a history over another where it is positive and finite."""
+        """Draw a column of a history over another where it is finite."""
         nothing = np.zeros(0)
         x = history.get(across, nothing)
         y = history.get(up, nothing)
-        # A logarithmic axis has no room for other values.
-        shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
-        self.draw(name, x[shown], y[shown], title)
+        shown = np.isfinite(y) & np.isfinite(x)
+        # A logarithmic axis has no room for zero.
+        self.draw(name, x[shown], np.maximum(y[shown], LEAST), title)
 
 
 class Convergence(ErrorPlot):
@@ -143,8 +145,8 @@ class Convergence(ErrorPlot):
         answers = []
         if newest.is_answer:
             answers = [newest.iteration]
-        foot = 1.6 * self.figure.y_range.reset_start
-        self.draw("answer", answers, [foot] * len(answers))
+        foot = self._at(np.full(len(answers), FOOT / self._inner_height))
+        self.draw("answer", answers, foot)
         goal = newest.run.settings.accuracy
         self.fill("goal", y=[goal])
         # At an end of its line: the right one, unless the names of curves are there.
@@ -164,8 +166,11 @@ class Convergence(ErrorPlot):
         number = newest.run.number
         curves = [self.sources[column].data["y"] for column in CURVES]
         low, _ = extent([SEEN, *curves])
+        # Below the least value there is room for ends of curves, and for their names.
+        if low < 2.0 * LEAST:
+            low = 0.1 * LEAST
         errors = self.sources["error_force"].data["y"]
-        self.y.hold(number, SEEN, [max(low, LEAST)], errors)
+        self.y.hold(number, SEEN, [low], errors)
         ghosts = self.sources["ghost"].data["x"]
         ends = [float(newest.iteration), *map(float, ghosts[-1:])]
         has_ended = newest.status is not None
@@ -176,13 +181,8 @@ class Convergence(ErrorPlot):
         self.x.hold((number, has_ended), [0.0, end])
 
     def _show_names(self, newest: Frame) -> None:
-        """Write the names of curves at their ends, one above the other.
-
-        Heights are logarithms, over the height of the axis.
-        """
-        low, high = np.log10(
-            [self.figure.y_range.reset_start, self.figure.y_range.reset_end]
-        )
+        """Write the names of curves at their ends, one above the other."""
+        low, high = self._ends
         names = []
         for column, (title, color, *_) in CURVES.items():
             data = self.sources[column].data
@@ -190,17 +190,29 @@ class Convergence(ErrorPlot):
                 height = (np.log10(data["y"][-1]) - low) / (high - low)
                 names.append((height, float(data["x"][-1]), title, color))
         for iteration in self.sources["answer"].data["x"]:
-            names.append((0.04, float(iteration), "exact", ERROR))
+            foot = FOOT / self._inner_height
+            names.append((foot, float(iteration), "exact", ERROR))
         names.sort()
         apart = APART * self.type_size / self._inner_height
         heights = spread([height for height, *_ in names], apart)
         self.fill(
             "names",
             x=[x for _, x, *_ in names],
-            y=(10.0 ** (low + (high - low) * heights)).tolist(),
+            y=self._at(heights).tolist(),
             text=[title for *_, title, _ in names],
             text_color=[color for *_, color in names],
         )
+
+    @property
+    def _ends(self) -> Floats:
+        """Logarithms of the ends of the axis up, shape (2,)."""
+        axis = self.figure.y_range
+        return np.log10([axis.reset_start, axis.reset_end])
+
+    def _at(self, heights: Floats) -> Floats:
+        """Values at heights over that of the axis, shape (n,) each."""
+        low, high = self._ends
+        return np.asarray(10.0 ** (low + (high - low) * heights))
 
     @property
     def words(self) -> str:
@@ -227,9 +239,13 @@ class Convergence(ErrorPlot):
 
 
 def spread(heights: Sequence[float], apart: float) -> Floats:
-    """Ascending heights between 0 and 1, moved until they are `apart`, shape (n,)."""
+    """Ascending heights between 0 and 1, moved until they are `apart`, shape (n,).
+
+    Half of that is free below the lowest one.
+    """
     steps = apart * np.arange(len(heights))
-    moved = np.maximum.accumulate(np.array(heights) - steps)
+    raised = np.maximum(heights, 0.5 * apart)
+    moved = np.maximum.accumulate(raised - steps)
     # What was pushed beyond the upper end goes down, and others before it.
     highest = 1.0 - apart * len(heights)
     return np.asarray(np.minimum(moved, highest) + steps)

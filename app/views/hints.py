@@ -16,6 +16,8 @@ UNDER = 26.0
 BELOW = 26.0
 """Distances of marks from a side of the bodies, under an arrow, and below the contact,
 px."""
+PADDING = 10.0
+"""Width of a mark beside its text, px."""
 BROAD = 420.0
 """Length of bodies from which two marks have room beside each other, px."""
 RUBBING = 0.55
@@ -38,8 +40,12 @@ def hints_of(picture: Picture) -> Columns:
             anchors.append(np.array([x - ASIDE, 0.5 * top]))
             aligns.append("right")
         else:
-            texts.append(f"↖ {PULLED}")
-            anchors.append(np.array([x + ASIDE, 0.5 * top - UNDER]))
+            text = f"↖ {PULLED}"
+            texts.append(text)
+            # It ends within the picture.
+            right = layout.width - layout.origin[0]
+            begin = right - layout.letter * len(text) - PADDING
+            anchors.append(np.array([min(x + ASIDE, begin), 0.5 * top - UNDER]))
             aligns.append("left")
     texts.append(RUBS)
     aligns.append("center")

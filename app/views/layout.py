@@ -48,6 +48,10 @@ SIDES = *BESIDE, "bottom", "top"
 """Sides of bodies, those beside them first."""
 EACH = " each"
 """Words behind the value of several equal loads."""
+LONGEST = 1.6
+"""Largest length of an arrow over that of the largest value when arrows were scaled."""
+WORD = 12
+"""Letters of the value of a load, about."""
 NARROW = 560.0
 """Width below which keys take two lines, px."""
 LARGER = 1.5
@@ -115,7 +119,15 @@ class Layout:
             self.angle = -0.5 * math.pi
         self.arrow = min(max(0.19 * height, 18.0), 38.0)
         self.deepest = max(DEEPEST, 0.1 * height)
+        # Words of a load on top that have no room beside its arrows stand over them.
+        self._has_words_over = False
         self._fit()
+        for act in self.description.acts:
+            is_above = act.side == "top" and not self.angle
+            if is_above and not self.has_room_beside(act, act.points_at(0)):
+                self._has_words_over = True
+        if self._has_words_over:
+            self._fit()
 
     def _fit(self) -> None:
         """Fit the bodies and their largest motion between the margins."""
@@ -183,6 +195,7 @@ class Layout:
             room["top"] = max(room["top"], self.arrow + 10.0) + 2.2 * self.letter
         for act, count in zip(acts, self.equals, strict=True):
             room["top"] += self.row * self.is_told_above(act, count)
+        room["top"] += self.row * self._has_words_over
         return room["left"], room["right"], room["bottom"], room["top"]
 
     def _acts_on_bodies(self, act: Act) -> bool:
@@ -243,9 +256,28 @@ class Layout:
             yield "bottom", FOOTING + 1.2 * self.row
         elif not self.is_told_above(act, count):
             size += self.letter * (len(act.symbol) + len(act.unit) + 9)
+        else:
+            # Beside words an arrow has room, without them it needs its own.
+            size = max(size, self.arrow + 10.0)
         if act.outward is not None:
             size += self.arrow
         yield act.side, size
+
+    def has_room_beside(self, act: Act, places: Array) -> bool:
+        """Check whether the words of a load on top have room beside its arrows.
+
+        The arrows stand at places, (n, 2), over the length and height of all bodies.
+        """
+        across = self.local(places * self.size)[:, 0] + self.origin[0]
+        if is_at_left(places):
+            room = across.min()
+        else:
+            room = self.width - across.max()
+        if is_aside(act):
+            room -= LONGEST * self.arrow
+        # A load that varies along its side has the values at both ends.
+        values = 2 if act.values.ndim > 1 else 1
+        return bool(room > self.letter * (len(act.symbol) + values * WORD))
 
     def is_told_above(self, act: Act, count: int) -> bool:
         """Check whether words of a load stand in a row above all else.
@@ -295,6 +327,11 @@ def turned(points: Array, angle: float) -> Array:
     cos = math.cos(angle)
     sin = math.sin(angle)
     return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
+
+
+def is_at_left(places: Array) -> bool:
+    """Check whether words of a load at places, (n, 2), stand at their left."""
+    return float(np.mean(places[:, 0])) < 0.45
 
 
 def is_aside(act: Act) -> bool:

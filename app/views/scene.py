@@ -40,8 +40,9 @@ HEIGHT = 190.0
 NEAR = 22.0
 CLOSE = 14.0
 """Distances within which a handle is held, and an interface is tapped, px."""
-KEPT = 0.3, 1.5
-"""Largest values over full length between which arrows keep their scale."""
+KEPT = 0.3, 1.15
+"""Largest values over full length between which arrows keep their scale: longer ones
+would end outside of the picture."""
 WIDEST = 9.0
 FAINTEST = 0.01
 """Width of the line of the largest thrust, px, and share of it below which a thrust has

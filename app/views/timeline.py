@@ -92,7 +92,7 @@ class Timeline(View):
         self.fill("area", x=times, y2=heights[0])
         titles = [title for title, _ in paths]
         for path, title in zip_longest(PATHS, titles, fillvalue=""):
-            self.show(path, title)
+            self.show(path, title, may_come_back=False)
         # On a phone the names of more than two paths fill the line.
         has_room = count <= 2 or not self.state.is_narrow
         self.show("time", has_room and f"t in {unit.name}")

@@ -360,12 +360,14 @@ class View:
         box.js_on_event(LegendItemClick, hide)
         return box
 
-    def show(self, name: str, wanted: bool | str) -> None:
+    def show(
+        self, name: str, wanted: bool | str, *, may_come_back: bool = True
+    ) -> None:
         """Show or hide an entry of the legend, or give it another title.
 
-        Nothing is hidden that comes back with the next frame.
+        Nothing is hidden that may come back with the next frame.
         """
-        if self.state.is_fleeting and not wanted:
+        if may_come_back and self.state.is_fleeting and not wanted:
             return
         item = self._items.get(name)
         if item is not None:

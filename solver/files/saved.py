@@ -17,8 +17,10 @@ import numpy as np
 from solver.files.curves import messages, read_tables
 from solver.files.disk import LARGEST, TOO_LARGE, read_bytes, whole_file
 from solver.files.meshes import read_meshes
+from solver.files.table_lines import text_of
 from solver.latin import Answer, Iterate, Solution
 from solver.reference.distance import determinate_forces, held_instants
+from solver.refusal import Words
 from solver.scenes import CATALOGUE
 from solver.scenes.remarks import remarks_on
 from solver.settings.scene import Settings
@@ -60,14 +62,14 @@ def settings_from_toml(text: str) -> Settings:
     return read_settings(text, "settings file")[0]
 
 
-def read_settings(text: str, source: str) -> tuple[Settings, Mapping[str, str]]:
+def read_settings(text: bytes | str, source: str) -> tuple[Settings, Mapping[str, str]]:
     """Settings of a saved file in TOML, and messages on settings of an older meaning.
 
     The messages stand under the names of the settings. The file has a scene's name
-    under `scene`, and settings by name; its curves name no other files. Refusals begin
-    with the source.
+    under `scene`, and settings by name; its curves name no other files. A refusal of
+    what is no TOML names the source.
     """
-    values = _parsed(text, source, text)
+    values = _parsed(text, "the settings file", source)
     values.pop("case", None)
     number = format_in(values)
     settings = scene_settings(values.pop("scene", None)).checked(values)
@@ -170,15 +172,14 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
 def _parsed(data: bytes | str, name: str, shown: str) -> dict[str, Any]:
     """Content of a text in TOML; refusals have its name, and show `shown`."""
     if len(data) > LARGEST:
-        raise SettingError(name, shown[:60], "TOML", TOO_LARGE)
+        raise SettingError(name, shown, "TOML", TOO_LARGE)
+    refuse = partial(SettingError, name, shown, "TOML")
+    text = text_of(data, refuse, "save the settings again")
     try:
-        text = data
-        if isinstance(text, bytes):
-            text = text.decode("utf-8-sig")
         return tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
         reason = " ".join(str(problem).split())
-        raise SettingError(name, shown, "TOML", f"mend it: {reason}") from None
+        raise refuse(f"mend it: {reason}") from None
 
 
 def check_keys(
@@ -266,6 +267,8 @@ def placed(place: str) -> Iterator[None]:
 
 def scene_settings(scene: object) -> type[Settings]:
     """Settings of a scene by its name in the catalogue."""
+    if scene is None:
+        scene = Words("missing")
     if not isinstance(scene, str) or scene not in CATALOGUE:
         raise SettingError("scene", scene, ", ".join(CATALOGUE), "choose one of these")
     return CATALOGUE[scene]

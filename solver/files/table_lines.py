@@ -93,8 +93,10 @@ def line_of(
     return Line(number, text, tuple(cells), are_numbers, are_words, is_comment)
 
 
-def text_of(data: bytes | str, refuse: Refuse) -> str:
-    """Text of a file; refuse other content."""
+def text_of(
+    data: bytes | str, refuse: Refuse, remedy: str = "save the table as CSV"
+) -> str:
+    """Text of a file; refuse other content, and say what to do."""
     if isinstance(data, str):
         text = data
     else:
@@ -109,7 +111,7 @@ def text_of(data: bytes | str, refuse: Refuse) -> str:
     # A file of DOS may end with Ctrl-Z.
     text = text.removeprefix("\ufeff").rstrip("\x1a")
     if re.search(r"[\0-\x08\x0e-\x1f]", text):
-        raise refuse("it is no text: save the table as CSV")
+        raise refuse(f"it is no text: {remedy}")
     return text
 
 

@@ -172,7 +172,10 @@ def loop_in(table: Table, axes: Axes) -> MeasuredLoop:
 def _check_rows(table: Table, title: str, values: Array) -> None:
     """Refuse values, (n_rows,), that are too few or all the same."""
     if len(values) < FEWEST:
-        raise table.refuse(f"it has {len(values)} rows: give at least {FEWEST}")
+        rows = f"{len(values)} rows"
+        if len(values) == 1:
+            rows = "1 row"
+        raise table.refuse(f"it has {rows}: give at least {FEWEST}")
     if np.ptp(values) == 0.0:
         raise table.refuse(f"{title} has the same value in all rows")
 

@@ -8,6 +8,8 @@ from itertools import chain, product
 from pathlib import Path
 from typing import Any
 
+import panel as pn
+import panel_material_ui as pmui
 import param
 import pytest
 
@@ -308,6 +310,25 @@ def test_groups_of_another_scene_take_the_places_of_the_closed_ones() -> None:
     assert is_kept == [False] + [True] * (len(before) - 1)
 
 
+def test_a_message_on_settings_of_another_scene_stays_in_sight() -> None:
+    state = of_scene("bar")
+    controls = Controls(state)
+    groups = controls._groups
+    groups.active = [len(groups) - 1]
+    (opened,) = groups[-1].select(pmui.FileInput)
+    of_fault = b'scene = "fault"\nfriction_law = "slip-dependent"\nslip_length = 1e-3'
+    opened.param.update(filename="old.toml", value=of_fault)
+    assert state.settings.scene == "fault"
+    assert groups.active == [len(groups) - 1]
+    said = " ".join(str(pane.object) for pane in groups[-1].select(pn.pane.HTML))
+    assert "old.toml: settings of the scene fault. " in said
+    assert "both sides" in said
+    # A scene that a person chooses has none.
+    state.choose_scene("block")
+    said = " ".join(str(pane.object) for pane in groups[-1].select(pn.pane.HTML))
+    assert "old.toml" not in said
+
+
 def test_each_scene_keeps_its_settings() -> None:
     state = of_scene("bar")
     controls = Controls(state)
@@ -437,13 +458,35 @@ def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:
     assert "much" in said
     # The button does not say what became of the file.
     assert opener.file.uploaded_label == "Open"
-    assert "empty.csv was refused" in open_file("empty.csv", "")
+    # As the browser has an empty file: without a name.
+    opener.file.param.update(filename=None, value=None)
+    assert "The file was refused. The table" in str(opener.message.object)
     assert "bad.csv" not in open_file("load.csv", "time,force\n0,0\n1,800\n")
     assert state.refusal == ""
     assert opener.columns_button.visible
     state.choose_scene("block")
     assert opener.message.object == ""
     assert not opener.columns_button.visible
+
+
+def test_settings_are_read_as_tables_are_and_what_is_none_is_not_shown() -> None:
+    state = of_scene("bar")
+    opener = TableOpener(state, "Open", ".toml,.csv", 280)
+
+    def open_file(name: str, data: bytes) -> str:
+        opener.file.filename = name
+        opener.file.value = data
+        return str(opener.message.object)
+
+    text = dump(state.settings.replace(peak=700.0))
+    open_file("of_an_editor.toml", text.encode("utf-16"))
+    assert held(state, "peak") == 700.0
+    cut = open_file("cut.toml", text[:40].encode())
+    assert cut.startswith("cut.toml was refused. The settings file cannot be “cut")
+    picture = open_file("picture.toml", bytes(range(1, 200)))
+    assert "it is no text: save the settings again" in picture
+    assert "scene cannot be missing" in open_file("part.toml", b"peak = 600.0")
+    assert held(state, "peak") == 700.0
 
 
 def test_a_number_is_read_in_each_unit_of_its_kind() -> None:

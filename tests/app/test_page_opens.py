@@ -16,6 +16,7 @@ from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
 import app.supervisor
+from app.browser import Browser
 from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
 from app.page import Page, open_page
@@ -117,6 +118,32 @@ def test_the_slider_names_the_iterate_of_the_status_line(document: Document) -> 
         assert last < int(found[1]) == state.newest.iteration
         last = int(found[1])
         assert page._live.transport.scrub.label == f"Iteration {last} of {last}"
+
+
+@pytest.mark.usefixtures("orders", "document")
+def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # A slider that is dragged has not the document's lock: what is told then comes to
+    # the browser alone.
+    monkeypatch.setattr(Browser, "tell", lambda browser, **values: None)
+    page, _ = small_page()
+    page.state.is_new = True
+    page.state.drag("peak", 1000.0)
+    assert not page.state.is_new
+
+
+@pytest.mark.usefixtures("orders", "document")
+def test_the_browser_answers_once_a_tab_that_is_new_is_on_the_page() -> None:
+    page, _ = small_page()
+    shown = []
+    page.state.param.watch(lambda event: shown.append(list(page._main)), "given")
+    page.state.tab = "Fit"
+    assert shown[-1] == list(page._main) != [page._beside]
+    count = len(shown)
+    page.state.tab = "Live"
+    page.state.tab = "Fit"
+    assert len(shown) == count
 
 
 @pytest.mark.usefixtures("orders", "document")

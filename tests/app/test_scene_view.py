@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -309,6 +310,52 @@ def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_narrow_picture()
         view.lay_out(width, 150.0)
         view.update(frame, Selection(0.25), None)
         assert keys.visible == is_seen
+    marks = view.sources["hints"].data
+    pulled = marks["text"].index("↖ pulled here")
+    letter = view.picture.layout.letter  # type: ignore[union-attr]
+    end = marks["x"][pulled] + letter * len(marks["text"][pulled])
+    assert end + 10.0 <= width
     view.state.is_new = False
     view.update(frame, Selection(0.25), None)
     assert keys.visible
+
+
+def test_a_path_that_is_gone_has_no_name_before_the_reference_comes() -> None:
+    before = frame_of(small("bar"))
+    frame = frame_of(small("bar").replace(peak=0.0))
+    state = PageState(frame.run.settings)
+    view = Timeline(state)
+    _ = view.figure
+    for number, shown_frame in enumerate((before, frame), start=1):
+        run = replace(shown_frame.run, number=number, is_compared=False)
+        state.newest = state.frame = replace(shown_frame, run=run)
+        state.ghost = before
+        view.update(state.frame, Selection(), state.ghost)
+    (legend,) = view.figure.legend
+    names = [item.label.value for item in legend.items if item.visible]
+    assert names == ["p = 5 kN/m", "t in s"]
+
+
+@pytest.mark.parametrize("phase", [0.75, 1.0])
+def test_handles_at_the_ends_of_a_bar_are_within_reach_on_a_phone(phase: float) -> None:
+    moved = {"right_displacement": 2e-4, "support_displacement": 1e-4}
+    frame = frame_of(small("bar").replace(right_end="held", **moved))
+    view = Scene(PageState(frame.run.settings))
+    _ = view.figure
+    view.lay_out(390.0, 150.0)
+    view.update(frame, Selection(phase), None)
+    handles = view.sources["marks"].data
+    assert len(handles["x"]) >= 2
+    assert min(handles["x"]) > 0.0
+    assert max(handles["x"]) < 390.0
+
+
+@pytest.mark.parametrize("share", [1.14, 1.2, 1.45])
+def test_the_handle_of_a_pressure_that_has_grown_stays_in_the_picture(
+    share: float,
+) -> None:
+    settings = small("strand")
+    view = shown(frame_of(settings))
+    frame = frame_of(settings.replace(pressure=share * settings.pressure))
+    view.update(frame, Selection(0.75), None)
+    assert max(view.sources["marks"].data["y"]) < HEIGHT - 3.0

@@ -22,7 +22,7 @@ from app.state import PageState, default_settings
 from app.views.bases import Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
-from app.views.errors import CURVES, Convergence
+from app.views.errors import CURVES, HEIGHT, LEAST, Convergence
 from app.views.loops import HysteresisLoop
 from app.views.pieces import PiecesView
 from app.views.rope import AxialForces
@@ -345,6 +345,24 @@ def test_an_indicator_widens_the_axis_of_errors_downwards_alone(
     assert shown_ends == pytest.approx(ends)
     errors = view.sources["error_force"].data["y"]
     assert ends[0] < errors[-1] < ends[1]
+
+
+@pytest.mark.parametrize("value", [0.0, 1e-16])
+def test_an_error_of_rounding_or_zero_is_drawn_at_the_foot_with_a_whole_name(
+    value: float,
+) -> None:
+    last = frames_of("bar")[1]
+    errors = last.history["error_force"].copy()
+    errors[-1] = value
+    history = {**last.history, "error_force": errors}
+    view = view_of(Convergence, replace(last, history=history))
+    drawn = view.sources["error_force"].data
+    assert len(drawn["x"]) == len(errors)
+    axis = view.figure.y_range
+    assert axis.start < drawn["y"][-1] <= 1.001 * LEAST
+    names = view.sources["names"].data
+    lowest = np.log10(min(names["y"]) / axis.start) / np.log10(axis.end / axis.start)
+    assert lowest * HEIGHT > 0.5 * view.type_size
 
 
 def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None:

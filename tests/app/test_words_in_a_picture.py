@@ -53,6 +53,19 @@ def test_words_of_large_type_lie_on_no_arrow(frame: Frame, scene: Scene) -> None
             assert not meet(box, places, places), (phase, text)
 
 
+@pytest.mark.parametrize("width", [390.0, 560.0])
+def test_words_of_a_pressure_have_a_row_of_their_own_where_no_load_leaves_room_beside(
+    width: float,
+) -> None:
+    view = shown(frame_of(small("strand").replace(peak=0.0)))
+    view.lay_out(width, 0.25 * width + 50.0)
+    view.update(view.state.frame, Selection(0.75), None)
+    (pressure,) = boxes_of_words(view)
+    places = shafts(picture_of(view))
+    assert not meet(pressure[1], places, places)
+    assert pressure[1][1, 1] < view.picture.layout.height + 3.0  # type: ignore[union-attr]
+
+
 def test_words_stand_above_bodies_that_they_would_leave_no_room_beside() -> None:
     """Three turns on a bollard, both ends named, in a picture on a small projector."""
     view = shown(frame_of(LESSONS["turns-on-a-bollard"].settings), 1.0)

@@ -19,6 +19,7 @@ from pages import (
     figures,
     go,
     is_solved,
+    slider,
     status,
     visits,
 )
@@ -125,6 +126,22 @@ def test_on_a_phone_in_the_dark_nothing_is_wider_than_the_screen_and_the_scene_i
     # At its foot a number is not its slider.
     load.click(position={"x": 4, "y": 21}, trial=True)
     figure(page, 0).click(trial=True)
+    # A finger that scrolls the controls sets nothing on its way.
+    box = slider(page, "Peak load").locator("..").bounding_box()
+    assert box is not None
+    rail = box["x"] + 200.0, box["y"]
+    swipe(page, rail, (rail[0], rail[1] - 100.0))
+    expect(load).to_have_value("900")
+    moved = slider(page, "Peak load").locator("..").bounding_box()
+    assert moved is not None
+    assert moved["y"] < box["y"] - 50.0
+    button(page, "Close drawer").click()
+    # A dialog has all its buttons, and the one that closes it.
+    button(page, "Take away").click()
+    dialog = page.get_by_role("dialog")
+    for name in ("Copy link", "close"):
+        expect(dialog.get_by_role("button", name=name)).to_be_in_viewport(ratio=1.0)
+    close_dialog(page)
 
 
 def test_keys_open_dialogs_selects_and_the_view_for_a_projector(page: Page) -> None:
@@ -159,6 +176,10 @@ def test_keys_open_dialogs_selects_and_the_view_for_a_projector(page: Page) -> N
     expect(choice).to_be_focused()
     go(page, f"?{ANSWER}")
     expect(choice).to_have_text("sine")
+    # A tooltip takes no click from the next button.
+    button(page, "Take away").hover()
+    expect(page.get_by_role("tooltip")).to_be_visible()
+    button(page, "Keys and words").click(trial=True)
     count = page.locator(".bk-Figure").count()
     page.locator(".sentence").click()
     page.keyboard.press("p")

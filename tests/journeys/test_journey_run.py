@@ -140,7 +140,7 @@ def test_what_is_of_a_run_before_fades_until_a_picture_of_the_new_one_is_there(
     is_solved(page)
     for is_stale, opacity in (("true", "0.3"), ("false", "1")):
         page.evaluate(f"({MODEL})('browser').is_stale = {is_stale}")
-        for part in (".scene", ".plots", ".words"):
+        for part in (".scene > div", ".plots", ".words"):
             expect(page.locator(part).first).to_have_css("opacity", opacity)
 
 
