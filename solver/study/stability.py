@@ -68,8 +68,8 @@ MEANING: dict[str, str] = {
         "several solutions or none, or breaks a law"
     ),
     Verdict.WRONG: (
-        "called converged with a larger error, certified and breaks a law, not finite, "
-        "or ended in a warning or an exception"
+        "called converged with a larger error, certified and breaks a law by more than "
+        "rounding, not finite, or ended in a warning or an exception"
     ),
 }
 """Meaning of every verdict."""
@@ -184,6 +184,8 @@ class Outcome:
         Status of the run with its advice, or `REFUSED` or `BROKEN` with the reason.
     laws, worst_law
         Largest violation of any law by the answer, and the kind of that law.
+    rounding
+        Violation of balance that rounding of the displacements leaves.
     reference_laws
         Largest violation by the reference; a reference that breaks a law is no judge.
     doubt
@@ -202,6 +204,7 @@ class Outcome:
     error_force: float = math.nan
     laws: float = math.nan
     worst_law: str = ""
+    rounding: float = 0.0
     reference_laws: float = math.nan
     doubt: str = ""
 
@@ -255,6 +258,7 @@ def _measured(solution: Solution) -> Outcome:
         behaviour=iterate.violation,
         laws=laws.largest,
         worst_law=laws.worst,
+        rounding=laws.rounding,
     )
     return _beside_reference(outcome, iterate)
 
@@ -332,8 +336,9 @@ class Judgement(NamedTuple):
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Judgement:
     """Judge an outcome by its numbers and its status alone.
 
-    Laws come first, and of a certified answer they alone count. Other answers are right
-    up to the relative errors `force` of the contact force and `displacement`.
+    Laws come first, and of a certified answer they alone count, up to what rounding of
+    its displacements leaves. Other answers are right up to the relative errors `force`
+    of the contact force and `displacement`.
     """
     # A run without advice leaves its user alone, however it ends.
     if outcome.ending == BROKEN or not outcome.advice:
@@ -343,7 +348,10 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Jud
     if outcome.laws <= AT_ROUNDING:
         return Judgement(Verdict.RIGHT, Judge.LAWS)
     if outcome.certified:
-        return Judgement(Verdict.WRONG, Judge.LAWS)
+        verdict = Verdict.WRONG
+        if outcome.laws <= outcome.rounding:
+            verdict = Verdict.RIGHT
+        return Judgement(verdict, Judge.LAWS)
     has_reference = outcome.reference_laws <= AT_ROUNDING
     is_force_near = outcome.error_force <= force
     is_near = is_force_near and outcome.error_displacement <= displacement
