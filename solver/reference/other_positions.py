@@ -56,8 +56,9 @@ def other_positions(
     all_jumps = jumps(problem)
     moved = all_jumps @ motions
     scale = problem.scales.displacement
-    jumped = all_jumps @ displacement / scale
-    hinders, room = _contacts(rules, jumped, force / problem.scales.force)
+    hinders, room = _contacts(
+        rules, all_jumps @ displacement / scale, force / problem.scales.force
+    )
     has_acted = np.logical_or.accumulate(force.any(axis=0))
     # Mostly what hinders motions at all instants hinders all motions already.
     if are_independent(moved[hinders[:, has_acted].all(axis=1)]):

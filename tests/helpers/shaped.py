@@ -181,7 +181,6 @@ def leaf(elements: int, *, friction: float, count: int = 1, cuts: int = 1) -> Bo
 def leaf_spring(elements: int, count: int, *, friction: float = 0.3) -> Bodies:
     """Clamped leaves of 0.5 m by 5 mm, pressed together, whose end is moved up."""
     t = np.linspace(0.0, 1.0, 9)
-    still = 0.0 * t
     x = np.linspace(0.0, 0.5, elements + 1)
     every = np.arange(elements + 1)
     line = Beam(np.stack([x, 0.0 * x], axis=1), area=5e-3, second_moment=1.04e-8)
@@ -202,7 +201,7 @@ def leaf_spring(elements: int, count: int, *, friction: float = 0.3) -> Bodies:
     for number in range(count):
         for axis in range(3):
             name = f"clamp {number} {axis}"
-            held.append(Held(name, number, every[:1], axis, still))
+            held.append(Held(name, number, every[:1], axis, 0.0 * t))
     path = 0.01 * np.clip(2.0 * t - 0.5, 0.0, 1.0)
     held.append(Held("end", 0, every[-1:], 1, path))
     return Bodies(bodies, joints, held, loads, t, 1.0)

@@ -87,8 +87,9 @@ def _stiffness_beside(
         whole[:, 0, side] = along
         whole[:, 1, side] = np.where(is_beam, tension, along)
         squeezed = np.minimum(squeezed, across[of_joint] * share)
-    lines = _resting_lines(cut)[numbers][of_joint]
-    return NodalStiffness(whole, local, squeezed, lines)
+    return NodalStiffness(
+        whole, local, squeezed, _resting_lines(cut)[numbers][of_joint]
+    )
 
 
 def _resting_lines(cut: CutBodies) -> Indices:
