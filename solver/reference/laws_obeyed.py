@@ -11,7 +11,7 @@ of its own size: no stiffness has to make a force of a length.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import astuple, dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -27,10 +27,6 @@ ROUNDED = 1e-4
 that counts as a size of jumps: both leave rounding, and may be much larger."""
 OPENED = 1e-9
 """Opening, as a share of the largest, from which on a bond is broken."""
-ROUNDED_OFF = 8.0 * float(np.finfo(float).eps)
-"""Share of the forces inside elements that rounding of the displacements leaves out of
-balance: a column of 40 m that leans on one contact, 1e4 m away, has 1 eps (measured).
-"""
 KNOWN = Contact, Dirichlet, Neumann, Perfect
 """Laws that are checked."""
 
@@ -57,9 +53,6 @@ class LawResiduals:
     friction
         Violation of Coulomb's law: no force above its bound, no slip below it, none
         along the force.
-    rounding
-        Violation of balance that the digits of the displacements leave, whatever they
-        are: no law, but what of `balance` says nothing.
     """
 
     balance: float
@@ -67,23 +60,17 @@ class LawResiduals:
     glued: float
     pressing: float
     friction: float
-    rounding: float
 
     @property
     def largest(self) -> float:
         """Largest of all violations; NaN where one is."""
-        return float(np.max(self._of_laws))
+        return float(np.max(astuple(self)))
 
     @property
     def worst(self) -> str:
         """Kind of the law whose violation is the largest."""
         names = [field.name for field in fields(self)]
-        return names[int(np.argmax(self._of_laws))]
-
-    @property
-    def _of_laws(self) -> tuple[float, ...]:
-        """Violations of all laws."""
-        return self.balance, self.held, self.glued, self.pressing, self.friction
+        return names[int(np.argmax(astuple(self)))]
 
 
 @dataclass(frozen=True)
@@ -120,7 +107,7 @@ def law_residuals(
     displacement = answer.displacement / problem.scales.displacement
     force = answer.contact_force / problem.scales.force
     held, prescribed = _prescribed(problem)
-    missing, size, elastic = _missing_force(problem, displacement, force, held)
+    missing, size = _missing_force(problem, displacement, force, held)
     interfaces = _interface_fields(problem, displacement, force)
     length = ROUNDED * max(largest_size(displacement), size * _softest(problem))
     length = max(length, size / _stiffest(problem))
@@ -139,25 +126,21 @@ def law_residuals(
         glued=glued,
         pressing=largest_size(*across),
         friction=largest_size(*along),
-        rounding=_share(ROUNDED_OFF * elastic, size),
     )
 
 
 def _missing_force(
     problem: Problem, displacement: Array, force: Array, held: Indices
-) -> tuple[Array, float, float]:
-    """Force that balance lacks, (n_dofs, n_instants), and two sizes of forces, scaled.
+) -> tuple[Array, float]:
+    """Force that balance lacks, (n_dofs, n_instants), and the size of forces, scaled.
 
-    The first is that of `force_size`, the second that of forces inside elements without
-    signs. `displacement` has shape (n_dofs, n_instants), `force` (n_forces,
-    n_instants); at the degrees of freedom `held`, (n_held,), the support gives what is
-    lacking.
+    `displacement` has shape (n_dofs, n_instants), `force` (n_forces, n_instants); at
+    the degrees of freedom `held`, (n_held,), the support gives what is lacking.
     """
     outer = _outer_force(problem)
     inner, elastic = _inner_force(problem, displacement)
     missing = inner - outer - _contact_force(problem, force)
-    size = force_size(force, outer, elastic, missing[held], HIDDEN)
-    return missing, size, largest_size(elastic)
+    return missing, force_size(force, outer, elastic, missing[held], HIDDEN)
 
 
 def _softest(problem: Problem) -> float:

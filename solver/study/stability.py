@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.latin import Ending, Iterate, Solution
+from solver.latin.end.certified import Answer
 from solver.latin.end.status_step import states_of, status_step
 from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.distance import distance_to
@@ -69,7 +70,7 @@ MEANING: dict[str, str] = {
     ),
     Verdict.WRONG: (
         "called converged with a larger error, certified and breaks a law by more than "
-        "rounding, not finite, or ended in a warning or an exception"
+        "the residual that it states, not finite, or ended in a warning or an exception"
     ),
 }
 """Meaning of every verdict."""
@@ -184,8 +185,8 @@ class Outcome:
         Status of the run with its advice, or `REFUSED` or `BROKEN` with the reason.
     laws, worst_law
         Largest violation of any law by the answer, and the kind of that law.
-    rounding
-        Violation of balance that rounding of the displacements leaves.
+    residual
+        Residual that a certified answer states.
     reference_laws
         Largest violation by the reference; a reference that breaks a law is no judge.
     doubt
@@ -204,7 +205,7 @@ class Outcome:
     error_force: float = math.nan
     laws: float = math.nan
     worst_law: str = ""
-    rounding: float = 0.0
+    residual: float = math.nan
     reference_laws: float = math.nan
     doubt: str = ""
 
@@ -247,6 +248,9 @@ def _measured(solution: Solution) -> Outcome:
     if solution.records:
         seconds = solution.records[-1].seconds
         estimated_error = solution.records[-1].estimated_error
+    residual = math.nan
+    if isinstance(iterate, Answer):
+        residual = iterate.residual
     outcome = Outcome(
         ending=solution.status.ending,
         advice=solution.status.advice,
@@ -258,7 +262,7 @@ def _measured(solution: Solution) -> Outcome:
         behaviour=iterate.violation,
         laws=laws.largest,
         worst_law=laws.worst,
-        rounding=laws.rounding,
+        residual=residual,
     )
     return _beside_reference(outcome, iterate)
 
@@ -336,9 +340,10 @@ class Judgement(NamedTuple):
 def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Judgement:
     """Judge an outcome by its numbers and its status alone.
 
-    Laws come first, and of a certified answer they alone count, up to what rounding of
-    its displacements leaves. Other answers are right up to the relative errors `force`
-    of the contact force and `displacement`.
+    Laws come first, and of a certified answer they alone count, up to the residual that
+    it states: a body that deforms far, or is stiff beside what holds it, has no digits
+    for less. Other answers are right up to the relative errors `force` of the contact
+    force and `displacement`.
     """
     # A run without advice leaves its user alone, however it ends.
     if outcome.ending == BROKEN or not outcome.advice:
@@ -349,7 +354,7 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Jud
         return Judgement(Verdict.RIGHT, Judge.LAWS)
     if outcome.certified:
         verdict = Verdict.WRONG
-        if outcome.laws <= outcome.rounding:
+        if outcome.laws <= outcome.residual:
             verdict = Verdict.RIGHT
         return Judgement(verdict, Judge.LAWS)
     has_reference = outcome.reference_laws <= AT_ROUNDING

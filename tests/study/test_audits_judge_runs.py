@@ -86,9 +86,9 @@ def changed(**changes):
         (changed(certified=True, error_force=0.0), Verdict.WRONG, Judge.LAWS),
         (changed(certified=True, laws=2.0 * AT_ROUNDING), Verdict.WRONG, Judge.LAWS),
         (changed(certified=True, laws=math.nan), Verdict.WRONG, Judge.LAWS),
-        # What moves far leaves rounding, which proves nothing against an answer.
-        (changed(certified=True, laws=1e-7, rounding=2e-7), Verdict.RIGHT, Judge.LAWS),
-        (changed(certified=True, laws=1e-7, rounding=9e-8), Verdict.WRONG, Judge.LAWS),
+        # No more is claimed than the residual.
+        (changed(certified=True, laws=1e-7, residual=2e-7), Verdict.RIGHT, Judge.LAWS),
+        (changed(certified=True, laws=1e-7, residual=9e-8), Verdict.WRONG, Judge.LAWS),
         (
             changed(certified=True, laws=3e-7, reference_laws=3e-7, error_force=0.0),
             Verdict.WRONG,
