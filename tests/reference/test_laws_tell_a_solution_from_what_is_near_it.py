@@ -227,6 +227,27 @@ def test_a_bond_that_has_opened_is_gone_for_good():
     assert law_residuals(found, never_opened).friction > SEEN
 
 
+def test_rounding_opens_no_bond():
+    # All that the sides are apart, before anything presses, is rounding.
+    pressed = [[0.0, 0.0], [0.4, -1.0], [1.0, -1.0]]
+    values = (
+        PRESSED
+        | GENERAL
+        | {
+            "top": "displacement",
+            "top_normal_displacement": 1e-5,
+            "top_normal_load": pressed,
+            "top_tangential_displacement": 2e-5,
+        }
+    )
+    problem = problem_of("block", {**values, "cohesion": 2e7})
+    found = reference_of(problem)
+    displacement = found.displacement.copy()
+    displacement[:, 0] += 1e-15 * np.abs(displacement).max()
+    rounded = spoiled(found, displacement=displacement)
+    assert law_residuals(rounded, problem).friction < ROUNDED
+
+
 def test_prescribed_displacements_are_to_be_there():
     problem = problem_of("block", SMALL["block"])
     found = reference_of(problem)
