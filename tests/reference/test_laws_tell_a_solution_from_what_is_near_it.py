@@ -205,23 +205,31 @@ def test_the_answer_to_another_law_of_contact_breaks_this_one(differs):
     assert foreign.balance < ROUNDED
 
 
-def test_a_bond_that_has_opened_is_gone_for_good():
-    # Lifted until it opens, and then pressed and sheared, where cohesion would carry
-    # again.
-    values = (
+PRESSED_ONLY = [[0.0, 0.0], [0.4, -1.0], [1.0, -1.0]]
+
+
+def moved(course):
+    """Values of a block whose top follows a course, up and down, and is sheared."""
+    return (
         PRESSED
         | GENERAL
         | {
             "top": "displacement",
             "top_normal_displacement": 1e-5,
-            "top_normal_load": [[0.0, 0.0], [0.4, 1.0], [0.7, -1.0], [1.0, -1.0]],
+            "top_normal_load": course,
             "top_tangential_displacement": 2e-5,
         }
     )
+
+
+def test_a_bond_that_has_opened_is_gone_for_good():
+    # Lifted until it opens, and then pressed and sheared, where cohesion would carry
+    # again.
+    values = moved([[0.0, 0.0], [0.4, 1.0], [0.7, -1.0], [1.0, -1.0]])
     bonded = problem_of("block", {**values, "cohesion": 2e7})
     loose = problem_of("block", values)
     assert law_residuals(reference_of(loose), bonded).largest < ROUNDED
-    early = {**values, "top_normal_load": [[0.0, 0.0], [0.4, -1.0], [1.0, -1.0]]}
+    early = moved(PRESSED_ONLY)
     never_opened = problem_of("block", {**early, "cohesion": 2e7})
     found = reference_of(problem_of("block", early))
     assert law_residuals(found, never_opened).friction > SEEN
@@ -229,18 +237,7 @@ def test_a_bond_that_has_opened_is_gone_for_good():
 
 def test_rounding_opens_no_bond():
     # All that the sides are apart, before anything presses, is rounding.
-    pressed = [[0.0, 0.0], [0.4, -1.0], [1.0, -1.0]]
-    values = (
-        PRESSED
-        | GENERAL
-        | {
-            "top": "displacement",
-            "top_normal_displacement": 1e-5,
-            "top_normal_load": pressed,
-            "top_tangential_displacement": 2e-5,
-        }
-    )
-    problem = problem_of("block", {**values, "cohesion": 2e7})
+    problem = problem_of("block", {**moved(PRESSED_ONLY), "cohesion": 2e7})
     found = reference_of(problem)
     displacement = found.displacement.copy()
     displacement[:, 0] += 1e-15 * np.abs(displacement).max()
