@@ -27,7 +27,7 @@ was."""
 POLL_MS = 100.0
 """Time between two looks at a page, ms. By default Playwright looks with each frame
 that is painted, and what goes through all models then takes a core."""
-FAULT = re.compile(r"Traceback|ERROR|WARNING")
+FAULT = re.compile(r"Traceback|ERROR|WARNING|Warning:")
 """In the server's log."""
 CLOSED = re.compile(
     r"^[^\n]*(Failed sending message as connection was closed\n"
