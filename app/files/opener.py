@@ -245,9 +245,9 @@ class TableOpener:
             self.remove_button.label = "Remove"
 
 
-def settings_in(text: bytes, source: str) -> tuple[Settings, str]:
+def settings_in(data: bytes, source: str) -> tuple[Settings, str]:
     """Settings in a file, and a message on them and on what was changed in them."""
-    settings, changed = read_settings(text, source)
+    settings, changed = read_settings(data, source)
     sentences = [f"{source}: settings of the scene {settings.scene}."]
     definitions = settings.definitions()
     for name, reason in changed.items():

@@ -59,17 +59,17 @@ them the slip of a fault is that of one of its sides."""
 
 def settings_from_toml(text: str) -> Settings:
     """Settings of a saved file in TOML, as `read_settings`."""
-    return read_settings(text, "settings file")[0]
+    return read_settings(text, "a text")[0]
 
 
-def read_settings(text: bytes | str, source: str) -> tuple[Settings, Mapping[str, str]]:
+def read_settings(data: bytes | str, source: str) -> tuple[Settings, Mapping[str, str]]:
     """Settings of a saved file in TOML, and messages on settings of an older meaning.
 
     The messages stand under the names of the settings. The file has a scene's name
     under `scene`, and settings by name; its curves name no other files. A refusal of
     what is no TOML names the source.
     """
-    values = _parsed(text, "the settings file", source)
+    values = _parsed(data, "the settings file", source)
     values.pop("case", None)
     number = format_in(values)
     settings = scene_settings(values.pop("scene", None)).checked(values)
