@@ -59,8 +59,9 @@ class Judge(StrEnum):
 
 MEANING: dict[str, str] = {
     Verdict.RIGHT: (
-        "balance and all laws hold up to rounding; or the distance to a reference that "
-        "obeys them is as small as it has to be"
+        "balance and all laws hold up to rounding, or to the residual that a certified "
+        "answer states; or the distance to a reference that obeys them is as small as "
+        "it has to be"
     ),
     Verdict.UNSOLVED: "not the right answer, and the run says so, and what to try",
     Verdict.REFUSED: "a problem without a solution, or senseless, is refused in words",
@@ -76,9 +77,9 @@ MEANING: dict[str, str] = {
 """Meaning of every verdict."""
 JUDGES: dict[str, str] = {
     Judge.LAWS: (
-        "the answer obeys balance and all laws up to rounding, or is certified and "
-        "does not; a certified answer is what the reference's own solver finds, so its "
-        "distance to the reference says nothing"
+        "the answer obeys balance and all laws up to rounding; or it is certified, and "
+        "does so up to the residual that it states, or not: it is what the reference's "
+        "own solver finds, so that its distance to the reference says nothing"
     ),
     Judge.REFERENCE: (
         "by the distance to a reference that obeys them: the incremental solver's, or, "
@@ -104,6 +105,8 @@ PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 AT_ROUNDING = 1e-8
 """Largest violation of any law that rounding may leave, as a share of the largest
 force, or jump."""
+MOST_STATED = 1e-5
+"""Largest residual with which an answer may be called certified."""
 APART = 1e-6
 """Distance above which two fields that solve the equations are two solutions."""
 RIGHT_UP_TO = 1e-6
@@ -354,7 +357,7 @@ def judge(outcome: Outcome, force: float, displacement: float = math.inf) -> Jud
         return Judgement(Verdict.RIGHT, Judge.LAWS)
     if outcome.certified:
         verdict = Verdict.WRONG
-        if outcome.laws <= outcome.residual:
+        if outcome.laws <= outcome.residual <= MOST_STATED:
             verdict = Verdict.RIGHT
         return Judgement(verdict, Judge.LAWS)
     has_reference = outcome.reference_laws <= AT_ROUNDING

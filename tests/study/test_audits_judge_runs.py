@@ -89,6 +89,7 @@ def changed(**changes):
         # No more is claimed than the residual.
         (changed(certified=True, laws=1e-7, residual=2e-7), Verdict.RIGHT, Judge.LAWS),
         (changed(certified=True, laws=1e-7, residual=9e-8), Verdict.WRONG, Judge.LAWS),
+        (changed(certified=True, laws=1e-7, residual=1e-3), Verdict.WRONG, Judge.LAWS),
         (
             changed(certified=True, laws=3e-7, reference_laws=3e-7, error_force=0.0),
             Verdict.WRONG,
