@@ -6,6 +6,7 @@ import asyncio
 import logging
 import os
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
@@ -178,6 +179,15 @@ class PageSocket(WSHandler):
         """Begin to take messages."""
         self.set_nodelay(True)
         return super().open(*args, **kwargs)
+
+    def ping(self, data: str | bytes = b"") -> None:
+        """Ask the browser for a sign of life; one that closes answers no more.
+
+        `on_close` is about to let go of it. Bokeh would do so at once, and then once
+        more, which is an error.
+        """
+        with suppress(WebSocketClosedError):
+            super().ping(data)
 
 
 class Compressed(GZipContentEncoding):
