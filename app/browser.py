@@ -68,6 +68,15 @@ idle(() => { browser.shown = given }, {timeout: 5000})
 """Script that tells that the values are shown which the page gave to widgets. Beside
 pictures that follow each other the browser may never be idle, and a person's choice of
 such a value is not to wait."""
+ACTS = """
+const count = ({repeat}) => { browser.acts += repeat ? 0 : 1 }
+for (const kind of ["pointerdown", "keydown"]) {
+  addEventListener(kind, count, {capture: true})
+}
+"""
+"""Script that sends a message before that of any widget that a person uses. BokehJS
+sends models whole that have come since its last message, and the server would warn of a
+widget among them."""
 LISTEN = """
 const measure = () => {
   browser.setv({height: innerHeight, is_narrow: innerWidth < 900})
@@ -305,17 +314,19 @@ class Display:
 class Browser(DataModel):
     """The window of the browser, and keys that are pressed in it.
 
-    The window has a `height` in px and may be narrow. `pressed` is the last key, and
-    `count` grows with every key. `search` is the address to which the browser went back
-    or on, `copied` a link that it is to copy, `spoken` a text for screen readers,
-    `destination` an address whose page it is to open. `given` is the number of values
-    that the page gave to widgets, `shown` of those that the browser has shown. What is
-    seen is stale while it is of a run before the present one. A browser is new until
-    somebody has done something on a page.
+    The window has a `height` in px and may be narrow. `acts` grows whenever a person
+    presses a key or a button of the mouse. `pressed` is the last key that the page
+    takes, and `count` grows with every such key. `search` is the address to which the
+    browser went back or on, `copied` a link that it is to copy, `spoken` a text for
+    screen readers, `destination` an address whose page it is to open. `given` is the
+    number of values that the page gave to widgets, `shown` of those that the browser
+    has shown. What is seen is stale while it is of a run before the present one. A
+    browser is new until somebody has done something on a page.
     """
 
     height: int = Int(default=0)  # type: ignore[assignment]
     is_narrow: bool = Bool(default=False)  # type: ignore[assignment]
+    acts: int = Int(default=0)  # type: ignore[assignment]
     pressed: str = String(default="")  # type: ignore[assignment]
     count: int = Int(default=0)  # type: ignore[assignment]
     search: str = String(default="")  # type: ignore[assignment]
@@ -369,7 +380,7 @@ class Browser(DataModel):
             ["given", "is_stale", "is_new"],
         )
         document.add_root(self)
-        for script in (LISTEN, TELL, HOLD, CHOOSE, RETURN):
+        for script in (ACTS, LISTEN, TELL, HOLD, CHOOSE, RETURN):
             document.js_on_event(DocumentReady, CustomJS(args=args, code=script))
 
 

@@ -320,8 +320,6 @@ class SettingControl:
             self._add_edit_button()
             self._dialog = CurveDialog(self.name, self._state)
             self.views[0].append(self._dialog.view)
-            # The browser is to answer; see `Page._put`.
-            self._state.given += 1
         self.update()
         self._dialog.view.open = True
 
@@ -434,8 +432,6 @@ class Controls:
                     self._files = files_panel(self._state, WIDTH)
                 view = self._files
             self._groups[number] = (title, view)
-            # The browser is to answer; see `Page._put`.
-            self._state.given += 1
 
 
 def views_of(controls: Iterable[SettingControl]) -> list[Any]:

@@ -276,9 +276,6 @@ class Page:
         """Put a dialog on the page when it is first opened."""
         if event.obj not in self._dialogs:
             self._dialogs.append(event.obj)
-            # The browser is to answer: BokehJS sends models that have come since its
-            # last message whole, and the server would warn of the first button there.
-            self.state.given += 1
 
     def _take_away(self) -> None:
         """Offer a link to the page, and files of what is seen."""
@@ -300,14 +297,10 @@ class Page:
 
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
-        is_first = tab not in self._tabs
-        if is_first:
+        if tab not in self._tabs:
             kind = {WHAT_IF: WhatIf, "Fit": FitTab, "Reports": Reports}[tab]
             self._tabs[tab] = kind(self.state).view
         self._place()
-        if is_first:
-            # As for dialogs, the browser is to answer.
-            self.state.given += 1
         self._live.look()
 
     def _place(self) -> None:

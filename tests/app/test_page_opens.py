@@ -134,19 +134,6 @@ def test_what_a_person_does_ends_a_first_visit_before_the_browser_hears_of_it(
 
 
 @pytest.mark.usefixtures("orders", "document")
-def test_the_browser_answers_once_a_tab_that_is_new_is_on_the_page() -> None:
-    page, _ = small_page()
-    shown = []
-    page.state.param.watch(lambda event: shown.append(list(page._main)), "given")
-    page.state.tab = "Fit"
-    assert shown[-1] == list(page._main) != [page._beside]
-    count = len(shown)
-    page.state.tab = "Live"
-    page.state.tab = "Fit"
-    assert len(shown) == count
-
-
-@pytest.mark.usefixtures("orders", "document")
 def test_what_gives_an_answer_away_is_hidden_until_the_question_is_answered() -> None:
     lesson = LESSONS["broken-wire"]
     state = PageState(settings_of(lesson), lesson=lesson.name)
