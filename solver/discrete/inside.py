@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array, Indices, read_only
-from solver.discrete.condensed_part import N_AXES, CondensedPart
+from solver.discrete.condensed_part import N_AXES, CondensedPart, Operator
 from solver.discrete.scales import Scales
 from solver.discrete.schur_complement import SchurComplement
 from solver.discrete.substructure import Substructure
@@ -92,26 +92,29 @@ class Inside:
     def substructures(self) -> tuple[Substructure, ...]:
         """Substructures of the problem, part by part, and so are their rows."""
         forces = self._condensed_forces()
-        sizes = [len(part.operator.elasticity.trace) for part in self._parts]
-        rows = np.arange(sum(sizes))
-        first = 0
-        substructures = list[Substructure]()
-        for part, dofs, size in zip(self._parts, self.dofs, sizes, strict=True):
-            substructure = Substructure(
-                elasticity=part.operator.elasticity,
-                dofs=dofs,
-                rows=rows[first : first + size],
-                body_force=forces.get((part.condensed, id(part.force))),
+        operators = [part.operator for part in self._parts]
+        sizes = [len(operator.elasticity.trace) for operator in operators]
+        ends = np.cumsum(sizes)
+        rows = np.split(np.arange(ends[-1]), ends[:-1])
+        by_operator = dict[Operator, list[int]]()
+        for number, operator in enumerate(operators):
+            by_operator.setdefault(operator, []).append(number)
+        found = dict[int, Substructure]()
+        for operator, numbers in by_operator.items():
+            equal = Substructure.of_equal(
+                operator.elasticity,
+                [self.dofs[number] for number in numbers],
+                [rows[number] for number in numbers],
+                [forces[number] for number in numbers],
             )
-            substructures.append(substructure)
-            first += size
-        return tuple(substructures)
+            found.update(zip(numbers, equal, strict=True))
+        return tuple(found[number] for number in range(len(operators)))
 
-    def _condensed_forces(self) -> dict[tuple[SchurComplement, int], Array]:
-        """Forces on what is kept, (n_kept, n_instants), scaled.
+    def _condensed_forces(self) -> list[Array | None]:
+        """Forces on what each part keeps, (n_kept, n_instants), scaled, or None.
 
-        They are by what condenses them and the identity of the forces on the part: the
-        very same ones are condensed once, those of equal parts some together.
+        The very same forces on equal parts are condensed once, those of equal parts
+        some together.
         """
         alike = dict[SchurComplement, dict[int, Array]]()
         for part in self._parts:
@@ -122,7 +125,7 @@ class Inside:
             on_kept = _condensed_by(condensed, list(forces.values()))
             for owner, of_part in zip(forces, on_kept, strict=True):
                 found[condensed, owner] = of_part
-        return found
+        return [found.get((part.condensed, id(part.force))) for part in self._parts]
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Displacement of all nodes at n instants, (n_nodes, 2, n), m.

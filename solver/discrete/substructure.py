@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -9,7 +10,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.checks import ALIKE, Kind, Numbers, Part, check, check_value
+from solver.checks import ALIKE, Kind, Numbers, Part, alike, check, check_value
 from solver.refusal import RefusedError, Words
 
 
@@ -152,6 +153,35 @@ class Substructure:
         n_dofs = self.elasticity.stiffness.shape[0]
         kinds = _kinds_of_fields(n_dofs, len(self.elasticity.trace))
         check(self, **kinds)
+
+    @classmethod
+    def of_equal(
+        cls,
+        elasticity: Elasticity,
+        dofs: Sequence[Indices],
+        rows: Sequence[Indices],
+        body_forces: Sequence[Array | None],
+    ) -> list[Substructure]:
+        """Substructures of one operator, which are checked together.
+
+        Of each there are its `dofs`, (n_dofs,), its `rows`, (n_boundary,), and the
+        forces inside, (n_dofs, n_instants), scaled, or None.
+        """
+        count = len(dofs)
+        n_dofs = elasticity.stiffness.shape[0]
+        n_rows = len(elasticity.trace)
+        whole = Numbers(((count, n_dofs),), whole=True)
+        check_value("Substructure.dofs", np.stack(dofs), whole)
+        whole = Numbers(((count, n_rows),), whole=True)
+        check_value("Substructure.rows", np.stack(rows), whole)
+        # Many have the very same forces.
+        forces = {id(force): force for force in body_forces if force is not None}
+        if forces:
+            together = np.stack(list(forces.values()))
+            kind = Numbers(((len(forces), n_dofs, None),))
+            check_value("Substructure.body_force", together, kind)
+        first = cls(elasticity, dofs[0], rows[0], body_forces[0])
+        return alike(first, dofs=dofs, rows=rows, body_force=body_forces)
 
 
 def tributary(elements: int) -> Array:
