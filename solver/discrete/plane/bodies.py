@@ -23,6 +23,7 @@ from solver.checks import (
 from solver.discrete.plane.bodies_refused import (
     check_chains,
     check_held,
+    check_joined,
     check_load,
     check_names,
     check_pairs,
@@ -30,7 +31,7 @@ from solver.discrete.plane.bodies_refused import (
 )
 from solver.discrete.plane.body import Body, Held, Joint, Load, Shape, turned_by
 from solver.discrete.plane.meshes import Mesh
-from solver.discrete.plane.node_pairs import NodePairs
+from solver.discrete.plane.node_pairs import NodePairs, kinds_of
 from solver.discrete.probes import constant, mean_held, node_sum, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Description, Direction, Footing, Loop
@@ -103,10 +104,18 @@ class Bodies:
         by_weight = {id(body.weight): body for body in reversed(self.bodies)}
         for body in by_weight.values():
             check_weight(body, instants)
-        check_chains(self.bodies, self.joints)
+        check_joined(self.bodies, self.joints)
+        check_chains(self.bodies, self.joints, self.joint_kinds)
         if self.joints:
             turns = self.rotations
-            check_pairs(self.bodies, turns, self.joints, self.pairs, self.nodes)
+            check_pairs(
+                self.bodies,
+                turns,
+                self.joints,
+                self.joint_kinds,
+                self.pairs,
+                self.nodes,
+            )
         for held in self.held:
             check_held(self.bodies, held, instants)
         for load in self.loads:
@@ -146,6 +155,11 @@ class Bodies:
     def pairs(self) -> NodePairs:
         """Pairs of nodes of all joints."""
         return NodePairs.of(self.joints, self.first_nodes)
+
+    @cached_property
+    def joint_kinds(self) -> list[int]:
+        """Number of the kind of each joint: as `kinds_of` says, (n_joints,)."""
+        return kinds_of(self.bodies, self.joints)
 
     @cached_property
     def box(self) -> tuple[Array, Array]:

@@ -66,7 +66,13 @@ class CutBodies:
             structure.held,
         )
         self.joint_names = [joint.name for joint in structure.joints]
-        self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
+        self.pieces = pieces_of(
+            bodies,
+            structure.joints,
+            structure.joint_kinds,
+            self.cuts,
+            self.frames,
+        )
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
         self._body_of_parts = np.repeat(np.arange(len(bodies)), counts).tolist()
@@ -162,19 +168,19 @@ class CutBodies:
     def _trace_pieces(self) -> None:
         """Add the rows of the joints."""
         known = dict[Hashable, Trace]()
+        kinds = self.structure.joint_kinds
         for number, piece in enumerate(self.pieces):
             joint = self.structure.joints[piece.joint]
-            has_macro = joint.below is not None
             sides = zip(JOINT_SIDES, joint.sides, piece.parts, strict=False)
             for name, (_, nodes), owner in sides:
                 own = self.shape_parts[owner]
                 # Pieces of joints that are alike share their arrays.
-                key = id(own), nodes.tobytes(), id(piece.weights), has_macro
+                key = id(own), kinds[piece.joint], name, id(piece.weights)
                 if key not in known:
                     dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
                     k = own.density * piece.weights
                     direction = np.repeat(k[:, None], 2, axis=1)
-                    known[key] = Trace(dofs, direction, has_macro)
+                    known[key] = Trace(dofs, direction, joint.below is not None)
                 self._traces[owner][name, number] = known[key]
 
     def _trace_seams(self) -> None:

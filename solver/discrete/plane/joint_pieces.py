@@ -123,12 +123,14 @@ class NodeFrames:
 def pieces_of(
     bodies: Sequence[Body],
     joints: Sequence[Joint],
+    kinds: Sequence[int],
     cuts: Sequence[CutShape],
     frames: NodeFrames,
 ) -> list[JointPiece]:
     """Pieces of all joints, joint by joint and along each.
 
-    Parts of bodies are numbered one body after the other.
+    Parts of bodies are numbered one body after the other. `kinds` are those of the
+    joints (`kinds_of`).
 
     Raises
     ------
@@ -141,11 +143,13 @@ def pieces_of(
     counts = [len(cut.elements) for cut in cuts]
     first_parts = np.cumsum([0, *counts]).tolist()
     ends = frames.first_pairs.tolist()
+    flags = frames.has_pair.tobytes()
     for number, joint in enumerate(joints):
-        has_pair = frames.has_pair[ends[number] : ends[number + 1]]
-        sides = [(id(cuts[body]), chain.tobytes()) for body, chain in joint.sides]
-        key = *sides, has_pair.tobytes()
+        own = slice(ends[number], ends[number + 1])
+        of_sides = [id(cuts[body]) for body, _ in joint.sides]
+        key = kinds[number], *of_sides, flags[own]
         if key not in known:
+            has_pair = frames.has_pair[own]
             whole = _pieces_of_joint(bodies, number, joint, cuts)
             known[key] = [
                 _paired(piece, has_pair[piece.places])
