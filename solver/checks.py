@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 Made = TypeVar("Made", bound="DataclassInstance")
+WHOLE = int | Integral
+"""Types of whole numbers, as a union that is not made at every check."""
 ALIKE = 1e-9
 """Largest difference of two equal numbers by rounding, over the largest number."""
 
@@ -82,9 +84,7 @@ def alike(part: Made, **fields: Sequence[object]) -> list[Made]:
     them. So values of these fields, one for each new part, are checked before, together
     as one array.
     """
-    same = {
-        field.name: getattr(part, field.name) for field in dataclasses.fields(part)
-    }
+    same = {field.name: getattr(part, field.name) for field in dataclasses.fields(part)}
     parts = list[Made]()
     for values in zip(*fields.values(), strict=True):
         new = object.__new__(type(part))
@@ -155,7 +155,7 @@ class Count:
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
-        is_whole = isinstance(value, int | Integral) and not isinstance(value, bool)
+        is_whole = isinstance(value, WHOLE) and not isinstance(value, bool)
         if is_whole and self.low <= int(value) <= self.high:
             return None
         return Flaw(value, self.allowed, "give a whole number in this range")

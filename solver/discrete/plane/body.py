@@ -104,9 +104,7 @@ class Body:
     def __str__(self) -> str:
         return f"Body {self.name!r}"
 
-    def placed(
-        self, names: Sequence[str], origins: Array, angles: Array
-    ) -> list[Body]:
+    def placed(self, names: Sequence[str], origins: Array, angles: Array) -> list[Body]:
         """Bodies like this one with other names, origins and angles.
 
         `origins` have the shape (n, 2), m, and `angles` (n,), rad.
@@ -199,9 +197,7 @@ class Joint:
         """
         shape = len(names), len(self.nodes), 2
         check_value("Joint.normals", normals, Numbers((shape,)))
-        return alike(
-            self, name=names, above=above, below=below, normals=list(normals)
-        )
+        return alike(self, name=names, above=above, below=below, normals=list(normals))
 
     @cached_property
     def sides(self) -> list[tuple[int, Indices]]:

@@ -13,7 +13,7 @@ import numpy as np
 import skfem
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Body
@@ -67,6 +67,12 @@ class ShapePart:
         if isinstance(self.body.shape, Mesh):
             return 2
         return 3
+
+    def has(self, nodes: Indices) -> Flags:
+        """Check which nodes of the shape are its own, (n,) both."""
+        is_own = np.zeros(len(self.body.shape.nodes), dtype=bool)
+        is_own[self.nodes] = True
+        return is_own[nodes]
 
     @cached_property
     def size(self) -> float:

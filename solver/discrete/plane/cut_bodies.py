@@ -204,7 +204,7 @@ class CutBodies:
             for part in range(self.structure.bodies[held.body].substructures):
                 owner = self.owner(held.body, part)
                 own = self.shape_parts[owner]
-                is_own = np.isin(held.nodes, own.nodes)
+                is_own = own.has(held.nodes)
                 if not is_own.any():
                     continue
                 nodes = held.nodes[is_own]
@@ -317,8 +317,9 @@ class CutBodies:
             taken = np.zeros(len(load.nodes), dtype=bool)
             for part in range(self.structure.bodies[load.body].substructures):
                 owner = self.owner(load.body, part)
-                nodes = self.shape_parts[owner].nodes
-                is_own = np.isin(load.nodes, nodes) & ~taken
+                own = self.shape_parts[owner]
+                nodes = own.nodes
+                is_own = own.has(load.nodes) & ~taken
                 taken |= is_own
                 if is_own.any():
                     none = np.zeros((len(nodes), 2, instants))

@@ -146,8 +146,7 @@ def pieces_of(
     flags = frames.has_pair.tobytes()
     for number, joint in enumerate(joints):
         own = slice(ends[number], ends[number + 1])
-        of_sides = [id(cuts[body]) for body, _ in joint.sides]
-        key = kinds[number], *of_sides, flags[own]
+        key = kinds[number], flags[own]
         if key not in known:
             has_pair = frames.has_pair[own]
             whole = _pieces_of_joint(bodies, number, joint, cuts)

@@ -99,6 +99,8 @@ def _resting_lines(cut: CutBodies) -> Indices:
     Of belts and leaves that all lie on supports of their own it is 0, too.
     """
     joints = cut.structure.joints
+    if cut.is_mesh.all():
+        return np.zeros(len(joints), dtype=np.intp)
     is_of_lines = np.array(
         [not any(cut.is_mesh[body] for body, _ in joint.sides) for joint in joints]
     )

@@ -57,18 +57,19 @@ class NodePairs(NamedTuple):
 def kinds_of(bodies: Sequence[Body], joints: Sequence[Joint]) -> list[int]:
     """Number of the kind of each joint, (n_joints,).
 
-    Joints of one kind are along equal chains of nodes of the same shapes.
+    Joints of one kind are along equal chains of nodes of the same shapes, which are cut
+    alike.
     """
+    of_bodies = [(id(body.shape), body.substructures) for body in bodies]
     known = dict[Hashable, int]()
     kinds = []
     for joint in joints:
         # Mostly chains are equal because they are the very same.
-        same = [(id(bodies[body].shape), id(nodes)) for body, nodes in joint.sides]
+        same = [(of_bodies[body], id(nodes)) for body, nodes in joint.sides]
         key = tuple(same)
         if key not in known:
-            chains = [nodes.tobytes() for _, nodes in joint.sides]
-            shapes = [shape for shape, _ in same]
-            known[key] = known.setdefault((*shapes, *chains), len(known))
+            equal = [(of_bodies[body], nodes.tobytes()) for body, nodes in joint.sides]
+            known[key] = known.setdefault(tuple(equal), len(known))
         kinds.append(known[key])
     return kinds
 

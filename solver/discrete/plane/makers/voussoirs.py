@@ -16,6 +16,7 @@ from solver.discrete.plane.meshes import SIMPSON, Mesh, on_nodes
 from solver.discrete.probes import mean_held, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Loop
+from solver.kept import KEPT, content_of
 
 HAUNCH = 0.2
 """Share of the ring from a springing to its haunch: near there a semicircle under its
@@ -245,9 +246,7 @@ class Ring:
         names = self.joint_names
         last = self.voussoirs
         # The left block stands with its right side inwards.
-        begins = Joint(
-            names[0], 1, left, 0, face[::-1], normals[0], friction=friction
-        )
+        begins = Joint(names[0], 1, left, 0, face[::-1], normals[0], friction=friction)
         inner = Joint(names[1], 2, left, 1, right, normals[1], friction=friction)
         ends = Joint(
             names[last], last + 1, face, last, right, normals[last], friction=friction
@@ -324,7 +323,12 @@ def _mapped(corners: Array) -> Mesh:
     n_rows, n_columns = corners.shape[:2]
     n = np.arange(n_rows * n_columns).reshape(n_rows, n_columns)
     elements = np.stack([n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]], axis=-1)
-    return Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4))
+    # What is found from a mesh takes as long as an iteration on 100 voussoirs, and
+    # loads leave it alone.
+    key = "voussoir", content_of(corners)
+    return KEPT.of(
+        key, lambda: Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4))
+    )
 
 
 @dataclass(frozen=True, eq=False)
