@@ -7,7 +7,6 @@ import re
 from numbers import Real
 from typing import Any, TypeGuard
 
-
 NUMBER = float | Real
 """Types of numbers; floats first, as an abstract class is slow to ask."""
 

@@ -176,10 +176,9 @@ class Substructure:
         check_value("Substructure.rows", np.stack(rows), whole)
         # Many have the very same forces.
         forces = {id(force): force for force in body_forces if force is not None}
-        if forces:
-            together = np.stack(list(forces.values()))
-            kind = Numbers(((len(forces), n_dofs, None),))
-            check_value("Substructure.body_force", together, kind)
+        for force in forces.values():
+            kind = Numbers(((n_dofs, force.shape[-1]),))
+            check_value("Substructure.body_force", force, kind)
         first = cls(elasticity, dofs[0], rows[0], body_forces[0])
         return alike(first, dofs=dofs, rows=rows, body_force=body_forces)
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Container, Hashable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
-from solver.discrete.condensed_part import N_AXES, CondensedPart, Trace, numbered
+from solver.arrays import Array, Flags, Indices, separated
+from solver.discrete.condensed_part import (
+    N_AXES,
+    CondensedPart,
+    PartForce,
+    Trace,
+    numbered,
+)
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
 from solver.discrete.plane.body_parts import ShapePart
@@ -19,6 +25,9 @@ from solver.discrete.plane.meshes import Mesh
 from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
 from solver.discrete.scales import Scales
 from solver.refusal import RefusedError, Words
+
+FEW = 8
+"""Number of components of nodes on which a load acts, up to which each is a pattern."""
 
 
 class CutBodies:
@@ -262,7 +271,7 @@ class CutBodies:
         motions = self._motions()
         found = dict[int, PartNodes]()
         for owners in self._alike_in_force(loads):
-            of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0]))
+            of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0], []))
             found.update(zip(owners, of_parts, strict=True))
         return [found[owner] for owner in range(len(self.shape_parts))]
 
@@ -273,7 +282,7 @@ class CutBodies:
         motions[:, 2, 2] = 1.0
         return motions
 
-    def _alike_in_force(self, loads: Mapping[int, Array]) -> list[list[int]]:
+    def _alike_in_force(self, loads: Container[int]) -> list[list[int]]:
         """Numbers of parts alike in shape and weight; loaded ones are like no other."""
         alike = dict[Hashable, list[int]]()
         for owner, own in enumerate(self.shape_parts):
@@ -285,49 +294,61 @@ class CutBodies:
         return list(alike.values())
 
     def _nodes_of_alike(
-        self, owners: Sequence[int], motions: Array, load: Array | None
+        self, owners: Sequence[int], motions: Array, loads: Sequence[PartForce]
     ) -> list[PartNodes]:
         """Nodes, motions and forces of parts alike, by their numbers.
 
-        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `load` the forces on the
-        nodes of the parts, (n_nodes_of_part, 2, n_instants), N, or None.
+        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `loads` the forces on
+        the nodes of the parts, with patterns (n_nodes_of_part, 2, n_patterns), N.
         """
         own = self.shape_parts[owners[0]]
         bodies = [self._body_of_parts[owner] for owner in owners]
         nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
         keys = self._operators.turned(nodes)
         frames = motions[nodes, : own.n_axes]
-        force = own.force(self.structure.bodies[bodies[0]].weight, load)
-        turned: Array | list[None] = [None] * len(owners)
+        forces: list[PartForce | None] = [None] * len(owners)
+        force = own.forces(self.structure.bodies[bodies[0]].weight, loads)
         if force is not None:
-            on_nodes = frames[..., :2] @ force
+            on_nodes = frames[..., :2] @ force.patterns
             on_nodes /= self.young * self.length
-            turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
-        of_parts = zip(nodes, keys, frames, turned, strict=True)
+            turned = on_nodes.reshape(len(owners), -1, len(force.courses))
+            forces = [PartForce(patterns, force.courses) for patterns in turned]
+        of_parts = zip(nodes, keys, frames, forces, strict=True)
         return [PartNodes(*of_part) for of_part in of_parts]
 
-    def _loads(self) -> Mapping[int, Array]:
-        """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.
+    def _loads(self) -> Mapping[int, Sequence[PartForce]]:
+        """Forces of the loads on the nodes of parts, N.
 
-        A node of several parts is loaded in the first of them.
+        Patterns have the shape (n_nodes, 2, n_patterns). A node of several parts is
+        loaded in the first of them.
         """
-        found = dict[int, Array]()
-        instants = len(self.structure.instants)
+        found = dict[int, list[PartForce]]()
         for load in self.structure.loads:
+            if not load.force.any():
+                continue
+            patterns, courses = _separated(load.force.reshape(2 * len(load.nodes), -1))
+            on_nodes = patterns.reshape(len(load.nodes), 2, -1)
             taken = np.zeros(len(load.nodes), dtype=bool)
             for part in range(self.structure.bodies[load.body].substructures):
                 owner = self.owner(load.body, part)
                 own = self.shape_parts[owner]
-                nodes = own.nodes
                 is_own = own.has(load.nodes) & ~taken
                 taken |= is_own
                 if is_own.any():
-                    none = np.zeros((len(nodes), 2, instants))
-                    force = found.setdefault(owner, none)
-                    force[np.searchsorted(nodes, load.nodes[is_own])] += load.force[
-                        is_own
-                    ]
+                    on_part = np.zeros((len(own.nodes), 2, len(courses)))
+                    places = np.searchsorted(own.nodes, load.nodes[is_own])
+                    on_part[places] = on_nodes[is_own]
+                    found.setdefault(owner, []).append(PartForce(on_part, courses))
         return found
+
+
+def _separated(force: Array) -> tuple[Array, Array]:
+    """Forces, (n, n_instants), as patterns, (n, rank), times courses over time."""
+    loaded = np.flatnonzero(force.any(axis=1))
+    if len(loaded) > FEW:
+        return separated(force)
+    # To look for a smaller rank takes longer than it saves.
+    return np.eye(len(force))[:, loaded], force[loaded]
 
 
 def _modulus(body: Body) -> float:

@@ -326,9 +326,7 @@ def _mapped(corners: Array) -> Mesh:
     # What is found from a mesh takes as long as an iteration on 100 voussoirs, and
     # loads leave it alone.
     key = "voussoir", content_of(corners)
-    return KEPT.of(
-        key, lambda: Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4))
-    )
+    return KEPT.of(key, lambda: Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4)))
 
 
 @dataclass(frozen=True, eq=False)
