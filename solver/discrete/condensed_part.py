@@ -98,7 +98,7 @@ def numbered(
     traces: Mapping[Hashable, Trace], first: int
 ) -> tuple[dict[Hashable, int], int]:
     """First row of each trace, counted from `first`, and the number after the last."""
-    first_rows = dict[Hashable, int]()
+    first_rows: dict[Hashable, int] = {}
     for name, trace in traces.items():
         first_rows[name] = first
         first += trace.dofs.size

@@ -63,11 +63,12 @@ class CutBodies:
         self.scales = Scales(self.length, self.young * self.length, structure.duration)
         bodies = structure.bodies
         shapes = dict[tuple[int, int], CutShape]()
+        self.cuts = list[CutShape]()
         for body in bodies:
             key = id(body.shape), body.substructures
             if key not in shapes:
                 shapes[key] = CutShape(body.shape, body.substructures)
-        self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
+            self.cuts.append(shapes[key])
         self.frames = NodeFrames(
             structure.rotations,
             structure.first_nodes,

@@ -171,11 +171,9 @@ def _of_joint(
     piece: JointPiece, number: int, joint: Joint, first_parts: Sequence[int]
 ) -> JointPiece:
     """The piece of a joint, by its number, that is like one with parts of bodies."""
-    numbers = [
-        first_parts[body] + part
-        for (body, _), part in zip(joint.sides, piece.parts, strict=False)
-    ]
-    parts = tuple(numbers)
+    parts: tuple[int, ...] = (first_parts[joint.above] + piece.parts[0],)
+    if joint.below is not None:
+        parts = parts[0], first_parts[joint.below] + piece.parts[1]
     return JointPiece(number, parts, piece.places, piece.weights, piece.along)
 
 

@@ -70,8 +70,9 @@ class SharedOperators:
         # Most parts that are alike have the very same traces.
         of_traces = [id(trace) for trace in traces]
         same = id(part), on_nodes.turned, has_force, *of_traces
-        if same in self._operators:
-            return self._operators[same]
+        known = self._operators.get(same)
+        if known is not None:
+            return known
         dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
         direction = np.concatenate([trace.direction.ravel() for trace in traces])
         alike = (
