@@ -142,9 +142,14 @@ class CutBodies:
     def _own_frames(self) -> Array:
         """Directions at all nodes in the axes of their bodies, (n_nodes, 2, 2)."""
         sizes = np.diff(self.structure.first_nodes)
-        rotations = np.repeat(self.structure.rotations, sizes, axis=0)
-        own = self.frames.frames @ rotations
-        return snapped(own.reshape(-1, 2)).reshape(-1, 2, 2)
+        bodies = np.repeat(np.arange(len(sizes)), sizes)
+        own = np.zeros_like(self.frames.frames)
+        own[:] = np.eye(2)
+        # Of most nodes they are the axes themselves.
+        nodes = np.flatnonzero(self.frames.is_turned)
+        turned = self.frames.frames[nodes] @ self.structure.rotations[bodies[nodes]]
+        own[nodes] = snapped(turned.reshape(-1, 2)).reshape(-1, 2, 2)
+        return own
 
     def _of_shapes(self) -> list[ShapePart]:
         """Parts of shapes, body by body; those of one kind are shared."""

@@ -26,7 +26,9 @@ ON_AXIS = 1e-12
 def snapped(vectors: Array) -> Array:
     """Unit vectors, (n, 2), of which those along an axis are that exactly."""
     vectors = np.where(np.abs(vectors) <= ON_AXIS, 0.0, vectors)
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+    x, y = vectors.T
+    sizes = np.sqrt(x * x + y * y)
+    return np.asarray(vectors / sizes[:, None])
 
 
 class NodeFrames:
@@ -108,6 +110,11 @@ class NodeFrames:
         held_below = (self._held[below] & across).any(axis=1) | ~has_below
         differs = self._unlike[above] | (self._unlike[below] & has_below)
         return np.asarray(~differs & ~(held_above & held_below))
+
+    @property
+    def is_turned(self) -> Flags:
+        """Mask of nodes whose directions may differ from their body's, (n_nodes,)."""
+        return self._of_joint | self._held.any(axis=1)
 
     def of_body(self, number: int) -> Array:
         """Directions at the nodes of a body, (n, 2, 2)."""
