@@ -17,7 +17,7 @@ from solver.discrete.condensed_part import (
 )
 from solver.discrete.scales import Scales
 from solver.discrete.schur_complement import SchurComplement
-from solver.discrete.substructure import Substructure
+from solver.discrete.substructure import Substructure, check_forces
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
@@ -293,6 +293,7 @@ def _condensed_by(
             some = alike[first : first + TOGETHER]
             on_kept = condensed.condense(np.stack([force.patterns for force in some]))
             over_time = on_kept @ np.stack([force.courses for force in some])
+            check_forces(over_time)
             found.update(zip([id(force) for force in some], over_time, strict=True))
     return [found.get(id(force)) for force in forces]
 

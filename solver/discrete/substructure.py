@@ -162,25 +162,28 @@ class Substructure:
         rows: Sequence[Indices],
         body_forces: Sequence[Array | None],
     ) -> list[Substructure]:
-        """Substructures of one operator, which are checked together.
+        """Substructures of one operator, of which the first is checked.
 
         Of each there are its `dofs`, (n_dofs,), its `rows`, (n_boundary,), and the
-        forces inside, (n_dofs, n_instants), scaled, or None.
+        forces inside, (n_dofs, n_instants), scaled, or None; `check_forces` is for
+        many of these.
         """
-        count = len(dofs)
-        n_dofs = elasticity.stiffness.shape[0]
-        n_rows = len(elasticity.trace)
-        whole = Numbers(((count, n_dofs),), whole=True)
-        check_value("Substructure.dofs", np.stack(dofs), whole)
-        whole = Numbers(((count, n_rows),), whole=True)
-        check_value("Substructure.rows", np.stack(rows), whole)
-        # Many have the very same forces.
-        forces = {id(force): force for force in body_forces if force is not None}
-        for force in forces.values():
-            kind = Numbers(((n_dofs, force.shape[-1]),))
-            check_value("Substructure.body_force", force, kind)
+        for name, each in (("dofs", dofs), ("rows", rows)):
+            if len({len(numbers) for numbers in each}) > 1:
+                raise RefusedError(
+                    f"Substructure.{name}",
+                    Words("of several lengths"),
+                    "as many for each substructure of an operator",
+                    "make those of each operator together",
+                )
         first = cls(elasticity, dofs[0], rows[0], body_forces[0])
         return alike(first, dofs=dofs, rows=rows, body_force=body_forces)
+
+
+def check_forces(body_forces: Array) -> None:
+    """Refuse forces inside some substructures, (n, n_dofs, n_instants)."""
+    kind = Numbers(((None, None, None),))
+    check_value("Substructure.body_force", body_forces, kind)
 
 
 def tributary(elements: int) -> Array:
