@@ -8,7 +8,7 @@ from itertools import chain, pairwise
 
 import numpy as np
 
-from solver.arrays import Array, Indices, read_only
+from solver.arrays import Array, Indices, distinct, read_only
 from solver.discrete.condensed_part import (
     N_AXES,
     CondensedPart,
@@ -88,8 +88,8 @@ class Inside:
         of_parts = np.concatenate(kept)
         places, axes = np.divmod(of_parts, n_axes)
         own = nodes[np.repeat(first_nodes, counts) + places]
-        skeleton, first, numbers = np.unique(
-            N_AXES * own + axes, return_index=True, return_inverse=True
+        skeleton, first, numbers = distinct(
+            N_AXES * own + axes, N_AXES * len(self.nodes)
         )
         self.nodes_of_dofs: Indices = skeleton // N_AXES
         self.dofs: list[Indices] = _divided(numbers, counts)
