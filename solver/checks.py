@@ -77,20 +77,21 @@ def check_value(name: str, value: object, kind: Kind) -> None:
         raise _refusal(name, value, flaw)
 
 
-def alike(part: Made, **fields: Sequence[object]) -> list[Made]:
-    """Make parts that are like a checked one but for some fields.
+def alike(part: Made, count: int, **fields: Sequence[object]) -> list[Made]:
+    """Make a count of parts that are like a checked one but for some fields.
 
     To check hundreds of bodies one by one takes as long as the first iterations on
     them. So values of these fields, one for each new part, are checked before, together
     as one array.
     """
     same = {field.name: getattr(part, field.name) for field in dataclasses.fields(part)}
-    parts = list[Made]()
-    for values in zip(*fields.values(), strict=True):
-        new = object.__new__(type(part))
+    parts = [object.__new__(type(part)) for _ in range(count)]
+    for new in parts:
         vars(new).update(same)
-        vars(new).update(zip(fields, values, strict=True))
-        parts.append(new)
+    # Field by field, which takes a third of the time of part by part.
+    for name, values in fields.items():
+        for new, value in zip(parts, values, strict=True):
+            vars(new)[name] = value
     return parts
 
 

@@ -287,12 +287,13 @@ def _condensed_by(
         if force is not None:
             by_size.setdefault(len(force.courses), {})[id(force)] = force
     found = dict[int, Array]()
-    for distinct in by_size.values():
-        alike = list(distinct.values())
+    for of_size in by_size.values():
+        alike = list(of_size.values())
         for first in range(0, len(alike), TOGETHER):
             some = alike[first : first + TOGETHER]
-            on_kept = condensed.condense(np.stack([force.patterns for force in some]))
-            over_time = on_kept @ np.stack([force.courses for force in some])
+            patterns = np.array([force.patterns for force in some])
+            courses = np.array([force.courses for force in some])
+            over_time = condensed.condense(patterns) @ courses
             check_forces(over_time)
             found.update(zip([id(force) for force in some], over_time, strict=True))
     return [found.get(id(force)) for force in forces]

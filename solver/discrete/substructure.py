@@ -177,7 +177,7 @@ class Substructure:
                     "make those of each operator together",
                 )
         first = cls(elasticity, dofs[0], rows[0], body_forces[0])
-        return alike(first, dofs=dofs, rows=rows, body_force=body_forces)
+        return alike(first, len(dofs), dofs=dofs, rows=rows, body_force=body_forces)
 
 
 def check_forces(body_forces: Array) -> None:

@@ -112,7 +112,9 @@ class Body:
         count = len(names)
         check_value("Body.origin", origins, Numbers(((count, 2),)))
         check_value("Body.angle", angles, Numbers(((count,),)))
-        return alike(self, name=names, origin=list(origins), angle=angles.tolist())
+        return alike(
+            self, count, name=names, origin=list(origins), angle=angles.tolist()
+        )
 
     @cached_property
     def rotation(self) -> Array:
@@ -195,9 +197,12 @@ class Joint:
         `above` and `below` are the numbers of their bodies, (n,), and `normals` have
         the shape (n, n_nodes, 2).
         """
-        shape = len(names), len(self.nodes), 2
+        count = len(names)
+        shape = count, len(self.nodes), 2
         check_value("Joint.normals", normals, Numbers((shape,)))
-        return alike(self, name=names, above=above, below=below, normals=list(normals))
+        return alike(
+            self, count, name=names, above=above, below=below, normals=list(normals)
+        )
 
     @cached_property
     def sides(self) -> list[tuple[int, Indices]]:

@@ -246,6 +246,7 @@ class CutBodies:
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
+        rotations = list(self.structure.rotations)
         for owner, on_nodes in enumerate(self._nodes_of_parts()):
             body = self._body_of_parts[owner]
             of_body = self.structure.bodies[body]
@@ -268,7 +269,7 @@ class CutBodies:
                 first_rows=first_rows,
                 force=on_nodes.force,
                 frames=on_nodes.frames,
-                rotation=self.structure.rotations[body],
+                rotation=rotations[body],
             )
 
     def _nodes_of_parts(self) -> list[PartNodes]:
