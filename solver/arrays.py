@@ -61,6 +61,30 @@ def as_slice(rows: Indices) -> slice | Indices:
     return slice(first, first + len(rows))
 
 
+def distinct(numbers: Indices, count: int) -> tuple[Indices, Indices, Indices]:
+    """Distinct ones of numbers below a count, as NumPy's `unique` finds by sorting.
+
+    Parameters
+    ----------
+    numbers
+        Numbers from 0 on, shape (n,).
+    count
+        Number above the largest of them.
+
+    Returns
+    -------
+    The distinct numbers, ascending, (n_distinct,), the first place of each, of the same
+    shape, and the place of every number among the distinct ones, (n,).
+    """
+    first = np.full(count, -1)
+    # What is written last stays.
+    first[numbers[::-1]] = np.arange(len(numbers) - 1, -1, -1)
+    found = np.flatnonzero(first >= 0)
+    places = np.empty(count, dtype=np.intp)
+    places[found] = np.arange(len(found))
+    return found, first[found], places[numbers]
+
+
 def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
     """Fields one below the other: (n_rows,), or (n_rows, n_instants) and (n_rows, 1).
 

@@ -6,16 +6,23 @@ instants=INSTANTS)`.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass
 from numbers import Integral
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from solver.refusal import RefusedError, Words, is_number, plain
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+Made = TypeVar("Made", bound="DataclassInstance")
+WHOLE = int | Integral
+"""Types of whole numbers, as a union that is not made at every check."""
 ALIKE = 1e-9
 """Largest difference of two equal numbers by rounding, over the largest number."""
 
@@ -68,6 +75,24 @@ def check_value(name: str, value: object, kind: Kind) -> None:
     flaw = kind.flaw(value)
     if flaw is not None:
         raise _refusal(name, value, flaw)
+
+
+def alike(part: Made, count: int, **fields: Sequence[object]) -> list[Made]:
+    """Make a count of parts that are like a checked one but for some fields.
+
+    To check hundreds of bodies one by one takes as long as the first iterations on
+    them. So values of these fields, one for each new part, are checked before, together
+    as one array.
+    """
+    same = {field.name: getattr(part, field.name) for field in dataclasses.fields(part)}
+    parts = [object.__new__(type(part)) for _ in range(count)]
+    for new in parts:
+        vars(new).update(same)
+    # Field by field, which takes a third of the time of part by part.
+    for name, values in fields.items():
+        for new, value in zip(parts, values, strict=True):
+            vars(new)[name] = value
+    return parts
 
 
 def _refusal(name: str, value: object, flaw: Flaw) -> RefusedError:
@@ -131,7 +156,7 @@ class Count:
 
     def flaw(self, value: Any) -> Flaw | None:
         """Find the flaw of a value."""
-        is_whole = isinstance(value, int | Integral) and not isinstance(value, bool)
+        is_whole = isinstance(value, WHOLE) and not isinstance(value, bool)
         if is_whole and self.low <= int(value) <= self.high:
             return None
         return Flaw(value, self.allowed, "give a whole number in this range")

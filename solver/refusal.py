@@ -7,6 +7,9 @@ import re
 from numbers import Real
 from typing import Any, TypeGuard
 
+NUMBER = float | Real
+"""Types of numbers; floats first, as an abstract class is slow to ask."""
+
 
 class Words(str):
     """Words on a value that is too large to show; a message has them without quotes."""
@@ -53,5 +56,4 @@ def plain(value: float) -> str:
 
 def is_number(value: object) -> TypeGuard[float]:
     """Check whether a value is a number, and no truth value."""
-    # Floats first: an abstract class is slow to ask.
-    return isinstance(value, float | Real) and not isinstance(value, bool)
+    return isinstance(value, NUMBER) and not isinstance(value, bool)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -32,6 +31,30 @@ class Trace(NamedTuple):
     dofs: Indices
     direction: Array
     has_macro: bool
+
+
+class PartForce(NamedTuple):
+    """Forces on the degrees of freedom of a part: patterns times their courses.
+
+    Attributes
+    ----------
+    patterns
+        Forces on the degrees of freedom, shape (n, n_patterns), scaled.
+    courses
+        Factors over time, shape (n_patterns, n_instants).
+    """
+
+    patterns: Array
+    courses: Array
+
+    @classmethod
+    def over_time(cls, force: Array) -> PartForce:
+        """Forces, (n, n_instants), with a pattern for each instant."""
+        return cls(force, np.eye(force.shape[1]))
+
+    def at(self, instants: slice | list[int]) -> Array:
+        """Forces at n instants, (n_dofs_of_part, n), scaled."""
+        return np.asarray(self.patterns @ self.courses[:, instants])
 
 
 def kept_by(traces: Sequence[Trace]) -> Indices:
@@ -75,7 +98,7 @@ def numbered(
     traces: Mapping[Hashable, Trace], first: int
 ) -> tuple[dict[Hashable, int], int]:
     """First row of each trace, counted from `first`, and the number after the last."""
-    first_rows = dict[Hashable, int]()
+    first_rows: dict[Hashable, int] = {}
     for name, trace in traces.items():
         first_rows[name] = first
         first += trace.dofs.size
@@ -103,8 +126,7 @@ class PartMesh(Protocol):
         """
 
 
-@dataclass(frozen=True, eq=False)
-class CondensedPart:
+class CondensedPart(NamedTuple):
     """A part of a body, whose inside is condensed.
 
     Attributes
@@ -120,7 +142,7 @@ class CondensedPart:
         Boundary rows by what has them, and the number of the first row of each. Rows of
         a trace follow each other, node by node, and so do those of parts.
     force
-        Forces on its degrees of freedom, (n, n_instants), scaled, or None.
+        Forces on its degrees of freedom, or None.
     frames
         Motion of the degrees of freedom of each node along x and y, and its turn,
         (n_nodes, n_axes, 3); None where they are along x and y.
@@ -135,7 +157,7 @@ class CondensedPart:
     body: int
     traces: Mapping[Hashable, Trace]
     first_rows: Mapping[Hashable, int]
-    force: Array | None
+    force: PartForce | None
     frames: Array | None = None
     rotation: Array | None = None
 

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import chain, pairwise
 
 import numpy as np
 
-from solver.arrays import Array, Indices, read_only
-from solver.discrete.condensed_part import N_AXES, CondensedPart
+from solver.arrays import Array, Indices, distinct, read_only
+from solver.discrete.condensed_part import (
+    N_AXES,
+    CondensedPart,
+    Operator,
+    PartForce,
+)
 from solver.discrete.scales import Scales
 from solver.discrete.schur_complement import SchurComplement
-from solver.discrete.substructure import Substructure
+from solver.discrete.substructure import Substructure, check_forces
 
 HELD = 1e-9
 """Smallest singular value of a rigid motion that prescribed displacements hinder, over
@@ -82,47 +88,32 @@ class Inside:
         of_parts = np.concatenate(kept)
         places, axes = np.divmod(of_parts, n_axes)
         own = nodes[np.repeat(first_nodes, counts) + places]
-        skeleton, first, numbers = np.unique(
-            N_AXES * own + axes, return_index=True, return_inverse=True
+        skeleton, first, numbers = distinct(
+            N_AXES * own + axes, N_AXES * len(self.nodes)
         )
         self.nodes_of_dofs: Indices = skeleton // N_AXES
-        self.dofs: list[Indices] = np.split(numbers, np.cumsum(counts)[:-1])
+        self.dofs: list[Indices] = _divided(numbers, counts)
         self.directions: Array = _directions(self._parts, counts, of_parts)[first]
 
     def substructures(self) -> tuple[Substructure, ...]:
         """Substructures of the problem, part by part, and so are their rows."""
-        forces = self._condensed_forces()
-        sizes = [len(part.operator.elasticity.trace) for part in self._parts]
-        rows = np.arange(sum(sizes))
-        first = 0
-        substructures = list[Substructure]()
-        for part, dofs, size in zip(self._parts, self.dofs, sizes, strict=True):
-            substructure = Substructure(
-                elasticity=part.operator.elasticity,
-                dofs=dofs,
-                rows=rows[first : first + size],
-                body_force=forces.get((part.condensed, id(part.force))),
+        operators = [part.operator for part in self._parts]
+        sizes = [len(operator.elasticity.trace) for operator in operators]
+        rows = _divided(np.arange(sum(sizes)), sizes)
+        by_operator = dict[Operator, list[int]]()
+        for number, operator in enumerate(operators):
+            by_operator.setdefault(operator, []).append(number)
+        found = dict[int, Substructure]()
+        for operator, numbers in by_operator.items():
+            forces = [self._parts[number].force for number in numbers]
+            equal = Substructure.of_equal(
+                operator.elasticity,
+                [self.dofs[number] for number in numbers],
+                [rows[number] for number in numbers],
+                _condensed_by(operator.condensed, forces),
             )
-            substructures.append(substructure)
-            first += size
-        return tuple(substructures)
-
-    def _condensed_forces(self) -> dict[tuple[SchurComplement, int], Array]:
-        """Forces on what is kept, (n_kept, n_instants), scaled.
-
-        They are by what condenses them and the identity of the forces on the part: the
-        very same ones are condensed once, those of equal parts some together.
-        """
-        alike = dict[SchurComplement, dict[int, Array]]()
-        for part in self._parts:
-            if part.force is not None:
-                alike.setdefault(part.condensed, {})[id(part.force)] = part.force
-        found = dict[tuple[SchurComplement, int], Array]()
-        for condensed, forces in alike.items():
-            on_kept = _condensed_by(condensed, list(forces.values()))
-            for owner, of_part in zip(forces, on_kept, strict=True):
-                found[condensed, owner] = of_part
-        return found
+            found.update(zip(numbers, equal, strict=True))
+        return tuple(found[number] for number in range(len(operators)))
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Displacement of all nodes at n instants, (n_nodes, 2, n), m.
@@ -135,7 +126,7 @@ class Inside:
         for part, dofs in zip(self._parts, self.dofs, strict=True):
             force = None
             if part.force is not None:
-                force = part.force[:, instants]
+                force = part.force.at(instants)
             of_part = part.condensed.recover(kept[dofs], force)
             whole[part.nodes.ravel()] = part.motion(of_part)
         return whole * self._length
@@ -160,8 +151,10 @@ class Inside:
             np.add.at(total, dofs, part.condensed.condense(share)[:, 0])
             if part.force is not None:
                 # With the boundary held, only loads inside move the inner nodes.
-                held = np.zeros((len(dofs), self._size[1]))
-                constant += share[:, 0] @ part.condensed.recover(held, part.force)
+                patterns, courses = part.force
+                held = np.zeros((len(dofs), len(courses)))
+                moved = part.condensed.recover(held, patterns)
+                constant += share[:, 0] @ moved @ courses
         return total, constant * self._length
 
     def of_part(self, number: int, nodes: Indices) -> tuple[Array, Array | None]:
@@ -178,9 +171,10 @@ class Inside:
         matrix = moved.reshape(-1, n_kept)
         if part.force is None:
             return matrix, None
-        held = np.zeros((n_kept, part.force.shape[1]))
-        given = part.motion(condensed.recover(held, part.force))[nodes]
-        return matrix, given.reshape(-1, held.shape[1])
+        patterns, courses = part.force
+        held = np.zeros((n_kept, len(courses)))
+        given = part.motion(condensed.recover(held, patterns))[nodes]
+        return matrix, given.reshape(-1, len(courses)) @ courses
 
     def stress(self, displacement: Array) -> Array:
         """Stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
@@ -246,11 +240,15 @@ class Inside:
             still.
         """
         moving = np.unique(groups[groups >= 0])
+        asked = np.unique(np.concatenate([fixed, *chain.from_iterable(jumps)]))
+        asked = asked[asked >= 0]
         # The row beyond the last is what stands still.
         motions = np.zeros((len(groups) + 1, 3 * len(moving)))
         for number, group in enumerate(moving):
-            dofs = np.flatnonzero(groups == group)
-            motions[dofs, 3 * number : 3 * number + 3] = self.rigid_modes(dofs)
+            centre = self.positions[groups == group].mean(axis=0)
+            dofs = asked[groups[asked] == group]
+            own = slice(3 * number, 3 * number + 3)
+            motions[dofs, own] = self.rigid_modes(dofs, centre)
         rows = [motions[fixed]]
         rows += [motions[above] - motions[below] for above, below in jumps]
         hindered = np.concatenate(rows)
@@ -277,22 +275,41 @@ class Inside:
         return np.stack([along_x, along_y, rotation], axis=1)
 
 
-def _condensed_by(condensed: SchurComplement, forces: Sequence[Array]) -> list[Array]:
-    """Forces on what equal parts keep, (n_kept, n_instants) each, scaled.
+def _condensed_by(
+    condensed: SchurComplement, forces: Sequence[PartForce | None]
+) -> list[Array | None]:
+    """Forces on what equal parts keep, (n_kept, n_instants) each, scaled, or None.
 
-    `forces` are those on the degrees of freedom of each, (n, n_instants), scaled.
+    The very same forces are condensed once, those of as many patterns some together.
     """
-    on_kept = list[Array]()
-    for first in range(0, len(forces), TOGETHER):
-        some = np.stack(forces[first : first + TOGETHER])
-        on_kept.extend(condensed.condense(some))
-    return on_kept
+    by_size = dict[int, dict[int, PartForce]]()
+    for force in forces:
+        if force is not None:
+            by_size.setdefault(len(force.courses), {})[id(force)] = force
+    found = dict[int, Array]()
+    for of_size in by_size.values():
+        alike = list(of_size.values())
+        for first in range(0, len(alike), TOGETHER):
+            some = alike[first : first + TOGETHER]
+            patterns = np.array([force.patterns for force in some])
+            courses = np.array([force.courses for force in some])
+            over_time = condensed.condense(patterns) @ courses
+            check_forces(over_time)
+            found.update(zip([id(force) for force in some], over_time, strict=True))
+    return [found.get(id(force)) for force in forces]
 
 
 def _firsts(sizes: Sequence[int]) -> Indices:
     """Place of the first entry of each of some lists that follow each other, (n,)."""
     lengths: Indices = np.asarray(sizes, dtype=np.intp)
     return np.cumsum(lengths) - lengths
+
+
+def _divided(values: Indices, sizes: Sequence[int]) -> list[Indices]:
+    """Divide values, (n,), into lists that follow each other, of some sizes."""
+    # NumPy's split takes five times as long for hundreds of small ones (measured).
+    ends = np.cumsum([0, *sizes]).tolist()
+    return [values[first:last] for first, last in pairwise(ends)]
 
 
 def _directions(

@@ -120,14 +120,9 @@ def _prescribed(cut: CutBodies, number: int) -> Dirichlet:
     _, signs = cut.axes_held(held, held.nodes)
     scaled = signs[:, None] * given / cut.length
     for part in range(cut.structure.bodies[held.body].substructures):
-        own = cut.parts[cut.owner(held.body, part)]
+        owner = cut.owner(held.body, part)
+        own = cut.parts[owner]
         if ("held", number) in own.traces:
             rows.append(own.rows(("held", number)).ravel())
-            values.append(
-                scaled[
-                    np.isin(
-                        held.nodes, cut.shape_parts[cut.owner(held.body, part)].nodes
-                    )
-                ]
-            )
+            values.append(scaled[cut.shape_parts[owner].has(held.nodes)])
     return Dirichlet(np.concatenate(rows), np.concatenate(values))

@@ -69,25 +69,29 @@ def check_load(bodies: Sequence[Body], load: Load, instants: int) -> None:
     check_value(f"{load}.force", load.force, Numbers((shape,)))
 
 
-def check_chains(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
-    """Refuse bodies that do not exist, and chains of nodes that follow no edges."""
-    any_body = Count(0, len(bodies) - 1)
-    # Equal chains of one shape are checked once: voussoirs are alike.
-    known = set[tuple[int, bytes]]()
+def check_joined(bodies: Sequence[Body], joints: Sequence[Joint]) -> None:
+    """Refuse bodies of joints that do not exist."""
+    last = len(bodies) - 1
     for joint in joints:
-        for number, nodes in joint.sides:
-            if any_body.flaw(number) is not None:
-                check_value(f"{joint} on body", number, any_body)
-            body = bodies[number]
-            key = _key(body, nodes)
-            if key not in known:
-                _check_chain(body, joint, nodes)
-                known.add(key)
+        for number, _ in joint.sides:
+            # Mostly they are plain numbers, and there are hundreds of them.
+            if type(number) is not int or not 0 <= number <= last:
+                check_value(f"{joint} on body", number, Count(0, last))
 
 
-def _key(body: Body, nodes: Indices) -> tuple[int, bytes]:
-    """Key of a chain of nodes, (n,), the same for equal chains of one shape."""
-    return id(body.shape), nodes.tobytes()
+def check_chains(
+    bodies: Sequence[Body], joints: Sequence[Joint], kinds: Sequence[int]
+) -> None:
+    """Refuse chains of nodes that follow no edges.
+
+    Of joints of one kind (`kinds_of`) the first is checked: voussoirs are alike.
+    """
+    known = set[int]()
+    for joint, kind in zip(joints, kinds, strict=True):
+        if kind not in known:
+            known.add(kind)
+            for number, nodes in joint.sides:
+                _check_chain(bodies[number], joint, nodes)
 
 
 def _check_chain(body: Body, joint: Joint, nodes: Indices) -> None:
@@ -120,16 +124,17 @@ def check_pairs(
     bodies: Sequence[Body],
     rotations: Array,
     joints: Sequence[Joint],
+    kinds: Sequence[int],
     pairs: NodePairs,
     nodes: Array,
 ) -> None:
     """Refuse normals of other lengths or out of bodies, and pairs that are far apart.
 
-    `rotations` are those of all bodies, (n_bodies, 2, 2), `nodes` the positions of
-    their nodes, (n_nodes, 2), m.
+    `rotations` are those of all bodies, (n_bodies, 2, 2), `kinds` those of the joints
+    (`kinds_of`), `nodes` the positions of all nodes, (n_nodes, 2), m.
     """
     _check_lengths(joints, pairs)
-    _check_directions(bodies, rotations, joints, pairs)
+    _check_directions(bodies, rotations, joints, kinds, pairs)
     _check_opposite(joints, pairs, nodes)
 
 
@@ -151,26 +156,25 @@ def _check_directions(
     bodies: Sequence[Body],
     rotations: Array,
     joints: Sequence[Joint],
+    kinds: Sequence[int],
     pairs: NodePairs,
 ) -> None:
     """Refuse normals that point out of the body above, if it is a mesh."""
     # Normals in the axes of a shape are the same at equal chains of nodes.
-    known = dict[tuple[int, bytes], Array]()
-    outward = []
-    for joint in joints:
-        body = bodies[joint.above]
-        key = _key(body, joint.nodes)
-        if key not in known:
+    known = dict[int, Array]()
+    for joint, kind in zip(joints, kinds, strict=True):
+        if kind not in known:
+            shape = bodies[joint.above].shape
             # The line of beams has a body on both of its sides.
-            known[key] = np.zeros((len(joint.nodes), 2))
-            if isinstance(body.shape, Mesh):
-                normals = body.shape.outward(joint.nodes)
+            known[kind] = np.zeros((len(joint.nodes), 2))
+            if isinstance(shape, Mesh):
+                normals = shape.outward(joint.nodes)
                 sizes = np.linalg.norm(normals, axis=1, keepdims=True)
-                known[key] = normals / sizes
-        outward.append(known[key])
+                known[kind] = normals / sizes
+    outward = np.concatenate([known[kind] for kind in kinds])
     above = np.array([joint.above for joint in joints])
     turned = rotations[above[pairs.joints]]
-    along = np.einsum("nab,nb,na->n", turned, np.concatenate(outward), pairs.normals)
+    along = np.einsum("nab,nb,na->n", turned, outward, pairs.normals)
     is_mesh = np.array([isinstance(bodies[each.above].shape, Mesh) for each in joints])
     is_refused = (along >= 0.0) & is_mesh[pairs.joints]
     if is_refused.any():

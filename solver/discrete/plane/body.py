@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 
@@ -19,7 +20,9 @@ from solver.checks import (
     Number,
     Numbers,
     Part,
+    alike,
     check,
+    check_value,
 )
 from solver.discrete.elements import MOST_POISSON
 from solver.discrete.plane.beams import Beam
@@ -101,6 +104,18 @@ class Body:
     def __str__(self) -> str:
         return f"Body {self.name!r}"
 
+    def placed(self, names: Sequence[str], origins: Array, angles: Array) -> list[Body]:
+        """Bodies like this one with other names, origins and angles.
+
+        `origins` have the shape (n, 2), m, and `angles` (n,), rad.
+        """
+        count = len(names)
+        check_value("Body.origin", origins, Numbers(((count, 2),)))
+        check_value("Body.angle", angles, Numbers(((count,),)))
+        return alike(
+            self, count, name=names, origin=list(origins), angle=angles.tolist()
+        )
+
     @cached_property
     def rotation(self) -> Array:
         """Matrix from the axes of the shape to the global ones, shape (2, 2)."""
@@ -169,6 +184,25 @@ class Joint:
 
     def __str__(self) -> str:
         return f"Joint {self.name!r}"
+
+    def placed(
+        self,
+        names: Sequence[str],
+        above: Sequence[int],
+        below: Sequence[int],
+        normals: Array,
+    ) -> list[Joint]:
+        """Joints like this one with other names, bodies and normals.
+
+        `above` and `below` are the numbers of their bodies, (n,), and `normals` have
+        the shape (n, n_nodes, 2).
+        """
+        count = len(names)
+        shape = count, len(self.nodes), 2
+        check_value("Joint.normals", normals, Numbers((shape,)))
+        return alike(
+            self, count, name=names, above=above, below=below, normals=list(normals)
+        )
 
     @cached_property
     def sides(self) -> list[tuple[int, Indices]]:

@@ -5,7 +5,7 @@ Forces are scaled by E L and displacements by L, so that a stiffness is scaled b
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,7 +13,8 @@ import numpy as np
 import skfem
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Flags, Indices
+from solver.discrete.condensed_part import PartForce
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.plane.beams import Beam
 from solver.discrete.plane.body import Body
@@ -67,6 +68,12 @@ class ShapePart:
         if isinstance(self.body.shape, Mesh):
             return 2
         return 3
+
+    def has(self, nodes: Indices) -> Flags:
+        """Check which nodes of the shape are its own, (n,) both."""
+        is_own = np.zeros(len(self.body.shape.nodes), dtype=bool)
+        is_own[self.nodes] = True
+        return is_own[nodes]
 
     @cached_property
     def size(self) -> float:
@@ -128,21 +135,24 @@ class ShapePart:
             return KEPT.of(key, lambda: mesh_volumes(self._basis)[self.nodes])
         return shape.volumes(self.chosen)[self.nodes]
 
-    def force(self, weight: Array | None, load: Array | None) -> Array | None:
-        """Forces of weight and loads, (n_nodes, 2, n_instants), N; None without any.
+    def forces(
+        self, weight: Array | None, loads: Sequence[PartForce]
+    ) -> PartForce | None:
+        """Forces of weight and loads along x and y of its nodes, N; None without any.
 
-        The weight is per volume along x and y, (2, n_instants), N/m^3; loads are on its
-        nodes, of the shape of the forces, N.
+        The weight is per volume along x and y, (2, n_instants), N/m^3. Patterns of
+        loads and of the result have the shape (n_nodes, 2, n_patterns).
         """
-        force = load
+        patterns = [load.patterns for load in loads]
+        courses = [load.courses for load in loads]
         # Mostly nothing is heavy, and volumes of meshes take some time.
         if weight is not None and weight.any():
-            force = np.multiply.outer(self.volumes, weight)
-            if load is not None:
-                force = force + load
-        if force is None or not force.any():
+            axes = np.flatnonzero(weight.any(axis=1))
+            patterns.append(np.multiply.outer(self.volumes, np.eye(2)[:, axes]))
+            courses.append(weight[axes])
+        if not patterns:
             return None
-        return force
+        return PartForce(np.concatenate(patterns, axis=2), np.concatenate(courses))
 
     @cached_property
     def elements(self) -> Indices:

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Container, Hashable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array, Flags, Indices
-from solver.discrete.condensed_part import N_AXES, CondensedPart, Trace, numbered
+from solver.arrays import Array, Flags, Indices, separated
+from solver.discrete.condensed_part import (
+    N_AXES,
+    CondensedPart,
+    PartForce,
+    Trace,
+    numbered,
+)
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held
 from solver.discrete.plane.body_parts import ShapePart
@@ -19,6 +25,9 @@ from solver.discrete.plane.meshes import Mesh
 from solver.discrete.plane.shared_operators import PartNodes, SharedOperators
 from solver.discrete.scales import Scales
 from solver.refusal import RefusedError, Words
+
+FEW = 8
+"""Number of components of nodes on which a load acts, up to which each is a pattern."""
 
 
 class CutBodies:
@@ -54,11 +63,12 @@ class CutBodies:
         self.scales = Scales(self.length, self.young * self.length, structure.duration)
         bodies = structure.bodies
         shapes = dict[tuple[int, int], CutShape]()
+        self.cuts = list[CutShape]()
         for body in bodies:
             key = id(body.shape), body.substructures
             if key not in shapes:
                 shapes[key] = CutShape(body.shape, body.substructures)
-        self.cuts = [shapes[id(body.shape), body.substructures] for body in bodies]
+            self.cuts.append(shapes[key])
         self.frames = NodeFrames(
             structure.rotations,
             structure.first_nodes,
@@ -66,7 +76,13 @@ class CutBodies:
             structure.held,
         )
         self.joint_names = [joint.name for joint in structure.joints]
-        self.pieces = pieces_of(bodies, structure.joints, self.cuts, self.frames)
+        self.pieces = pieces_of(
+            bodies,
+            structure.joints,
+            structure.joint_kinds,
+            self.cuts,
+            self.frames,
+        )
         counts = [body.substructures for body in bodies]
         self.first_parts: list[int] = np.cumsum([0, *counts]).tolist()
         self._body_of_parts = np.repeat(np.arange(len(bodies)), counts).tolist()
@@ -126,9 +142,14 @@ class CutBodies:
     def _own_frames(self) -> Array:
         """Directions at all nodes in the axes of their bodies, (n_nodes, 2, 2)."""
         sizes = np.diff(self.structure.first_nodes)
-        rotations = np.repeat(self.structure.rotations, sizes, axis=0)
-        own = self.frames.frames @ rotations
-        return snapped(own.reshape(-1, 2)).reshape(-1, 2, 2)
+        bodies = np.repeat(np.arange(len(sizes)), sizes)
+        own = np.zeros_like(self.frames.frames)
+        own[:] = np.eye(2)
+        # Of most nodes they are the axes themselves.
+        nodes = np.flatnonzero(self.frames.is_turned)
+        turned = self.frames.frames[nodes] @ self.structure.rotations[bodies[nodes]]
+        own[nodes] = snapped(turned.reshape(-1, 2)).reshape(-1, 2, 2)
+        return own
 
     def _of_shapes(self) -> list[ShapePart]:
         """Parts of shapes, body by body; those of one kind are shared."""
@@ -162,19 +183,19 @@ class CutBodies:
     def _trace_pieces(self) -> None:
         """Add the rows of the joints."""
         known = dict[Hashable, Trace]()
+        kinds = self.structure.joint_kinds
         for number, piece in enumerate(self.pieces):
             joint = self.structure.joints[piece.joint]
-            has_macro = joint.below is not None
             sides = zip(JOINT_SIDES, joint.sides, piece.parts, strict=False)
             for name, (_, nodes), owner in sides:
                 own = self.shape_parts[owner]
                 # Pieces of joints that are alike share their arrays.
-                key = id(own), nodes.tobytes(), id(piece.weights), has_macro
+                key = id(own), kinds[piece.joint], name, id(piece.weights)
                 if key not in known:
                     dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
                     k = own.density * piece.weights
                     direction = np.repeat(k[:, None], 2, axis=1)
-                    known[key] = Trace(dofs, direction, has_macro)
+                    known[key] = Trace(dofs, direction, joint.below is not None)
                 self._traces[owner][name, number] = known[key]
 
     def _trace_seams(self) -> None:
@@ -198,7 +219,7 @@ class CutBodies:
             for part in range(self.structure.bodies[held.body].substructures):
                 owner = self.owner(held.body, part)
                 own = self.shape_parts[owner]
-                is_own = np.isin(held.nodes, own.nodes)
+                is_own = own.has(held.nodes)
                 if not is_own.any():
                     continue
                 nodes = held.nodes[is_own]
@@ -225,6 +246,7 @@ class CutBodies:
     def _parts(self) -> Iterator[CondensedPart]:
         """Parts of all bodies, with their rows numbered part by part."""
         n_rows = 0
+        rotations = list(self.structure.rotations)
         for owner, on_nodes in enumerate(self._nodes_of_parts()):
             body = self._body_of_parts[owner]
             of_body = self.structure.bodies[body]
@@ -247,7 +269,7 @@ class CutBodies:
                 first_rows=first_rows,
                 force=on_nodes.force,
                 frames=on_nodes.frames,
-                rotation=self.structure.rotations[body],
+                rotation=rotations[body],
             )
 
     def _nodes_of_parts(self) -> list[PartNodes]:
@@ -256,7 +278,7 @@ class CutBodies:
         motions = self._motions()
         found = dict[int, PartNodes]()
         for owners in self._alike_in_force(loads):
-            of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0]))
+            of_parts = self._nodes_of_alike(owners, motions, loads.get(owners[0], []))
             found.update(zip(owners, of_parts, strict=True))
         return [found[owner] for owner in range(len(self.shape_parts))]
 
@@ -267,7 +289,7 @@ class CutBodies:
         motions[:, 2, 2] = 1.0
         return motions
 
-    def _alike_in_force(self, loads: Mapping[int, Array]) -> list[list[int]]:
+    def _alike_in_force(self, loads: Container[int]) -> list[list[int]]:
         """Numbers of parts alike in shape and weight; loaded ones are like no other."""
         alike = dict[Hashable, list[int]]()
         for owner, own in enumerate(self.shape_parts):
@@ -279,48 +301,61 @@ class CutBodies:
         return list(alike.values())
 
     def _nodes_of_alike(
-        self, owners: Sequence[int], motions: Array, load: Array | None
+        self, owners: Sequence[int], motions: Array, loads: Sequence[PartForce]
     ) -> list[PartNodes]:
         """Nodes, motions and forces of parts alike, by their numbers.
 
-        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `load` the forces on the
-        nodes of the parts, (n_nodes_of_part, 2, n_instants), N, or None.
+        `motions` are those of all nodes, (n_nodes, N_AXES, 3), `loads` the forces on
+        the nodes of the parts, with patterns (n_nodes_of_part, 2, n_patterns), N.
         """
         own = self.shape_parts[owners[0]]
         bodies = [self._body_of_parts[owner] for owner in owners]
         nodes = np.add.outer(self.structure.first_nodes[bodies], own.nodes)
         keys = self._operators.turned(nodes)
         frames = motions[nodes, : own.n_axes]
-        force = own.force(self.structure.bodies[bodies[0]].weight, load)
-        turned: Array | list[None] = [None] * len(owners)
+        forces: list[PartForce | None] = [None] * len(owners)
+        force = own.forces(self.structure.bodies[bodies[0]].weight, loads)
         if force is not None:
-            on_nodes = frames[..., :2] @ force
+            on_nodes = frames[..., :2] @ force.patterns
             on_nodes /= self.young * self.length
-            turned = on_nodes.reshape(len(owners), -1, force.shape[-1])
-        of_parts = zip(nodes, keys, frames, turned, strict=True)
+            turned = on_nodes.reshape(len(owners), -1, len(force.courses))
+            forces = [PartForce(patterns, force.courses) for patterns in turned]
+        of_parts = zip(nodes, keys, frames, forces, strict=True)
         return [PartNodes(*of_part) for of_part in of_parts]
 
-    def _loads(self) -> Mapping[int, Array]:
-        """Forces of the loads on the nodes of parts, (n_nodes, 2, n_instants), N.
+    def _loads(self) -> Mapping[int, Sequence[PartForce]]:
+        """Forces of the loads on the nodes of parts, N.
 
-        A node of several parts is loaded in the first of them.
+        Patterns have the shape (n_nodes, 2, n_patterns). A node of several parts is
+        loaded in the first of them.
         """
-        found = dict[int, Array]()
-        instants = len(self.structure.instants)
+        found = dict[int, list[PartForce]]()
         for load in self.structure.loads:
+            if not load.force.any():
+                continue
+            patterns, courses = _separated(load.force.reshape(2 * len(load.nodes), -1))
+            on_nodes = patterns.reshape(len(load.nodes), 2, -1)
             taken = np.zeros(len(load.nodes), dtype=bool)
             for part in range(self.structure.bodies[load.body].substructures):
                 owner = self.owner(load.body, part)
-                nodes = self.shape_parts[owner].nodes
-                is_own = np.isin(load.nodes, nodes) & ~taken
+                own = self.shape_parts[owner]
+                is_own = own.has(load.nodes) & ~taken
                 taken |= is_own
                 if is_own.any():
-                    none = np.zeros((len(nodes), 2, instants))
-                    force = found.setdefault(owner, none)
-                    force[np.searchsorted(nodes, load.nodes[is_own])] += load.force[
-                        is_own
-                    ]
+                    on_part = np.zeros((len(own.nodes), 2, len(courses)))
+                    places = np.searchsorted(own.nodes, load.nodes[is_own])
+                    on_part[places] = on_nodes[is_own]
+                    found.setdefault(owner, []).append(PartForce(on_part, courses))
         return found
+
+
+def _separated(force: Array) -> tuple[Array, Array]:
+    """Forces, (n, n_instants), as patterns, (n, rank), times courses over time."""
+    loaded = np.flatnonzero(force.any(axis=1))
+    if len(loaded) > FEW:
+        return separated(force)
+    # To look for a smaller rank takes longer than it saves.
+    return np.eye(len(force))[:, loaded], force[loaded]
 
 
 def _modulus(body: Body) -> float:

@@ -54,12 +54,16 @@ class CutShape:
         self.labels = bisected(places, count)
         if isinstance(shape, Mesh) and count > 1:
             self.labels = in_one_piece(shape, self.labels)
+        if count == 1:
+            # Every node belongs to an element.
+            self.elements = [np.arange(len(self.labels))]
+            self.nodes = [np.arange(len(shape.nodes))]
+            self.seams = list[Seam]()
+            return
         numbers = range(count)
         self.elements = [np.flatnonzero(self.labels == part) for part in numbers]
         self.nodes = [np.unique(shape.element_nodes[some]) for some in self.elements]
-        self.seams = list[Seam]()
-        if count > 1:
-            self.seams = _seams_of(shape, self.labels)
+        self.seams = _seams_of(shape, self.labels)
 
 
 def bisected(centres: Array, count: int) -> Indices:

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, distinct
 from solver.discrete.condensed_part import CondensedPart
 from solver.discrete.scales import Scales
 from solver.laws import (
@@ -210,8 +210,9 @@ def contact_of(
     pieces in one component, (n_pairs_of_piece, n_macro) each; without columns where no
     macro forces balance.
     """
-    keys = pairs.joints * (pairs.places.max() + 1) + pairs.places
-    _, first, points = np.unique(keys, return_index=True, return_inverse=True)
+    size = int(pairs.places.max()) + 1
+    keys = pairs.joints * size + pairs.places
+    _, first, points = distinct(keys, len(pairs.names) * size)
     names: tuple[str, ...] = ()
     interfaces = None
     if len(pairs.names) > 1:
@@ -220,7 +221,7 @@ def contact_of(
     return Contact(
         normal=_normal_law(pairs, surface, scales),
         tangential=_friction(pairs, surface, scales),
-        points=points.ravel(),
+        points=points,
         positions=surface.positions[first],
         weights=pairs.weights,
         stiffness_beside=stiffness_beside,

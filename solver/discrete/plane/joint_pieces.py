@@ -26,7 +26,9 @@ ON_AXIS = 1e-12
 def snapped(vectors: Array) -> Array:
     """Unit vectors, (n, 2), of which those along an axis are that exactly."""
     vectors = np.where(np.abs(vectors) <= ON_AXIS, 0.0, vectors)
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+    x, y = vectors.T
+    sizes = np.sqrt(x * x + y * y)
+    return np.asarray(vectors / sizes[:, None])
 
 
 class NodeFrames:
@@ -109,6 +111,11 @@ class NodeFrames:
         differs = self._unlike[above] | (self._unlike[below] & has_below)
         return np.asarray(~differs & ~(held_above & held_below))
 
+    @property
+    def is_turned(self) -> Flags:
+        """Mask of nodes whose directions may differ from their body's, (n_nodes,)."""
+        return self._of_joint | self._held.any(axis=1)
+
     def of_body(self, number: int) -> Array:
         """Directions at the nodes of a body, (n, 2, 2)."""
         return self.frames[self.first_nodes[number] : self.first_nodes[number + 1]]
@@ -123,12 +130,14 @@ class NodeFrames:
 def pieces_of(
     bodies: Sequence[Body],
     joints: Sequence[Joint],
+    kinds: Sequence[int],
     cuts: Sequence[CutShape],
     frames: NodeFrames,
 ) -> list[JointPiece]:
     """Pieces of all joints, joint by joint and along each.
 
-    Parts of bodies are numbered one body after the other.
+    Parts of bodies are numbered one body after the other. `kinds` are those of the
+    joints (`kinds_of`).
 
     Raises
     ------
@@ -141,11 +150,12 @@ def pieces_of(
     counts = [len(cut.elements) for cut in cuts]
     first_parts = np.cumsum([0, *counts]).tolist()
     ends = frames.first_pairs.tolist()
+    flags = frames.has_pair.tobytes()
     for number, joint in enumerate(joints):
-        has_pair = frames.has_pair[ends[number] : ends[number + 1]]
-        sides = [(id(cuts[body]), chain.tobytes()) for body, chain in joint.sides]
-        key = *sides, has_pair.tobytes()
+        own = slice(ends[number], ends[number + 1])
+        key = kinds[number], flags[own]
         if key not in known:
+            has_pair = frames.has_pair[own]
             whole = _pieces_of_joint(bodies, number, joint, cuts)
             known[key] = [
                 _paired(piece, has_pair[piece.places])
@@ -168,11 +178,9 @@ def _of_joint(
     piece: JointPiece, number: int, joint: Joint, first_parts: Sequence[int]
 ) -> JointPiece:
     """The piece of a joint, by its number, that is like one with parts of bodies."""
-    numbers = [
-        first_parts[body] + part
-        for (body, _), part in zip(joint.sides, piece.parts, strict=False)
-    ]
-    parts = tuple(numbers)
+    parts: tuple[int, ...] = (first_parts[joint.above] + piece.parts[0],)
+    if joint.below is not None:
+        parts = parts[0], first_parts[joint.below] + piece.parts[1]
     return JointPiece(number, parts, piece.places, piece.weights, piece.along)
 
 

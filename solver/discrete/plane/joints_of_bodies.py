@@ -41,15 +41,16 @@ def law_of_joints(cut: CutBodies, numbers: Sequence[int]) -> Contact:
 
 def _positions(cut: CutBodies, numbers: Sequence[int]) -> Array:
     """Distance of the nodes of joints from the first of each, (n_nodes,), m."""
-    known = dict[Hashable, Array]()
+    structure = cut.structure
+    known = dict[int, Array]()
     found = []
     for number in numbers:
-        joint = cut.structure.joints[number]
-        shape = cut.structure.bodies[joint.above].shape
-        key = id(shape), joint.nodes.tobytes()
-        if key not in known:
-            known[key] = _distances(shape.nodes[joint.nodes])
-        found.append(known[key])
+        kind = structure.joint_kinds[number]
+        if kind not in known:
+            joint = structure.joints[number]
+            nodes = structure.bodies[joint.above].shape.nodes
+            known[kind] = _distances(nodes[joint.nodes])
+        found.append(known[kind])
     return np.concatenate(found)
 
 
@@ -98,6 +99,8 @@ def _resting_lines(cut: CutBodies) -> Indices:
     Of belts and leaves that all lie on supports of their own it is 0, too.
     """
     joints = cut.structure.joints
+    if cut.is_mesh.all():
+        return np.zeros(len(joints), dtype=np.intp)
     is_of_lines = np.array(
         [not any(cut.is_mesh[body] for body, _ in joint.sides) for joint in joints]
     )
@@ -142,11 +145,11 @@ def _macro_bases(cut: CutBodies, pairs: JointPairs) -> list[Array]:
     known = dict[Hashable, Array]()
     bases = []
     for piece in pieces:
-        joint = joints[piece.joint]
         part = cut.shape_parts[piece.parts[0]]
         # Pieces of joints that are alike share their arrays.
-        key = id(part), joint.nodes.tobytes(), id(piece.weights)
+        key = id(part), cut.structure.joint_kinds[piece.joint], id(piece.weights)
         if key not in known:
+            joint = joints[piece.joint]
             nodes = cut.structure.bodies[joint.above].shape.nodes
             along = _distances(nodes[joint.nodes[piece.places]])
             reach = along[-1] or 1.0

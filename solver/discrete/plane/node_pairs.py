@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.plane.body import Joint
+from solver.discrete.plane.body import Body, Joint
 
 
 class NodePairs(NamedTuple):
@@ -52,6 +52,26 @@ class NodePairs(NamedTuple):
     def joints(self) -> Indices:
         """Number of the joint of each pair, ascending, (n_pairs,)."""
         return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
+
+
+def kinds_of(bodies: Sequence[Body], joints: Sequence[Joint]) -> list[int]:
+    """Number of the kind of each joint, (n_joints,).
+
+    Joints of one kind are along equal chains of nodes of the same shapes, which are cut
+    alike.
+    """
+    of_bodies = [(id(body.shape), body.substructures) for body in bodies]
+    known = dict[Hashable, int]()
+    kinds = []
+    for joint in joints:
+        # Mostly chains are equal because they are the very same.
+        same = [(of_bodies[body], id(nodes)) for body, nodes in joint.sides]
+        key = tuple(same)
+        if key not in known:
+            equal = [(of_bodies[body], nodes.tobytes()) for body, nodes in joint.sides]
+            known[key] = known.setdefault(tuple(equal), len(known))
+        kinds.append(known[key])
+    return kinds
 
 
 def _nodes_of(sides: Sequence[tuple[int, Indices]], first_nodes: Indices) -> Indices:

@@ -8,7 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.condensed_part import Operator, Trace, kept_by
+from solver.discrete.condensed_part import (
+    Operator,
+    PartForce,
+    Trace,
+    kept_by,
+)
 from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.schur_complement import SchurComplement
 from solver.kept import KEPT, content_of
@@ -29,13 +34,13 @@ class PartNodes(NamedTuple):
     frames
         Motions of its degrees of freedom along x and y, and turn, (n_nodes, n_axes, 3).
     force
-        Forces on these, (n_nodes n_axes, n_instants), scaled, or None.
+        Forces on these, (n_nodes n_axes,) in space, or None.
     """
 
     nodes: Indices
     turned: bytes
     frames: Array
-    force: Array | None
+    force: PartForce | None
 
 
 class SharedOperators:
@@ -65,8 +70,9 @@ class SharedOperators:
         # Most parts that are alike have the very same traces.
         of_traces = [id(trace) for trace in traces]
         same = id(part), on_nodes.turned, has_force, *of_traces
-        if same in self._operators:
-            return self._operators[same]
+        known = self._operators.get(same)
+        if known is not None:
+            return known
         dofs = np.concatenate([trace.dofs.ravel() for trace in traces])
         direction = np.concatenate([trace.direction.ravel() for trace in traces])
         alike = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from solver.discrete.plane.meshes import SIMPSON, Mesh, on_nodes
 from solver.discrete.probes import mean_held, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Loop
+from solver.kept import KEPT, content_of
 
 HAUNCH = 0.2
 """Share of the ring from a springing to its haunch: near there a semicircle under its
@@ -207,19 +209,20 @@ class Ring:
 
         `weight` is that of voussoirs along x and y, shape (2, n_instants), N/m^3.
         """
-        bodies = []
-        for number, shape in enumerate(self.shapes):
-            body = Body(
-                f"voussoir {number + 1}",
+        names = [f"voussoir {number + 1}" for number in range(self.voussoirs)]
+        bodies = list[Body]()
+        for shape, run in groupby(range(self.voussoirs), self.shapes.__getitem__):
+            numbers = list(run)
+            own = slice(numbers[0], numbers[-1] + 1)
+            first = Body(
+                names[numbers[0]],
                 shape,
                 young,
                 poisson,
-                origin=self.origins[number],
-                angle=-float(self.turns[number]),
                 weight=weight,
                 substructures=substructures,
             )
-            bodies.append(body)
+            bodies += first.placed(names[own], self.origins[own], -self.turns[own])
         ends = []
         # The upward axis of a block points into the ring, on the left side clockwise.
         for name, angle, sign in (
@@ -240,26 +243,18 @@ class Ring:
         _, face = self.faces
         directions = np.stack([np.cos(self.angles), -np.sin(self.angles)], axis=1)
         normals = np.repeat(directions[:, None], len(left), axis=1)
-        joints = []
-        for number, name in enumerate(self.joint_names):
-            nodes = left
-            below = right
-            if number == 0:
-                # The left block stands with its right side inwards.
-                below = face[::-1]
-            if number == self.voussoirs:
-                nodes = face
-            joint = Joint(
-                name,
-                number + 1,
-                nodes,
-                number,
-                below,
-                normals[number],
-                friction=friction,
-            )
-            joints.append(joint)
-        return joints
+        names = self.joint_names
+        last = self.voussoirs
+        # The left block stands with its right side inwards.
+        begins = Joint(names[0], 1, left, 0, face[::-1], normals[0], friction=friction)
+        inner = Joint(names[1], 2, left, 1, right, normals[1], friction=friction)
+        ends = Joint(
+            names[last], last + 1, face, last, right, normals[last], friction=friction
+        )
+        between = inner.placed(
+            names[1:last], range(2, last + 1), range(1, last), normals[1:last]
+        )
+        return [begins, *between, ends]
 
     def abutments(self, moved: Array) -> list[Held]:
         """Feet of both abutments: the left one at rest, the right one moved.
@@ -328,7 +323,10 @@ def _mapped(corners: Array) -> Mesh:
     n_rows, n_columns = corners.shape[:2]
     n = np.arange(n_rows * n_columns).reshape(n_rows, n_columns)
     elements = np.stack([n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]], axis=-1)
-    return Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4))
+    # What is found from a mesh takes as long as an iteration on 100 voussoirs, and
+    # loads leave it alone.
+    key = "voussoir", content_of(corners)
+    return KEPT.of(key, lambda: Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 
 from solver.arrays import Array, read_only
+from solver.discrete.condensed_part import PartForce
 from solver.discrete.elements import EDGE_MASS, Rectangle
 from solver.discrete.plane.rectangles.cut_rectangles import CutRectangles, Span
 from solver.discrete.plane.rectangles.sides import Given
@@ -47,8 +48,8 @@ class StackLoads:
         self._stack = rectangles.stack
         self._weight = cache(self._weight_of)
 
-    def of(self, number: int, mesh: Rectangle) -> Array | None:
-        """Forces on a rectangle by its number, (2 n_nodes, n_instants), or None."""
+    def of(self, number: int, mesh: Rectangle) -> PartForce | None:
+        """Forces on the nodes of a rectangle by its number, or None."""
         stack = self._stack
         weight = None
         if self._rectangles.body_of(number) >= stack.strips:
@@ -63,9 +64,9 @@ class StackLoads:
             _add_traction(total[:, component], mesh, span, scaled)
         force = total.reshape(-1, len(stack.instants))
         if weight is not None:
-            force += weight
+            force += weight.patterns
         if force.any():
-            return force
+            return PartForce.over_time(force)
         return None
 
     def _tractions(self, number: int) -> Iterator[tuple[Span, int, Given]]:
@@ -75,8 +76,8 @@ class StackLoads:
                 if not given.prescribed and not given.is_zero:
                     yield span, component, given
 
-    def _weight_of(self, mesh: Rectangle) -> Array | None:
-        """Nodal forces of the weight, (2 n_nodes, n_instants), or None."""
+    def _weight_of(self, mesh: Rectangle) -> PartForce | None:
+        """Nodal forces of the weight, with a pattern for each instant, or None."""
         stack = self._stack
         if stack.body_force is None:
             return None
@@ -86,7 +87,7 @@ class StackLoads:
         force = areas.reshape(-1, 1, 1) * density + 0.0
         if not force.any():
             return None
-        return read_only(force.reshape(-1, len(stack.instants)))
+        return PartForce.over_time(read_only(force.reshape(-1, len(stack.instants))))
 
 
 def _add_traction(force: Array, mesh: Rectangle, span: Span, traction: Array) -> None:
