@@ -142,11 +142,18 @@ class Pairs(Interface):
 
     def by_point(self, values: Array) -> Array:
         """Sum over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
+        if self._are_single:
+            return np.array(values, dtype=float)
         if values.size == len(values):
             size = len(self.positions)
             sums = np.bincount(self.points, values.ravel(), minlength=size)
             return np.asarray(sums.reshape(size, *values.shape[1:]), dtype=float)
         return np.asarray(self._pairs_of_points @ values)
+
+    @cached_property
+    def _are_single(self) -> bool:
+        """Check whether each point has one pair, and they come in the same order."""
+        return np.array_equal(self.points, np.arange(len(self.positions)))
 
     @cached_property
     def _pairs_of_points(self) -> sparse.csr_array:
@@ -159,6 +166,8 @@ class Pairs(Interface):
 
     def mean_by_point(self, values: Array) -> Array:
         """Mean over the pairs of each point: (n_pairs, ...) to (n_points, ...)."""
+        if self._are_single:
+            return np.array(values, dtype=float)
         # Pairs of a point share its force, but each has its displacement and gap.
         counts = np.bincount(self.points, minlength=len(self.positions))
         trailing = [1] * (values.ndim - 1)

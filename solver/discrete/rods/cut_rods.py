@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -21,7 +22,7 @@ from solver.discrete.substructure import (
     substructure_sizes,
     tributary,
 )
-from solver.kept import KEPT
+from solver.kept import KEPT, content_of
 from solver.laws import (
     Component,
     Contact,
@@ -40,6 +41,8 @@ with Anderson acceleration and automatic k). 4 modes save up to half of the iter
 with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires gain nothing."""
 NO_ROW = -1
 """Number of a boundary row that a node does not have."""
+OF_FRICTION = {"strength", "factors", "pressure", "friction_law"}
+"""Fields of rods on which their substructures do not depend."""
 
 
 def problem_of(rods: Rods) -> Problem:
@@ -112,6 +115,21 @@ class _Piece(NamedTuple):
     def _is_held(self, node: int, end: End) -> bool:
         """Check whether an end of the rod is at a node of the piece, on a spring."""
         return end.is_on_spring and self.first <= node <= self.first + self.size
+
+
+class _Parts(NamedTuple):
+    """Substructures of all rods, rod after rod."""
+
+    substructures: tuple[Substructure, ...]
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of their own arrays, B."""
+        total = 0
+        for each in self.substructures:
+            own = (each.dofs, each.rows, each.body_force, each.free_force)
+            total += sum(array.nbytes for array in own if array is not None)
+        return total
 
 
 class CutRods:
@@ -194,19 +212,35 @@ class CutRods:
         positions = []
         for of_rod, dofs in zip(self._positions, self._dofs_at, strict=True):
             positions.append(np.repeat(of_rod, dofs))
-        # Pieces of equal operators share them, also those of different rods.
-        shared: dict[tuple[object, ...], Elasticity] = {}
-        substructures = list[Substructure]()
-        for rod in range(len(self._rods)):
-            substructures.extend(self._substructures(rod, shared))
+        parts = KEPT.of(self._content(), self._parts)
         return Problem(
-            substructures=tuple(substructures),
+            substructures=parts.substructures,
             interfaces=dict(self._interfaces()),
             positions=np.concatenate(positions),
             instants=rods.instants,
             carried=carried,
             scales=scales,
         )
+
+    def _content(self) -> Hashable:
+        """Data on which the substructures depend: friction and its laws do not."""
+        contents = {id(rods): _content_of(rods) for rods in self._rods}
+        return (
+            "substructures of rods",
+            self._scales,
+            self._sides.shape,
+            (self._rubs.start, self._rubs.stop),
+            tuple(contents[id(rods)] for rods in self._rods),
+        )
+
+    def _parts(self) -> _Parts:
+        """All substructures, rod after rod, which are kept between runs."""
+        # Pieces of equal operators share them, also those of different rods.
+        shared: dict[tuple[object, ...], Elasticity] = {}
+        substructures = list[Substructure]()
+        for rod in range(len(self._rods)):
+            substructures.extend(self._substructures(rod, shared))
+        return _Parts(tuple(substructures))
 
     def _substructures(
         self, rod: int, shared: dict[tuple[object, ...], Elasticity]
@@ -455,6 +489,21 @@ class CutRods:
         compliance = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
         in_series = 2.0 / (compliance[:-1] + compliance[1:])
         return in_series * (self._scales.displacement / rods.length)
+
+
+def _content_of(data: Rods | End) -> Hashable:
+    """Values of all fields but those of friction, arrays by their digests."""
+    values: list[Hashable] = []
+    for field in dataclasses.fields(data):
+        if field.name in OF_FRICTION:
+            continue
+        value = getattr(data, field.name)
+        if isinstance(value, np.ndarray):
+            value = content_of(value)
+        elif isinstance(value, End):
+            value = _content_of(value)
+        values.append(value)
+    return tuple(values)
 
 
 def _free_force(rods: Rods, stiffness: Array) -> Array | None:

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -108,17 +109,17 @@ class RopeWire:
         """Name of the wire's interface: numbers of layer and wire, from 1."""
         return f"wire {self.layer + 1}.{self.number + 1}"
 
-    @property
+    @cached_property
     def arc(self) -> Array:
         """Arc lengths of the nodes, shape (n_nodes,), m."""
         return np.linspace(0.0, self.length, len(self.curvature))
 
-    @property
+    @cached_property
     def along(self) -> Array:
         """Positions z of the nodes along the strand, shape (n_nodes,), m."""
         return np.asarray(np.cos(self.layer_data.lay) * self.arc)
 
-    @property
+    @cached_property
     def angle(self) -> Array:
         """Theta at the nodes, shape (n_nodes,), rad."""
         return np.asarray(
