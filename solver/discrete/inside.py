@@ -241,14 +241,7 @@ class Inside:
         """
         moving = np.unique(groups[groups >= 0])
         asked = np.unique(np.concatenate([fixed, *chain.from_iterable(jumps)]))
-        asked = asked[asked >= 0]
-        # The row beyond the last is what stands still.
-        motions = np.zeros((len(groups) + 1, 3 * len(moving)))
-        for number, group in enumerate(moving):
-            centre = self.positions[groups == group].mean(axis=0)
-            dofs = asked[groups[asked] == group]
-            own = slice(3 * number, 3 * number + 3)
-            motions[dofs, own] = self.rigid_modes(dofs, centre)
+        motions = self._motions_of(groups, asked[asked >= 0])
         rows = [motions[fixed]]
         rows += [motions[above] - motions[below] for above, below in jumps]
         hindered = np.concatenate(rows)
@@ -259,6 +252,21 @@ class Inside:
         free = np.linalg.svd(hindered, full_matrices=True)[2][count:]
         largest = np.abs(free).reshape(-1, len(moving), 3).max(axis=(0, 2))
         return np.asarray(moving[largest > MOVES], dtype=np.intp)
+
+    def _motions_of(self, groups: Indices, dofs: Indices) -> Array:
+        """Rigid motions of groups at some degrees of freedom, (n_dofs + 1, n_motions).
+
+        Rows of others are 0, as is the last one, which is what stands still; arguments
+        as of `free_groups`.
+        """
+        moving = np.unique(groups[groups >= 0])
+        motions = np.zeros((len(groups) + 1, 3 * len(moving)))
+        for number, group in enumerate(moving):
+            centre = self.positions[groups == group].mean(axis=0)
+            of_group = dofs[groups[dofs] == group]
+            columns = slice(3 * number, 3 * number + 3)
+            motions[of_group, columns] = self.rigid_modes(of_group, centre)
+        return motions
 
     def rigid_modes(self, dofs: Indices, centre: Array | None = None) -> Array:
         """Translations and rotation about a centre, (n, 3), of dofs, (n,).

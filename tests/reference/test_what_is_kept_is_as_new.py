@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,11 +19,14 @@ from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.settings.scene import Settings
+from solver.settings.values import SettingError
+from solver.study.random_runs import draw
 
 SCENES = ("block", "layers", "fault", "incline", "wall", "strand")
 """Scenes whose contacts are condensed."""
 OF_ANY_SHAPE = ("arch", "belt", "bundle")
 """Scenes of bodies of any shape."""
+SEED = 91
 LOADS = {
     "block": {"top_tangential_displacement": 3e-5},
     "layers": {"deflection": 0.003},
@@ -75,7 +80,7 @@ def test_more_friction_leaves_the_stiffness_as_it_is(scene: str) -> None:
     assert alone.load.tobytes() == after.load.tobytes()
 
 
-@pytest.mark.parametrize("scene", [*SCENES, *OF_ANY_SHAPE])
+@pytest.mark.parametrize("scene", [*SCENES, *OF_ANY_SHAPE, "bar", "rope"])
 def test_a_run_after_another_is_as_the_first(scene: str) -> None:
     settings = small(scene)
     moved = with_more_friction(settings)
@@ -145,6 +150,44 @@ def test_another_arch_has_the_operators_of_a_first_one(changes: dict[str, Any]) 
         for name in ("stiffness", "trace", "direction"):
             kept = getattr(first.elasticity, name)
             assert kept.tobytes() == getattr(second.elasticity, name).tobytes()
+
+
+@pytest.mark.parametrize("scene", ["bar", "strand", "rope"])
+def test_more_friction_leaves_all_pieces_of_rods_as_they_are(scene: str) -> None:
+    settings = small(scene)
+    before = discretise(settings).substructures
+    assert discretise(with_more_friction(settings)).substructures is before
+
+
+def without_one(settings: Settings) -> Iterator[Settings]:
+    """The same settings, each time with another one by default, where that is one."""
+    values = settings.changed()
+    for name in values:
+        others = {other: value for other, value in values.items() if other != name}
+        with suppress(SettingError):
+            yield CATALOGUE[settings.scene].checked(others)
+
+
+def pieces_of(settings: Settings) -> list[bytes]:
+    """Digests of all arrays of each substructure."""
+    digests = []
+    for part in discretise(settings).substructures:
+        fields = (part.dofs, part.rows, part.body_force, part.free_force)
+        given = [field for field in fields if field is not None]
+        digests.append(content_of(part.elasticity.stiffness, *given))
+    return digests
+
+
+@pytest.mark.parametrize(("scene", "rows"), [("bar", 16), ("strand", 4), ("rope", 2)])
+def test_rods_that_differ_in_one_setting_have_the_pieces_of_first_ones(
+    scene: str, rows: int
+) -> None:
+    for row in range(rows):
+        drawn = [*without_one(draw(scene, SEED, row))]
+        after = [pieces_of(settings) for settings in drawn]
+        for settings, pieces in zip(drawn, after, strict=True):
+            KEPT.clear()
+            assert pieces == pieces_of(settings), settings
 
 
 def test_what_is_kept_cannot_be_changed() -> None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +12,20 @@ from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
+from solver.discrete.rods.pieces import (
+    Piece,
+    RodPieces,
+    content_without_friction,
+    pieces_of,
+)
 from solver.discrete.rods.rods import SIDES, End, Rods
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import (
     Elasticity,
     Substructure,
-    substructure_sizes,
     tributary,
 )
-from solver.kept import KEPT, content_of
+from solver.kept import KEPT
 from solver.laws import (
     Component,
     Contact,
@@ -41,8 +44,6 @@ with Anderson acceleration and automatic k). 4 modes save up to half of the iter
 with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires gain nothing."""
 NO_ROW = -1
 """Number of a boundary row that a node does not have."""
-OF_FRICTION = {"strength", "factors", "pressure", "friction_law"}
-"""Fields of rods on which their substructures do not depend."""
 
 
 def problem_of(rods: Rods) -> Problem:
@@ -64,72 +65,6 @@ def problem_of(rods: Rods) -> Problem:
         rub_at_ends = (not rods.left.is_prescribed, not rods.right.is_prescribed)
     places = [rods.nodes] * rods.wires
     return CutRods([rods] * rods.wires, places, names, rub_at_ends).problem()
-
-
-def _pieces_of(rods: Rods) -> tuple[list[int], int]:
-    """Elements of the pieces of each rod, and number of pieces before the broken node.
-
-    The number is 0 where no rod is broken.
-    """
-    if rods.broken is None:
-        return substructure_sizes(rods.elements, rods.substructures), 0
-    _, node = rods.broken
-    count = max(rods.substructures, 2)
-    beyond = rods.elements - node
-    # Pieces are shared out by length, but each side of the break has at least one
-    # piece, and no more than it has elements.
-    before = round(count * node / rods.elements)
-    before = min(max(before, 1, count - beyond), node, count - 1)
-    sizes_before = substructure_sizes(node, before)
-    sizes_beyond = substructure_sizes(beyond, count - before)
-    return sizes_before + sizes_beyond, before
-
-
-class _Piece(NamedTuple):
-    """A piece of a rod: its number, its first element, and how many elements it has."""
-
-    number: int
-    first: int
-    size: int
-
-    @property
-    def elements(self) -> slice:
-        """Elements of the piece among those of the rod."""
-        return slice(self.first, self.first + self.size)
-
-    @property
-    def nodes(self) -> slice:
-        """Nodes of the piece, among those of all pieces (a cut's are there twice)."""
-        first = self.first + self.number
-        return slice(first, first + self.size + 1)
-
-    def springs(self, rods: Rods) -> dict[int, End]:
-        """Ends of the rod that springs hold, by their node in this piece."""
-        ends = {0: rods.left, rods.elements: rods.right}
-        return {
-            node - self.first: end
-            for node, end in ends.items()
-            if self._is_held(node, end)
-        }
-
-    def _is_held(self, node: int, end: End) -> bool:
-        """Check whether an end of the rod is at a node of the piece, on a spring."""
-        return end.is_on_spring and self.first <= node <= self.first + self.size
-
-
-class _Parts(NamedTuple):
-    """Substructures of all rods, rod after rod."""
-
-    substructures: tuple[Substructure, ...]
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of their own arrays, B."""
-        total = 0
-        for each in self.substructures:
-            own = (each.dofs, each.rows, each.body_force, each.free_force)
-            total += sum(array.nbytes for array in own if array is not None)
-        return total
 
 
 class CutRods:
@@ -171,7 +106,7 @@ class CutRods:
         length = max(each.length for each in rods)
         stiffness = max(each.stiffness for each in rods)
         self._scales = Scales(length, stiffness, rods[0].duration)
-        self._sizes, before = _pieces_of(rods[0])
+        self._sizes, before = pieces_of(rods[0])
         # Nodes of piece after piece, (n_nodes + n_cuts,): a cut's are there twice.
         self._piece = np.repeat(np.arange(len(self._sizes)), np.add(self._sizes, 1))
         self._nodes = np.arange(len(self._piece)) - self._piece
@@ -224,7 +159,7 @@ class CutRods:
 
     def _content(self) -> Hashable:
         """Data on which the substructures depend: friction and its laws do not."""
-        contents = {id(rods): _content_of(rods) for rods in self._rods}
+        contents = {id(rods): content_without_friction(rods) for rods in self._rods}
         return (
             "substructures of rods",
             self._scales,
@@ -233,14 +168,14 @@ class CutRods:
             tuple(contents[id(rods)] for rods in self._rods),
         )
 
-    def _parts(self) -> _Parts:
+    def _parts(self) -> RodPieces:
         """All substructures, rod after rod, which are kept between runs."""
         # Pieces of equal operators share them, also those of different rods.
         shared: dict[tuple[object, ...], Elasticity] = {}
         substructures = list[Substructure]()
         for rod in range(len(self._rods)):
             substructures.extend(self._substructures(rod, shared))
-        return _Parts(tuple(substructures))
+        return RodPieces(tuple(substructures))
 
     def _substructures(
         self, rod: int, shared: dict[tuple[object, ...], Elasticity]
@@ -252,7 +187,7 @@ class CutRods:
         inner_force = self._inner_force(rods, free_force)
         first = 0
         for number, size in enumerate(self._sizes):
-            piece = _Piece(number, first, size)
+            piece = Piece(number, first, size)
             rows = self._rows(rod, piece)
             springs = piece.springs(rods)
             # A node of a break, or one that does not rub, has no row.
@@ -273,7 +208,7 @@ class CutRods:
             )
             first += size
 
-    def _dofs_of(self, rod: int, piece: _Piece) -> Indices:
+    def _dofs_of(self, rod: int, piece: Piece) -> Indices:
         """Degrees of freedom of the nodes of a piece of a rod, (n_nodes,)."""
         before = int(self._dofs_at[:rod].sum()) + int(self._beyond[rod, piece.number])
         first = before + piece.first
@@ -282,7 +217,7 @@ class CutRods:
     def _key(
         self,
         rods: Rods,
-        piece: _Piece,
+        piece: Piece,
         stiffness: Array,
         springs: Mapping[int, End],
         is_row: NDArray[np.bool_],
@@ -297,7 +232,7 @@ class CutRods:
             tuple((node, end.spring / unit) for node, end in springs.items()),
         )
 
-    def _rows(self, rod: int, piece: _Piece) -> Indices:
+    def _rows(self, rod: int, piece: Piece) -> Indices:
         """Boundary rows of a piece, or NO_ROW, (n,): of contacts, then of both ends."""
         at_sides = self._sides[self._sides_of(rod), piece.nodes]
         return np.concatenate([at_sides.ravel(), self._ends[:, piece.number, rod]])
@@ -316,7 +251,7 @@ class CutRods:
     def _body_force(
         self,
         rods: Rods,
-        piece: _Piece,
+        piece: Piece,
         springs: Mapping[int, End],
         inner_force: Array | None,
     ) -> Array | None:
@@ -360,7 +295,7 @@ class CutRods:
     def _operator(
         self,
         rods: Rods,
-        piece: _Piece,
+        piece: Piece,
         stiffness: Array,
         springs: Mapping[int, End],
         is_row: NDArray[np.bool_],
@@ -489,21 +424,6 @@ class CutRods:
         compliance = np.pad(1.0 / self._stiffness(rods), 1, mode="edge")
         in_series = 2.0 / (compliance[:-1] + compliance[1:])
         return in_series * (self._scales.displacement / rods.length)
-
-
-def _content_of(data: Rods | End) -> Hashable:
-    """Values of all fields but those of friction, arrays by their digests."""
-    values: list[Hashable] = []
-    for field in dataclasses.fields(data):
-        if field.name in OF_FRICTION:
-            continue
-        value = getattr(data, field.name)
-        if isinstance(value, np.ndarray):
-            value = content_of(value)
-        elif isinstance(value, End):
-            value = _content_of(value)
-        values.append(value)
-    return tuple(values)
 
 
 def _free_force(rods: Rods, stiffness: Array) -> Array | None:
