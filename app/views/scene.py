@@ -29,7 +29,7 @@ from app.views.colors import (
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
 from app.views.layout import NARROW, Layout, layout_of
-from app.views.parts import LEAST, bare, color_bar
+from app.views.parts import LEAST, bare, color_bar, explain
 from app.views.picture import Picture
 from app.views.view import View
 from solver.settings.scene import Settings
@@ -373,7 +373,7 @@ class Stress(ExtraScene):
             self.colors.update(palette=RdBu11, low=-high, high=high)
         else:
             self.colors.update(palette=Cividis256, low=0.0, high=high)
-        self.bar.title = f"{title}, {unit.name}"
+        explain(self.bar, self.colors, f"{title}, {unit.name}")
         corners = picture.many(picture.nodes[picture.frame.run.geometry.cells])
         self.fill("stress", **corners, value=values[:, picture.column] / unit.factor)
 
