@@ -73,7 +73,10 @@ def _in_unit(text: str, si: str, unit: Unit) -> str:
 
 
 def amounts_in_titles(settings: Settings, text: str) -> str:
-    """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields."""
+    """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields.
+
+    Of choices, as finish=at-once, it has the title, too.
+    """
     definitions = settings.definitions()
 
     def in_title(match: re.Match[str]) -> str:
@@ -85,7 +88,12 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
         return f"{title_of(definitions[name])} {unit(float(match[2]), EXACT)}"
 
     names = "|".join(definitions)
-    return re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", in_title, text)
+    text = re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", in_title, text)
+    return re.sub(
+        rf"\b({names})=([\w-]+)",
+        lambda match: f"{title_of(definitions[match[1]])} = {match[2]}",
+        text,
+    )
 
 
 def advice_in_titles(settings: Settings, text: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from app.views.colors import (
 )
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
-from app.views.layout import NARROW, Layout, layout_of
+from app.views.layout import Layout, layout_of
 from app.views.parts import LEAST, bare, color_bar, explain
 from app.views.picture import Picture
 from app.views.view import View
@@ -179,9 +180,9 @@ class Scene(View):
             if self.state.is_new:
                 hints = hints_of(picture)
             self.fill("hints", **hints)
-            # Hints stand where a narrow picture has its keys.
-            is_narrow = layout.width < NARROW
-            self._keys.visible = not (is_narrow and self.state.is_new)
+            # Hints take the place of keys where a picture is small.
+            lowest = min(hints["y"], default=math.inf)
+            self._keys.visible = bool(lowest > layout.row * (layout.key_rows + 0.5))
         # In the place of the ghost a structure that collapses shows its mechanism.
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:
