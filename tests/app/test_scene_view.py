@@ -97,6 +97,16 @@ def test_an_arrow_has_the_length_of_its_value() -> None:
     assert part / full == pytest.approx(value / peak, rel=1e-6)
 
 
+def test_of_equal_arrows_the_middle_one_has_the_handle_at_every_instant() -> None:
+    frame = frame_of(wall())
+    for phase in PHASES[1:]:
+        picture = shown(frame, phase).picture
+        assert picture is not None
+        (pressure,) = (each for each in picture.arrows if len(each.spread))
+        middle = pressure.handles[len(pressure.handles) // 2]
+        assert np.array_equal(pressure.handle, middle)
+
+
 def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
     frame = frame_of(small("bar"))
     state = PageState(frame.run.settings)
