@@ -269,8 +269,8 @@ class View:
         plot.axis.minor_tick_line_color = None
         plot.axis.major_tick_in = 0
         plot.axis.major_tick_out = 3
-        # In a narrow plot long numbers would lie on each other.
-        plot.xaxis.major_label_policy = NoOverlap()
+        # In a small plot, or in large type, numbers would lie on each other.
+        plot.axis.major_label_policy = NoOverlap()
         plot.grid.grid_line_alpha = 0.3
         self._figure = plot
         self.x = Axis(plot, "x", *x)
