@@ -15,6 +15,7 @@ EXACT = 10
 """Digits of a refused value: it differs from the end of a range even close to it."""
 LONGEST = 40
 """Largest number of characters of a refused text that are shown."""
+POWER = r"(?<![\w.])-?\d+(?:\.\d+)?e[-+]?\d+\b"
 NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 
 
@@ -97,9 +98,10 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
 
 
 def advice_in_titles(settings: Settings, text: str) -> str:
-    """Advice on a run, with titles in place of names of settings."""
+    """Advice on a run, with titles for names of settings, and powers as on the page."""
     definitions = settings.definitions()
     text = amounts_in_titles(settings, text)
+    text = re.sub(POWER, lambda match: number(float(match[0]), EXACT), text)
 
     def titled(match: re.Match[str]) -> str:
         words = f"{match[1]}{title_of(definitions[match[2]])}"
