@@ -63,8 +63,9 @@ class WireSection(ExtraView):
         self.bar = color_bar(plot, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
         self.mark(rings, fill_color="white", line_width=3, marker="circle")
-        # Above it would begin where the plot has no axis.
-        self.legend(*rings, place="center")
+        keys = self.legend(*rings)
+        # Without an axis beside it the plot begins where the figure does.
+        keys.styles = {**keys.styles, "margin-left": "0"}
         plot.on_event(Tap, self._tap)
 
     def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:

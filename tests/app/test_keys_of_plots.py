@@ -12,11 +12,12 @@ from app.views.view import View
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_legend_above_begins_at_an_axis(kind: type[View]) -> None:
-    # Where the figure has none its first entry would lie outside.
+def test_a_legend_above_begins_inside_the_figure(kind: type[View]) -> None:
+    # It begins beside the axis, if the figure has one.
     plot = kind(PageState(default_settings("bar"))).figure
-    legends = [each for each in plot.above if each in plot.legend]
-    assert not legends or all(axis.visible for axis in plot.yaxis)
+    for legend in plot.legend:
+        if legend in plot.above and not all(axis.visible for axis in plot.yaxis):
+            assert legend.styles["margin-left"] == "0"
 
 
 def test_a_colour_bar_is_laid_out_anew_for_other_values_and_only_then() -> None:
