@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import panel as pn
 from bokeh.embed import components
+from bokeh.models import NoOverlap
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
@@ -225,7 +226,11 @@ def overlay(chart: Chart) -> hv.Overlay:
         # A wheel that scrolls the page must not zoom the charts that it passes.
         active_tools=[],
         # A toolbar that sticks to the axes would lie over a title of their width.
-        backend_opts={"plot.toolbar.logo": None, "plot.toolbar_sticky": False},
+        backend_opts={
+            "plot.toolbar.logo": None,
+            "plot.toolbar_sticky": False,
+            "xaxis.major_label_policy": NoOverlap(),
+        },
     )
 
 

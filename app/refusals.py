@@ -15,6 +15,7 @@ EXACT = 10
 """Digits of a refused value: it differs from the end of a range even close to it."""
 LONGEST = 40
 """Largest number of characters of a refused text that are shown."""
+POWER = r"(?<![\w.])-?\d+(?:\.\d+)?e[-+]?\d+\b"
 NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 
 
@@ -73,7 +74,10 @@ def _in_unit(text: str, si: str, unit: Unit) -> str:
 
 
 def amounts_in_titles(settings: Settings, text: str) -> str:
-    """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields."""
+    """A text with amounts of settings, as traction = 2e5 Pa, in the units of fields.
+
+    Of choices, as finish=at-once, it has the title, too.
+    """
     definitions = settings.definitions()
 
     def in_title(match: re.Match[str]) -> str:
@@ -85,13 +89,19 @@ def amounts_in_titles(settings: Settings, text: str) -> str:
         return f"{title_of(definitions[name])} {unit(float(match[2]), EXACT)}"
 
     names = "|".join(definitions)
-    return re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", in_title, text)
+    text = re.sub(rf"\b({names}) = {NUMBER}(?: ([^\s,:()]+))?", in_title, text)
+    return re.sub(
+        rf"\b({names})=([\w-]+)",
+        lambda match: f"{title_of(definitions[match[1]])} = {match[2]}",
+        text,
+    )
 
 
 def advice_in_titles(settings: Settings, text: str) -> str:
-    """Advice on a run, with titles in place of names of settings."""
+    """Advice on a run, with titles for names of settings, and powers as on the page."""
     definitions = settings.definitions()
     text = amounts_in_titles(settings, text)
+    text = re.sub(POWER, lambda match: number(float(match[0]), EXACT), text)
 
     def titled(match: re.Match[str]) -> str:
         words = f"{match[1]}{title_of(definitions[match[2]])}"

@@ -109,19 +109,23 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> tuple[str, str]:
     count = newest.iteration
     if newest.is_followed:
         count = 0
-    iterations = f"{count} iterations"
-    if count == 1:
-        iterations = "1 iteration"
     if frame.run.is_idle:
         hint = "nothing acts here; give a load, or move a side"
-        return "at rest", f" · {iterations}: {hint}"
+        return "at rest", f" · {iterations(count)}: {hint}"
     search = "search"
     end = wrong
     if newest.residual is not None:
         end = " · certified"
         if not newest.is_answer:
             search = "answer"
-    return ENDINGS[newest.status.ending], f" · {search}: {iterations}{end}"
+    return ENDINGS[newest.status.ending], f" · {search}: {iterations(count)}{end}"
+
+
+def iterations(count: int) -> str:
+    """A number of iterations in words."""
+    if count == 1:
+        return "1 iteration"
+    return f"{count} iterations"
 
 
 def _details(frame: Frame) -> list[str]:

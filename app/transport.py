@@ -13,6 +13,7 @@ from app.browser import Echoes, linked, linked_to
 from app.frame import Selection
 from app.server import PAGES
 from app.state import PACES, SEARCH, PageState, answering
+from app.status import iterations
 from app.widgets import button, looks, wrapped
 from solver.scenes import CATALOGUE
 
@@ -335,7 +336,7 @@ class Transport:
         if frame.is_followed:
             self.scrub.label = "Answer"
         elif frame.is_answer:
-            self.scrub.label = f"Answer after {frame.iteration} iterations"
+            self.scrub.label = f"Answer after {iterations(frame.iteration)}"
         else:
             last = self._state.newest.iteration
             self.scrub.label = f"Iteration {frame.iteration} of {last}"

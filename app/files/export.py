@@ -58,13 +58,18 @@ WIDE = {"Scene": "scene", "Load path": "timeline"}
 LOW = 90
 HEIGHT = 300
 """Height of the time line and of plots there, px."""
-SIZES = {
-    (False, False): (1000.0, 230.0),
-    (False, True): (1000.0, 460.0),
-    (True, False): (600.0, 300.0),
-    (True, True): (600.0, 420.0),
+WIDTH = 450.0
+NARROWEST = 340
+WIDEST = 800
+"""Width for which a picture is laid out, and those between which it is scaled, px: on
+a phone it is as wide as the page."""
+HEIGHTS = {
+    (False, False): 160.0,
+    (False, True): 290.0,
+    (True, False): 225.0,
+    (True, True): 315.0,
 }
-"""Sizes of pictures, px, by whether they are without loads, and whether the structure
+"""Heights of pictures, px, by whether they are without loads, and whether the structure
 is high."""
 APART = "span { margin-right: 14px; display: inline-block; }"
 """Style sheet of key figures."""
@@ -176,6 +181,8 @@ def offline_page(state: PageState, views: Sequence[View]) -> str:
         for view in copies:
             view.update(frame, selection, state.ghost)
 
+    # What is the same at all instants, as a scale of colours, is set beforehand.
+    show(selected)
     slider.js_on_change("value", _replay(page, len(columns), show))
     # The page begins with the selected instant.
     show(selected)
@@ -240,10 +247,14 @@ def _copies(views: Sequence[View], run: Run) -> list[View]:
             plot.height = LOW
         if isinstance(view, Scene):
             # Nobody tells the size of the figure there: the picture is scaled as one.
-            width, height = SIZES[view.is_bare, shape_of(run.geometry) == "high"]
-            view.lay_out(width, height)
-            plot.update(sizing_mode="scale_width", aspect_ratio=width / height)
-            plot.min_width = int(0.6 * width)
+            height = HEIGHTS[view.is_bare, shape_of(run.geometry) == "high"]
+            view.lay_out(WIDTH, height)
+            plot.update(
+                sizing_mode="scale_width",
+                aspect_ratio=WIDTH / height,
+                min_width=NARROWEST,
+                max_width=WIDEST,
+            )
         plot.tools = [
             tool for tool in plot.tools if not isinstance(tool, PointDrawTool)
         ]

@@ -25,6 +25,9 @@ from solver.discrete.structure import OUTWARD, Act, Footing, on_side
 
 SHORTEST = 0.02
 """Value over the largest one below which an arrow is not drawn, nor dragged."""
+ALIKE = 0.999
+"""Length over the longest one from which on an arrow counts as long: equal loads at
+moved points differ by rounding."""
 SNAP = 4.0
 """Distance from zero within which a dragged load is zero, px."""
 HEAD = 9.0
@@ -144,14 +147,28 @@ class Arrows:
         # Inside the heads, whose tips are sharper than the end of a stroke.
         shafts[:, -1] -= np.minimum(5.0, 0.9 * size) * self._along
         strokes = gapped(shafts)
-        is_spread = self.act.unit != "N" and not is_aside(self.act)
-        if is_spread and len(shafts) > 2:
-            strokes = np.concatenate([strokes, self.handles])
-        return strokes
+        return np.concatenate([strokes, self.spread])
 
     @property
+    def spread(self) -> Array:
+        """The line over the tails of a load that is spread along a side, (n, 2).
+
+        Without points where it is not, or has but two arrows.
+        """
+        is_spread = self.act.unit != "N" and not is_aside(self.act)
+        if is_spread and len(self.handles) > 2:
+            return self.handles
+        return self.handles[:0]
+
+    @cached_property
     def _longest(self) -> int:
-        return int(np.hypot(*(self.handles - self.base).T).argmax())
+        """Number of the longest arrow; of several the middle one, at all instants.
+
+        Those at the ends may be near to the arrow of another load.
+        """
+        lengths = np.hypot(*(self.handles - self.base).T)
+        longest = np.flatnonzero(lengths > ALIKE * lengths.max())
+        return int(longest[len(longest) // 2])
 
     @property
     def handle(self) -> Array:

@@ -11,7 +11,7 @@ from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
 from app.views.axis import whole
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.parts import color_bar, hover
+from app.views.parts import color_bar, explain, hover
 from app.views.view import ExtraView
 from app.worker.cells import thinned
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
@@ -69,6 +69,7 @@ class Spectra(ExtraView):
         self.x.hold(frame.run.number, [1, max([FEWEST, *lengths])])
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)
+        explain(self._bar, self._colors)
 
 
 class ModePlot(ExtraView):

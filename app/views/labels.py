@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -87,12 +88,14 @@ class Obstacles:
 
     @cached_property
     def _shafts(self) -> Array:
-        """Places along the shafts of all arrows, (n, 2), px."""
+        """Places along all arrows, and lines over their tails, (n, 2), px."""
         shares = np.linspace(0.0, 1.0, ALONG)[:, None]
         places = [np.zeros((0, 2))]
         for arrows in self._picture.arrows:
             for line in arrows.lines:
                 places.append(line[0] + shares * (line[-1] - line[0]))
+            for first, last in pairwise(arrows.spread):
+                places.append(first + shares * (last - first))
         return self._picture.page(np.concatenate(places))
 
     @cached_property

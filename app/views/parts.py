@@ -51,11 +51,12 @@ def bare(
 
 
 def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A bar at the right of a figure that explains its colours."""
+    """A bar at the right of a figure that explains its colours, as `explain` says."""
     bar = ColorBar(
-        color_mapper=colors,
+        color_mapper=colors.clone(),
         width=9,
-        padding=2,
+        # Half of a letter: values at its ends are read in full.
+        padding=7,
         margin=0,
         title_standoff=4,
         title_text_font_style="normal",
@@ -64,6 +65,17 @@ def color_bar(plot: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
     )
     plot.add_layout(bar, "right")
     return bar
+
+
+def explain(bar: ColorBar, colors: LinearColorMapper, title: str | None = None) -> None:
+    """Have a colour bar explain colours whose limits may have changed, by a title.
+
+    A bar is laid out anew for another mapper alone: with other limits or another title
+    its values would be cut, and its title would lie on the plot.
+    """
+    shown = bar.color_mapper
+    if (bar.title, shown.low, shown.high) != (title, colors.low, colors.high):
+        bar.update(title=title, color_mapper=colors.clone())
 
 
 def hover(

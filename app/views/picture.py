@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -277,8 +278,11 @@ class Picture:
                 places = self._follow(points)
             strokes.append(footing_strokes(footing, places, layout, self.factor))
         if self.description.tilt is not None:
-            corner = np.array([-0.5 * length * layout.scale[0] - 21.0, -5.0])
-            level = turned(np.array([0.9 * length * layout.scale[0], 0.0]), -self.tilt)
+            # It begins at the lower end of the ground, and so lies below that.
+            side = math.copysign(1.0, self.tilt)
+            across = side * length * layout.scale[0]
+            corner = np.array([-0.5 * across - 21.0 * side, -5.0])
+            level = turned(np.array([0.9 * across, 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
         return np.concatenate([np.zeros((0, 2)), *strokes])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,9 @@ from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.units import unit_for
-from app.views.axis import extent
+from app.views.axis import extent, rounded_up
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
-from app.views.parts import color_bar, hover
+from app.views.parts import color_bar, explain, hover
 from app.views.view import ExtraView, joined
 from app.worker.geometry import MOST_WIRES
 
@@ -62,17 +63,23 @@ class WireSection(ExtraView):
         self.bar = color_bar(plot, self.colors)
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
         self.mark(rings, fill_color="white", line_width=3, marker="circle")
-        self.legend(*rings)
+        keys = self.legend(*rings)
+        # Without an axis beside it the plot begins where the figure does.
+        keys.styles = {**keys.styles, "margin-left": "0"}
         plot.on_event(Tap, self._tap)
 
     def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:
         run = frame.run
         column = run.column(selection.phase)
         unit = unit_for(float(np.abs(cut["stress"]).max()), "Pa")
-        low, high = np.divide(extent([cut["stress"]]), unit.factor).tolist()
-        # A scale of no length has no colours.
-        self.colors.update(low=low, high=max(high, low + 1e-9))
-        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['position'])}"
+        low, high = np.divide(extent([cut["stress"]]), unit.factor)
+        # The ends of the scale are round, and so seldom change.
+        step = rounded_up(0.05 * (high - low))
+        first = math.floor(low / step)
+        last = max(math.ceil(high / step), first + 1)
+        self.colors.update(low=first * step, high=last * step)
+        place = unit_for(1.0, "m")(cut["position"])
+        explain(self.bar, self.colors, f"stress, {unit.name}, at x = {place}")
         slips = cut["slips"][:, column]
         selected = list(run.interfaces).index(selection.interface_of(run))
         chosen = cut["wires"] == selected

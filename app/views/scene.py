@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -28,8 +29,8 @@ from app.views.colors import (
 )
 from app.views.hints import NONE, hints_of
 from app.views.labels import labels_of
-from app.views.layout import NARROW, Layout, layout_of
-from app.views.parts import LEAST, bare, color_bar
+from app.views.layout import Layout, layout_of
+from app.views.parts import LEAST, bare, color_bar, explain
 from app.views.picture import Picture
 from app.views.view import View
 from solver.settings.scene import Settings
@@ -179,9 +180,9 @@ class Scene(View):
             if self.state.is_new:
                 hints = hints_of(picture)
             self.fill("hints", **hints)
-            # Hints stand where a narrow picture has its keys.
-            is_narrow = layout.width < NARROW
-            self._keys.visible = not (is_narrow and self.state.is_new)
+            # Hints take the place of keys where a picture is small.
+            lowest = min(hints["y"], default=math.inf)
+            self._keys.visible = bool(lowest > layout.row * (layout.key_rows + 0.5))
         # In the place of the ghost a structure that collapses shows its mechanism.
         past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None:
@@ -373,7 +374,7 @@ class Stress(ExtraScene):
             self.colors.update(palette=RdBu11, low=-high, high=high)
         else:
             self.colors.update(palette=Cividis256, low=0.0, high=high)
-        self.bar.title = f"{title}, {unit.name}"
+        explain(self.bar, self.colors, f"{title}, {unit.name}")
         corners = picture.many(picture.nodes[picture.frame.run.geometry.cells])
         self.fill("stress", **corners, value=values[:, picture.column] / unit.factor)
 

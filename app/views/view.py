@@ -22,6 +22,7 @@ from bokeh.models import (
     GlyphRenderer,
     Legend,
     LegendItem,
+    NoOverlap,
     Range1d,
     Scatter,
     Title,
@@ -268,6 +269,8 @@ class View:
         plot.axis.minor_tick_line_color = None
         plot.axis.major_tick_in = 0
         plot.axis.major_tick_out = 3
+        # In a small plot, or in large type, numbers would lie on each other.
+        plot.axis.major_label_policy = NoOverlap()
         plot.grid.grid_line_alpha = 0.3
         self._figure = plot
         self.x = Axis(plot, "x", *x)

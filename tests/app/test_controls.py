@@ -182,12 +182,13 @@ def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words
 def test_advice_on_a_run_has_the_names_of_the_page_and_keeps_its_other_words() -> None:
     advice = (
         "Friction falls with slip. Raise max_iterations, or lower friction_ratio or "
-        "friction, or try a k_scale ten times smaller, where friction falls."
+        "friction, or try a k_scale ten times smaller, where friction falls, or set "
+        "finish=at-once (residual 3e-14)."
     )
     assert advice_in_titles(default_settings("bar"), advice) == (
         "Friction falls with slip. Raise Most iterations, or lower Last friction over "
         "first or Friction coefficient μ, or try a Factor on k ten times smaller, "
-        "where friction falls."
+        "where friction falls, or set Finish = at-once (residual 3·10⁻¹⁴)."
     )
 
 

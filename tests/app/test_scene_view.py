@@ -97,6 +97,16 @@ def test_an_arrow_has_the_length_of_its_value() -> None:
     assert part / full == pytest.approx(value / peak, rel=1e-6)
 
 
+def test_of_equal_arrows_the_middle_one_has_the_handle_at_every_instant() -> None:
+    frame = frame_of(wall())
+    for phase in PHASES[1:]:
+        picture = shown(frame, phase).picture
+        assert picture is not None
+        (pressure,) = (each for each in picture.arrows if len(each.spread))
+        middle = pressure.handles[len(pressure.handles) // 2]
+        assert np.array_equal(pressure.handle, middle)
+
+
 def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
     frame = frame_of(small("bar"))
     state = PageState(frame.run.settings)
@@ -300,14 +310,14 @@ def test_marks_of_a_first_visit_stay_until_somebody_does_something() -> None:
     assert not len(view.sources["hints"].data["text"])
 
 
-def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_narrow_picture() -> (
-    None
-):
+def test_marks_of_a_first_visit_take_the_place_of_the_keys_in_a_small_picture() -> None:
     frame = frame_of(default_settings("bar"))
     view = Scene(PageState(frame.run.settings, is_new=True))
     (keys,) = view.figure.legend
-    for width, is_seen in ((900.0, True), (390.0, False)):
-        view.lay_out(width, 150.0)
+    # The second one is that of a phone that lies on its side.
+    sizes = [(900.0, 230.0, True), (844.0, 150.0, False), (390.0, 150.0, False)]
+    for width, height, is_seen in sizes:
+        view.lay_out(width, height)
         view.update(frame, Selection(0.25), None)
         assert keys.visible == is_seen
     marks = view.sources["hints"].data

@@ -171,6 +171,10 @@ def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     assert instants == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
     for view in views[2:]:
         assert f"<figcaption>{view.name}</figcaption>" in text
+    # Beside the margins of a phone of 390 px.
+    widths = [int(width) for width in re.findall(r'"min_width": (\d+)', kept)]
+    assert widths
+    assert max(widths) <= 390 - 2 * 12
     # The page's own figures are as they were.
     assert [view.figure.height for view in views] == before
 

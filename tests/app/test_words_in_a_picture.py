@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from pictures import PHASES, boxes_of_words, frame_of, meet, shown, small
@@ -21,11 +23,11 @@ def picture_of(view: Scene) -> Picture:
 
 
 def shafts(picture: Picture) -> np.ndarray:
-    """Places along all arrows, (n, 2), px."""
+    """Places along all arrows, and lines over their tails, (n, 2), px."""
     shares = np.linspace(0.0, 1.0, 9)[:, None]
     places = [np.zeros((0, 2))]
     for arrows in picture.arrows:
-        for first, *_, last in arrows.lines:
+        for first, *_, last in (*arrows.lines, *pairwise(arrows.spread)):
             places.append(picture.page(first + shares * (last - first)))
     return np.concatenate(places)
 
@@ -145,3 +147,23 @@ def test_the_slope_stands_beside_a_wall_whichever_way_it_tilts(slope: float) -> 
         for text, box in boxes_of_words(view, letter=14.0, half=10.0):
             if text.startswith("slope"):
                 assert not meet(box, lowest, highest), phase
+        # The horizontal, which is drawn last of what holds the wall, lies below it.
+        strokes = view.sources["strokes"].data["ys"]
+        level = strokes[1][-2:]
+        assert level[0] == pytest.approx(level[1])
+        assert level[0] < lowest[:, 1].min()
+
+
+@pytest.mark.parametrize("slope", [-29.0, 29.0])
+@pytest.mark.parametrize("size", [(390.0, 300.0), (640.0, 755.0)])
+def test_words_lie_on_no_line_over_the_arrows_of_a_wall_that_tilts(
+    size: tuple[float, float], slope: float
+) -> None:
+    frame = frame_of(default_settings("wall").replace(slope=slope, slope_load="ramp"))
+    view = shown(frame)
+    view.lay_out(*size)
+    for phase in PHASES:
+        view.update(frame, Selection(phase), None)
+        places = shafts(picture_of(view))
+        for text, box in boxes_of_words(view, letter=6.0, half=4.0):
+            assert not meet(box, places, places), (phase, text)

@@ -1,0 +1,51 @@
+"""Keys of plots, legends and colour bars, are read in full."""
+
+import pytest
+from bokeh.models import ColorBar, LinearColorMapper
+from pictures import KINDS, frame_of, shown, small
+
+from app.state import PageState, default_settings
+from app.views.parts import bare, color_bar, explain
+from app.views.rope import WireSection
+from app.views.scene import Stress
+from app.views.view import View
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_legend_above_begins_inside_the_figure(kind: type[View]) -> None:
+    # It begins beside the axis, if the figure has one.
+    plot = kind(PageState(default_settings("bar"))).figure
+    for legend in plot.legend:
+        if legend in plot.above and not all(axis.visible for axis in plot.yaxis):
+            assert legend.styles["margin-left"] == "0"
+
+
+def test_a_colour_bar_is_laid_out_anew_for_other_values_and_only_then() -> None:
+    # Bokeh lays a bar out for another mapper, not for other limits of the same one.
+    colors = LinearColorMapper(palette=["black", "white"], low=0.0, high=1.0)
+    bar = color_bar(bare(90, (0, 1), (0, 1)), colors)
+    for high, title in [(1.0, "force, N"), (1000.0, "force, N"), (1000.0, "force, kN")]:
+        before = bar.color_mapper
+        colors.high = high
+        explain(bar, colors, title)
+        assert (bar.title, bar.color_mapper.high) == (title, high)
+        assert bar.color_mapper not in (before, colors)
+        laid_out = bar.color_mapper
+        explain(bar, colors, title)
+        assert bar.color_mapper is laid_out
+
+
+@pytest.mark.parametrize(
+    ("kind", "scene"), [(Stress, "strand"), (Stress, "block"), (WireSection, "rope")]
+)
+def test_a_colour_bar_has_the_limits_of_the_colours(
+    kind: type[View], scene: str
+) -> None:
+    settings = small(scene)
+    if kind is WireSection:
+        settings = default_settings("rope").replace(elements=20, instants=9)
+    view = shown(frame_of(settings), kind=kind)
+    (bar,) = view.figure.select(ColorBar)
+    assert bar.color_mapper.low == view.colors.low
+    assert bar.color_mapper.high == view.colors.high
+    assert bar.title
