@@ -194,6 +194,10 @@ def test_what_is_kept_cannot_be_changed() -> None:
     condensed = Condensation(discretise(small("wall")))
     with pytest.raises(ValueError, match="read-only"):
         condensed.stiffness[0, 0] = 0.0
+    piece, *_ = discretise(small("rope")).substructures
+    for array in (piece.dofs, piece.rows, piece.body_force):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
 
 
 @dataclass

@@ -175,7 +175,7 @@ class CutRods:
         substructures = list[Substructure]()
         for rod in range(len(self._rods)):
             substructures.extend(self._substructures(rod, shared))
-        return RodPieces(tuple(substructures))
+        return RodPieces(substructures)
 
     def _substructures(
         self, rod: int, shared: dict[tuple[object, ...], Elasticity]

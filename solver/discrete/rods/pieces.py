@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -67,19 +67,25 @@ class Piece(NamedTuple):
         return end.is_on_spring and self.first <= node <= self.first + self.size
 
 
-class RodPieces(NamedTuple):
-    """Substructures of all rods, rod after rod."""
+class RodPieces:
+    """Substructures of all rods, rod after rod, and what is kept of them between runs.
 
-    substructures: tuple[Substructure, ...]
+    Attributes
+    ----------
+    substructures
+        The substructures, whose own arrays are made read-only.
+    nbytes
+        Memory of these arrays, B.
+    """
 
-    @property
-    def nbytes(self) -> int:
-        """Memory of their own arrays, B."""
-        total = 0
+    def __init__(self, substructures: Iterable[Substructure]) -> None:
+        self.substructures = tuple(substructures)
+        self.nbytes = 0
         for each in self.substructures:
-            own = (each.dofs, each.rows, each.body_force, each.free_force)
-            total += sum(array.nbytes for array in own if array is not None)
-        return total
+            for array in (each.dofs, each.rows, each.body_force, each.free_force):
+                if array is not None:
+                    array.flags.writeable = False
+                    self.nbytes += array.nbytes
 
 
 def content_without_friction(data: Rods | End) -> Hashable:
