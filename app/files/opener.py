@@ -34,10 +34,11 @@ from solver.study.measured_loop import MeasuredLoop
 from solver.study.table_use import Use
 
 HELP = (
-    "Settings (.toml) that were saved here; a mesh (.msh of Gmsh) with names; or a "
-    "table (.csv, .xlsx, ...): of time and load; of displacement and force, a measured "
-    "loop, which is drawn beside the run; or of x, t and friction force or "
-    "displacement, as another program found them, which are drawn beside it, too."
+    "Settings (.toml) that were saved here; a mesh with names (.msh of Gmsh, .inp of "
+    "Abaqus or CalculiX); or a table (.csv, .xlsx, ...): of time and load; of "
+    "displacement and force, a measured loop, which is drawn beside the run; or of x, "
+    "t and friction force or displacement, as another program found them, which are "
+    "drawn beside it, too."
 )
 HEADS = (
     "A name for each column, with its unit in brackets, as in `time [s], displacement "
@@ -51,7 +52,7 @@ SHOWN = 5
 def files_panel(state: PageState, width: int) -> pn.Column:
     """Buttons that save and reset settings and open files."""
     look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
-    kinds = f".toml,{MESHES},{TABLES}"
+    kinds = ",".join([".toml", *MESHES, TABLES])
     opener = TableOpener(state, "Open settings, a table or a mesh", kinds, width)
 
     def reset() -> None:

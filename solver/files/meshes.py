@@ -9,13 +9,14 @@ from typing import Any
 from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.files.disk import read_bytes
 from solver.refusal import RefusedError, Words
-from solver.scenes.mesh_files import HEAD, as_text, read_mesh
+from solver.scenes.mesh_files import ABAQUS, GMSH, HEAD, as_text, read_mesh
 from solver.settings.definitions import TextParameter
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError, allowed
 
-MESHES = ".msh"
-"""Files of meshes that a page opens: those of Gmsh name no other files."""
+MESHES = GMSH, ABAQUS
+"""Ends of the names of meshes that a page opens: these have names of bodies and sides,
+and are read without other files."""
 
 
 def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:

@@ -42,7 +42,10 @@ PASSED_OVER = {"vertex"}
 FLAT = 1e-9
 """Largest distance of points from a plane, over the size of the mesh."""
 GMSH = ".msh"
-"""End of the names of Gmsh's files: they name no other files, as some others do."""
+ABAQUS = ".inp"
+"""End of the names of files of Gmsh, and of Abaqus and CalculiX."""
+INCLUDE = b"*include"
+"""Beginning of a line of Abaqus that names another file."""
 HEAD = "mesh:"
 """Beginning of the text of a mesh."""
 SURFACE = "surface "
@@ -60,6 +63,7 @@ ERRORS = (
     KeyError,
     MemoryError,
     OSError,
+    RuntimeError,
     StopIteration,
     TypeError,
     UnicodeError,
@@ -82,6 +86,8 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
     import meshio
 
     end = Path(source).suffix.lower()
+    if end == ABAQUS:
+        _check_is_whole(data, source)
     with NamedTemporaryFile(suffix=end) as file:
         file.write(data)
         file.flush()
@@ -101,6 +107,14 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
             remedy = f"save it again as Gmsh's .msh, format 4.1 ({reason or 'unread'})"
             raise RefusedError("mesh", source, CAN, remedy) from None
     return named(mesh)
+
+
+def _check_is_whole(data: bytes, source: str) -> None:
+    """Refuse a file of Abaqus that names others, which are not at hand."""
+    for line in data.splitlines():
+        if line.lower().replace(b" ", b"").startswith(INCLUDE):
+            remedy = "put the lines of the files that it includes in its place"
+            raise RefusedError("mesh", source, CAN, remedy)
 
 
 def read_example(name: str) -> NamedMesh:

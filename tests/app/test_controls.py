@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from itertools import chain, product
-from pathlib import Path
+from itertools import chain
 from typing import Any
 
 import panel as pn
@@ -13,16 +12,14 @@ import panel_material_ui as pmui
 import param
 import pytest
 
-from app.controls import OWN, POINTS, Controls, SettingControl, _groups_of
-from app.files.opener import TableOpener
+from app.controls import POINTS, Controls, SettingControl, _groups_of
 from app.files.points import CurveDialog
 from app.messages import Start
 from app.refusals import advice_in_titles
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
-from solver.files.saved import dump
 from solver.refusal import RefusedError
-from solver.scenes import CATALOGUE, mesh_files
+from solver.scenes import CATALOGUE
 from solver.settings.definitions import CurveParameter, TextParameter
 from solver.settings.scene import Settings
 
@@ -401,95 +398,6 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand() -> None:
     assert taken
 
 
-def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> None:
-    state = of_scene("bar")
-    opener = TableOpener(state, "Open", ".toml,.csv", 280)
-    saved = dump(state.settings)
-
-    def open_file(name: str, text: str) -> str:
-        opener.file.filename = name
-        opener.file.value = text.encode()
-        return str(opener.message.object)
-
-    assert "3 points" in open_file("load.csv", "time,force\n0,0\n1,800\n2,0\n")
-    assert state.settings.duration == 2.0
-    points = product((0.2, 0.4), (0.5, 1.0))
-    rows = "".join(f"{x},{t},{x * t}\n" for x, t in points)
-    assert "4 points" in open_file("other.csv", f"x,t,friction force\n{rows}")
-    assert state.brought is not None
-    assert state.brought.source == "other.csv"
-    assert "outside of the body" in open_file("far.csv", "x,t,friction force\n3,0,0\n")
-    assert state.brought.source == "other.csv"
-    open_file("bar.toml", saved)
-    assert state.settings.values() == default_settings("bar").values()
-
-
-def test_a_mesh_that_is_opened_is_run_and_is_a_choice_of_its_control() -> None:
-    state = of_scene("bar")
-    opener = TableOpener(state, "Open", ".msh", 280)
-    source = Path(mesh_files.__file__).parent / "meshes" / "dovetail.msh"
-    opener.file.filename = "mine.msh"
-    opener.file.value = source.read_bytes()
-    assert "mine.msh: 2 bodies of a mesh" in str(opener.message.object)
-    assert state.settings.scene == "mesh"
-    control = SettingControl("mesh", state)
-    assert control.field.value == OWN
-    # It has no file to go back to: only another choice changes the mesh.
-    assert control.field.options == ["bolted", "dovetail", OWN]
-    control.field.value = "dovetail"
-    control.update()
-    assert held(state, "mesh") == "dovetail"
-    assert control.field.options == ["bolted", "dovetail"]
-    opener.file.filename = "broken.msh"
-    opener.file.value = b"nothing"
-    assert "broken.msh was refused" in str(opener.message.object)
-
-
-def test_a_file_that_is_refused_is_called_so_and_its_message_goes() -> None:
-    state = of_scene("bar")
-    opener = TableOpener(state, "Open", ".toml,.csv", 280)
-
-    def open_file(name: str, text: str) -> str:
-        opener.file.filename = name
-        opener.file.value = text.encode()
-        return str(opener.message.object)
-
-    said = open_file("bad.csv", "time,force\n0,0\n1,much\n")
-    assert said.startswith("bad.csv was refused. ")
-    assert "much" in said
-    # The button does not say what became of the file.
-    assert opener.file.uploaded_label == "Open"
-    # As the browser has an empty file: without a name.
-    opener.file.param.update(filename=None, value=None)
-    assert "The file was refused. The table" in str(opener.message.object)
-    assert "bad.csv" not in open_file("load.csv", "time,force\n0,0\n1,800\n")
-    assert state.refusal == ""
-    assert opener.columns_button.visible
-    state.choose_scene("block")
-    assert opener.message.object == ""
-    assert not opener.columns_button.visible
-
-
-def test_settings_are_read_as_tables_are_and_what_is_none_is_not_shown() -> None:
-    state = of_scene("bar")
-    opener = TableOpener(state, "Open", ".toml,.csv", 280)
-
-    def open_file(name: str, data: bytes) -> str:
-        opener.file.filename = name
-        opener.file.value = data
-        return str(opener.message.object)
-
-    text = dump(state.settings.replace(peak=700.0))
-    open_file("of_an_editor.toml", text.encode("utf-16"))
-    assert held(state, "peak") == 700.0
-    cut = open_file("cut.toml", text[:40].encode())
-    assert cut.startswith("cut.toml was refused. The settings file cannot be “cut")
-    picture = open_file("picture.toml", bytes(range(1, 200)))
-    assert "it is no text: save the settings again" in picture
-    assert "scene cannot be missing" in open_file("part.toml", b"peak = 600.0")
-    assert held(state, "peak") == 700.0
-
-
 def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
     assert typed("2 d", Unit("s"), "s") == 172800.0
     assert typed("2 min", Unit("h", 3600.0), "s") == 120.0
@@ -523,11 +431,3 @@ def test_a_preset_of_a_path_is_described_where_it_is_chosen() -> None:
     state.change(load=[[0.0, 0.0], [1.0, 500.0]])
     control.update()
     assert control.field.helper_text == ""
-
-
-def test_a_file_of_before_is_said_to_have_given_the_slip_of_one_side() -> None:
-    opener = TableOpener(of_scene("bar"), "Open", ".toml", 200)
-    old = b'scene = "fault"\nfriction_law = "slip-dependent"\nslip_length = 1e-3\n'
-    opener.file.param.update(filename="old.toml", value=old)
-    assert "Slip length: the file is of a version whose slip" in opener.message.object
-    assert "give 0.002 m" in opener.message.object

@@ -282,6 +282,14 @@ def test_an_unknown_kind_of_element_is_told_by_its_name() -> None:
         text_of_mesh(data, "squares.inp")
 
 
+@pytest.mark.parametrize(
+    "line", ["*INCLUDE, INPUT=/etc/passwd", "* Include,input=other.inp", "*ELEMENT"]
+)
+def test_a_file_of_abaqus_that_is_not_whole_is_refused(line: str) -> None:
+    with pytest.raises(SettingError, match=r"squares\.inp"):
+        text_of_mesh(f"{ABAQUS}{line}\n".encode(), "squares.inp")
+
+
 def test_a_contact_that_is_named_twice_rubs_once() -> None:
     mesh = read_example("bolted")
     named_twice = NamedMesh(
