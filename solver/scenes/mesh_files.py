@@ -131,30 +131,27 @@ def named(mesh: Any) -> NamedMesh:
     """
     surfaces = dict[str, list[Indices]]()
     lines = dict[str, list[Indices]]()
-    for kind, cells, names in _blocks(mesh):
+    for kind, name, cells in _named_cells(mesh):
         if kind in PASSED_OVER:
             continue
-        if kind not in SURFACES and kind not in LINES:
+        if kind in LINES and name:
+            lines.setdefault(name, []).append(cells[:, : LINES[kind]])
+        elif kind in SURFACES and name:
+            surfaces.setdefault(name, []).append(cells[:, : SURFACES[kind]])
+        elif kind in SURFACES:
+            raise RefusedError(
+                "mesh",
+                Words(f"with {len(cells)} elements without a name"),
+                "elements with the name of their body",
+                "make a physical group of the surface of each body, with a name",
+            )
+        elif kind not in LINES:
             raise RefusedError(
                 "mesh",
                 Words(f"with elements of the kind {kind}"),
                 "triangles, quadrilaterals, and edges with names",
                 "save the surfaces of a mesh in the plane alone",
             )
-        found = surfaces
-        if kind in LINES:
-            found = lines
-        for name in np.unique(names).tolist():
-            if name:
-                corners = cells[names == name, : (SURFACES | LINES)[kind]]
-                found.setdefault(name, []).append(corners.astype(np.intp))
-            elif kind in SURFACES:
-                raise RefusedError(
-                    "mesh",
-                    Words(f"with {int((names == name).sum())} elements without a name"),
-                    "elements with the name of their body",
-                    "make a physical group of the surface of each body, with a name",
-                )
     bodies = {name: _of_one_kind(parts) for name, parts in surfaces.items()}
     for name, edges in _along_named_points(mesh.point_sets, bodies):
         lines.setdefault(name, []).append(edges)
@@ -195,24 +192,53 @@ def _along_named_points(
             yield name, np.concatenate(found)
 
 
-def _blocks(mesh: Any) -> Iterator[tuple[str, Indices, Any]]:
-    """Kind, cells and names of the cells of every block; "" is no name."""
+def _named_cells(mesh: Any) -> Iterator[tuple[str, str, Indices]]:
+    """Yield kind, name and points, (n, corners and others), of cells; "" is no name."""
     tags = mesh.cell_data.get("gmsh:physical")
     titles = {
         (int(dimension), int(tag)): name
         for name, (tag, dimension) in mesh.field_data.items()
     }
+    sets = _sets_by_size(mesh)
     for number, block in enumerate(mesh.cells):
-        names = np.full(len(block.data), "", dtype=object)
+        points = np.asarray(block.data, dtype=np.intp)
         if tags is not None:
             for tag in np.unique(tags[number]).tolist():
-                title = titles.get((block.dim, int(tag)), "")
-                names[tags[number] == tag] = title
-        else:
-            for name, cells in mesh.cell_sets.items():
-                if cells[number] is not None and ":" not in name:
-                    names[cells[number]] = name
-        yield block.type, np.asarray(block.data), names.astype(str)
+                name = titles.get((block.dim, int(tag)), "")
+                yield block.type, name, points[tags[number] == tag]
+            continue
+        is_free = np.ones(len(points), dtype=bool)
+        for name, cells in sets.items():
+            found = cells[number]
+            if block.type in SURFACES:
+                found = found[is_free[found]]
+            is_free[found] = False
+            if len(found):
+                yield block.type, name, points[found]
+        if is_free.any():
+            yield block.type, "", points[is_free]
+
+
+def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
+    """Numbers of the cells in each set for each block, (n,); the largest set first.
+
+    An element in several sets is of the body of the first. Sets of all elements come
+    last, as they do not tell bodies apart, and those without a name of their own not at
+    all: meshio has a colon in these, and sets of sets in lists.
+    """
+    sets = dict[str, list[Indices]]()
+    for name, cells in mesh.cell_sets.items():
+        found = [np.array([], dtype=int) if each is None else each for each in cells]
+        if ":" not in name and all(isinstance(each, np.ndarray) for each in found):
+            sets[name] = found
+    surfaces = [n for n, block in enumerate(mesh.cells) if block.type in SURFACES]
+    every = sum(len(mesh.cells[n].data) for n in surfaces)
+
+    def rank(name: str) -> tuple[bool, int]:
+        size = sum(len(sets[name][n]) for n in surfaces)
+        return size == every, -size
+
+    return {name: sets[name] for name in sorted(sets, key=rank)}
 
 
 def _in_plane(points: Array) -> Array:

@@ -44,8 +44,12 @@ AXES = {
     "moved y": (1,),
 }
 """Axes along which a side is held or moved."""
-_DEED = "|".join(sorted(DEEDS, key=len, reverse=True))
-_PHRASE = re.compile(rf"(.*?)\s*\b((?:{_DEED})(?: and (?:{_DEED}))*)", re.DOTALL)
+_DEED = "|".join(sorted(DEEDS, key=len, reverse=True)).replace(" ", "[ _]")
+_PHRASE = re.compile(
+    rf"(.*?)[\s_]*(?<![^\W_])((?:{_DEED})(?:[ _]and[ _](?:{_DEED}))*)",
+    re.DOTALL | re.IGNORECASE,
+)
+"""A name and deeds behind it; formats without blanks in names have _ there."""
 ALLOWED = f"a name of a side and one or more of {', '.join(DEEDS)}, joined by and"
 
 
@@ -55,7 +59,8 @@ def taken_apart(phrase: str) -> tuple[str, tuple[str, ...]]:
     if match is None:
         return phrase.strip(), ()
     name, deeds = match.groups()
-    return name or phrase.strip(), tuple(deeds.split(" and "))
+    words = deeds.lower().replace("_", " ")
+    return name or phrase.strip(), tuple(words.split(" and "))
 
 
 def deeds_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, ...]]:

@@ -11,28 +11,7 @@ from app.files.opener import TableOpener
 from app.state import PageState, default_settings
 from solver.files.saved import dump
 from solver.scenes import mesh_files
-
-ABAQUS = """*NODE
-1, 0, 0
-2, 1, 0
-3, 1, 1
-4, 0, 1
-5, 0, 1
-6, 1, 1
-7, 1, 2
-8, 0, 2
-*ELEMENT, TYPE=CPS4, ELSET=lower
-1, 1, 2, 3, 4
-*ELEMENT, TYPE=CPS4, ELSET=upper
-2, 5, 6, 7, 8
-*NSET, NSET=contact
-3, 4, 5, 6
-*NSET, NSET=left held
-1, 2
-*NSET, NSET=right moved x
-7, 8
-"""
-"""Two squares of a metre on each other."""
+from tests.helpers.mesh_files import ABAQUS
 
 
 def of_scene(scene: str) -> PageState:
@@ -96,7 +75,8 @@ def test_a_mesh_of_abaqus_is_run_unless_it_names_other_files() -> None:
     assert said.startswith("other.inp was refused")
     assert "lines of the files that it includes" in said
     assert state.settings.scene == "bar"
-    assert "squares.inp: 2 bodies of a mesh" in opened(opener, "squares.inp", ABAQUS)
+    whole = ABAQUS.replace("NSET=top", "NSET=top_moved_x")
+    assert "squares.inp: 2 bodies of a mesh" in opened(opener, "squares.inp", whole)
     assert state.settings.scene == "mesh"
 
 

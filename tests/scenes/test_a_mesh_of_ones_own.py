@@ -20,7 +20,6 @@ from solver.scenes.mesh_files import (
     from_text,
     named,
     read_example,
-    read_mesh,
 )
 from solver.scenes.named_sides import deeds_of
 from solver.settings.values import SettingError
@@ -217,77 +216,6 @@ def test_quadratic_elements_give_their_corners(tmp_path: Path) -> None:
     expected = named(corners)
     for name in expected.names:
         assert np.array_equal(found.surfaces[name], expected.surfaces[name])
-
-
-def test_names_of_other_formats_are_read(tmp_path: Path) -> None:
-    mesh = two_squares()
-    triangles, edges = mesh.cells
-    sets = {
-        "lower": [np.array([0, 1]), np.array([], dtype=int)],
-        "upper": [np.array([2, 3]), np.array([], dtype=int)],
-        "contact": [np.array([], dtype=int), np.array([0])],
-        "bottom": [np.array([], dtype=int), np.array([1])],
-        "top": [np.array([], dtype=int), np.array([2])],
-    }
-    other = meshio.Mesh(
-        mesh.points, [("triangle", triangles.data), ("line", edges.data)]
-    )
-    other.cell_sets = sets
-    check_named(named(other))
-    assert named(other).contacts[0].name == "contact"
-
-
-ABAQUS = """*NODE, NSET=all
-1, 0, 0, 0
-2, 1, 0, 0
-3, 1, 1, 0
-4, 0, 1, 0
-5, 0, 1, 0
-6, 1, 1, 0
-7, 1, 2, 0
-8, 0, 2, 0
-*ELEMENT, TYPE=CPS4, ELSET=lower
-1, 1, 2, 3, 4
-*ELEMENT, TYPE=CPS4, ELSET=upper
-2, 5, 6, 7, 8
-*NSET, NSET=upper all
-5, 6, 7, 8
-*NSET, NSET=master
-3, 4
-*NSET, NSET=slave
-5, 6
-*NSET, NSET=bottom
-1, 2
-*NSET, NSET=top
-7, 8
-"""
-"""Two squares of a metre on each other, with names of elements and of nodes."""
-
-
-def test_named_nodes_of_abaqus_are_sides_and_contacts() -> None:
-    mesh = read_mesh(ABAQUS.encode(), "squares.inp")
-    check_named(mesh)
-    assert mesh.names == ("lower", "upper")
-    contacts = [(contact.above, contact.below) for contact in mesh.contacts]
-    assert contacts == [(1, 0)]
-    assert [(side.name, side.body) for side in mesh.sides] == [
-        ("bottom", 0),
-        ("top", 1),
-    ]
-
-
-def test_an_unknown_kind_of_element_is_told_by_its_name() -> None:
-    data = ABAQUS.replace("CPS4", "CPE4").encode()
-    with pytest.raises(SettingError, match="not available: CPE4"):
-        text_of_mesh(data, "squares.inp")
-
-
-@pytest.mark.parametrize(
-    "line", ["*INCLUDE, INPUT=/etc/passwd", "* Include,input=other.inp", "*ELEMENT"]
-)
-def test_a_file_of_abaqus_that_is_not_whole_is_refused(line: str) -> None:
-    with pytest.raises(SettingError, match=r"squares\.inp"):
-        text_of_mesh(f"{ABAQUS}{line}\n".encode(), "squares.inp")
 
 
 def test_a_contact_that_is_named_twice_rubs_once() -> None:
