@@ -193,6 +193,14 @@ def test_a_load_that_passes_brings_down_at_its_factor_and_not_before():
         assert (collapse_of(discretise(heavier)) is not None) is falls
 
 
+def test_limits_of_an_arch_are_quantities_of_its_run():
+    run = run_of(voussoirs=31, thickness=0.2)
+    assert QUANTITIES["thinnest"](run) == pytest.approx(0.10717, abs=1e-5)
+    assert QUANTITIES["least_friction"](run) == pytest.approx(0.3084, abs=1e-4)
+    for change in ({"live": 100.0}, {"unit_weight": 0.0}):
+        assert not QUANTITIES["thinnest"].applies(settings_of(**change))
+
+
 def test_the_closed_form_is_the_thrust_of_an_arch_with_hinges():
     settings = settings_of(voussoirs=15, instants=5, abutment_load=MOVED)
     problem = discretise(settings)

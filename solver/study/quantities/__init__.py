@@ -58,6 +58,8 @@ QUANTITIES = by_name(
     holding.holding_friction,
     holding.holding_force,
     arches.thrust,
+    arches.thinnest,
+    arches.least_friction,
     arches.hinges,
     arches.live_factor,
     belts.tension_ratio,

@@ -1,8 +1,10 @@
-"""Quantities of arches and of blocks with joints: thrust, hinges, limit of a load."""
+"""Quantities of arches and of blocks with joints: thrust, hinges, limits."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from operator import attrgetter
 
 import numpy as np
 
@@ -10,11 +12,15 @@ from solver.arrays import Flags
 from solver.discrete import discretise
 from solver.discrete.plane.makers.voussoirs import LIVE, Arch
 from solver.laws import OPEN, Contact
+from solver.reference.closed_forms.arch import VoussoirArch
 from solver.reference.limit_analysis import load_factors
 from solver.settings.scene import Settings
 from solver.study.quantities.contact_measures import AT, instant_at
 from solver.study.quantities.finished import FinishedRun
 from solver.study.quantities.quantity import quantity
+
+_statics = attrgetter("statics")
+"""Statics of the settings of an arch as rigid voussoirs."""
 
 
 def _is_arch(settings: Settings) -> bool:
@@ -38,6 +44,40 @@ def thrust(run: FinishedRun, at: float | None) -> float:
     if weight == 0.0:
         return math.nan
     return float(run.force[instant]) / weight
+
+
+def _weighs_alone(settings: Settings) -> bool:
+    return (
+        _is_arch(settings) and settings.has("unit_weight") and not settings.has("live")
+    )
+
+
+@quantity("Least thickness that stands, over radius", applies=_weighs_alone)
+def thinnest(run: FinishedRun) -> float:
+    """Thickness over the mean radius below which nothing balances the weight.
+
+    Of rigid voussoirs, by statics; nan where no thickness stands.
+    """
+    return _limit(run.settings, VoussoirArch.thinnest)
+
+
+@quantity("Least friction that holds the arch", applies=_weighs_alone)
+def least_friction(run: FinishedRun) -> float:
+    """Coefficient of friction below which nothing balances the weight.
+
+    Of rigid voussoirs, by statics; nan where no friction holds the arch.
+    """
+    return _limit(run.settings, VoussoirArch.least_friction)
+
+
+def _limit(
+    settings: Settings, limit_of: Callable[[VoussoirArch], float | None]
+) -> float:
+    """Limit of an arch by its statics; nan where it has none."""
+    limit = limit_of(_statics(settings))
+    if limit is None:
+        return math.nan
+    return limit
 
 
 @quantity(
