@@ -16,8 +16,8 @@ from solver.settings.values import SettingError
 Refuse = Callable[[str], SettingError]
 """Function from a remedy to a refusal."""
 LARGEST = 4_000_000
-"""Largest size of a file of settings, a table or a lesson, in bytes: some 200 000
-points of a load path."""
+"""Largest size of a file of settings, a table, a mesh or a lesson, in bytes: some
+200 000 points of a load path, 60 000 elements."""
 TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from solver.discrete.plane.makers.named_mesh_refused import check_named
-from solver.files.disk import read_bytes
+from solver.files.disk import LARGEST, TOO_LARGE, read_bytes
 from solver.refusal import RefusedError, Words
-from solver.scenes.mesh_files import ABAQUS, GMSH, HEAD, as_text, read_mesh
+from solver.scenes.mesh_files import ABAQUS, CAN, GMSH, HEAD, as_text, read_mesh
 from solver.settings.definitions import TextParameter
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError, allowed
@@ -27,6 +27,8 @@ def text_of_mesh(data: bytes, source: str, name: str = "mesh") -> str:
     SettingError
         For a file that is refused.
     """
+    if len(data) > LARGEST:
+        raise SettingError(name, source, CAN, TOO_LARGE)
     try:
         mesh = read_mesh(data, source)
         check_named(mesh)

@@ -9,6 +9,7 @@ from typing import Any
 from app.controls import OWN, SettingControl
 from app.files.opener import TableOpener
 from app.state import PageState, default_settings
+from solver.files.disk import LARGEST
 from solver.files.saved import dump
 from solver.scenes import mesh_files
 from tests.helpers.mesh_files import ABAQUS
@@ -68,12 +69,14 @@ def test_a_mesh_that_is_opened_is_run_and_is_a_choice_of_its_control() -> None:
     assert "broken.msh was refused" in opened(opener, "broken.msh", b"nothing")
 
 
-def test_a_mesh_of_abaqus_is_run_unless_it_names_other_files() -> None:
+def test_a_mesh_of_abaqus_is_run_unless_it_is_not_whole_or_too_large() -> None:
     state = of_scene("bar")
     opener = TableOpener(state, "Open", ".msh,.inp", 280)
     said = opened(opener, "other.inp", f"{ABAQUS}*INCLUDE, INPUT=/etc/hostname\n")
     assert said.startswith("other.inp was refused")
     assert "lines of the files that it includes" in said
+    said = opened(opener, "large.inp", f"{ABAQUS}{'**' * LARGEST}")
+    assert "it has more than 4 MB" in said
     assert state.settings.scene == "bar"
     whole = ABAQUS.replace("NSET=top", "NSET=top_moved_x")
     assert "squares.inp: 2 bodies of a mesh" in opened(opener, "squares.inp", whole)
