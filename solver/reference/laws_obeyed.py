@@ -359,12 +359,26 @@ def _inner_force(problem: Problem, displacement: Array) -> tuple[Array, Array]:
     """
     total = np.zeros((problem.n_dofs, problem.n_instants))
     sizes = np.zeros_like(total)
+    deformation = _deformation(problem, displacement)
     for part in problem.substructures:
-        moved = displacement[part.dofs]
         stiffness = part.elasticity.stiffness
-        np.add.at(total, part.dofs, stiffness @ moved)
-        np.add.at(sizes, part.dofs, abs(stiffness) @ np.abs(moved))
+        np.add.at(total, part.dofs, stiffness @ deformation[part.dofs])
+        moved = np.abs(displacement[part.dofs])
+        np.add.at(sizes, part.dofs, abs(stiffness) @ moved)
     return total, sizes
+
+
+def _deformation(problem: Problem, displacement: Array) -> Array:
+    """Displacement less the rigid motions of bodies, (n_dofs, n_instants), scaled.
+
+    These strain nothing, but the stiffness of a slender body makes forces of their
+    rounding: of bricks 228 times as long as high 3e-8 of what acted (measured).
+    """
+    motions = problem.motions
+    if motions is None:
+        return displacement
+    shares = np.linalg.lstsq(motions, displacement)[0]
+    return np.asarray(displacement - motions @ shares)
 
 
 def _prescribed(problem: Problem) -> tuple[Indices, Array]:
@@ -389,8 +403,9 @@ def _balance_of_parts(
     By displacements (n_dofs, n_instants) of the structure, and forces of all rows
     (n_rows, n_instants).
     """
+    deformation = _deformation(problem, displacement)
     for part in problem.substructures:
-        missing = np.asarray(part.elasticity.stiffness @ displacement[part.dofs])
+        missing = np.asarray(part.elasticity.stiffness @ deformation[part.dofs])
         if part.body_force is not None:
             missing = missing - part.body_force
         np.subtract.at(missing, part.elasticity.trace, force[part.rows])

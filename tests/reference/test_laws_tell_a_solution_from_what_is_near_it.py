@@ -17,6 +17,7 @@ from solver.reference.laws_obeyed import RowFields, law_residuals
 from solver.reference.rules import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
+from solver.study.stability import AT_ROUNDING
 
 ROUNDED = 1e-10
 SEEN = 1e-6
@@ -98,6 +99,30 @@ def largest_work(problem, answer):
     work = np.abs(slip * answer.contact_force) * along[:, None]
     place, instant = np.unravel_index(np.argmax(work), work.shape)
     return place, instant, all_jumps[[place]].indices[0]
+
+
+SLENDER = {
+    "instants": 3,
+    "elements": 30,
+    "bricks": 3,
+    "courses": 2,
+    "opening": 1,
+    "opening_height": 1,
+    "length": 0.0608,
+    "height": 2.664e-4,
+    "unit_weight": 4e6,
+}
+"""Bricks that are 228 times as long as high, over an opening."""
+
+
+def test_rounding_of_how_far_a_slender_body_has_moved_is_no_force():
+    problem = problem_of("wall", SLENDER)
+    found = reference_of(problem)
+    assert law_residuals(found, problem).largest < AT_ROUNDING
+    # A body that has moved as a whole is seen where it touches others.
+    further = found.displacement.copy()
+    further[:, -1] += found.displacement.max() * problem.motions[:, 0]
+    assert law_residuals(spoiled(found, displacement=further), problem).largest > SEEN
 
 
 @pytest.fixture(
