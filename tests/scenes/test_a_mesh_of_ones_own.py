@@ -24,6 +24,8 @@ from solver.scenes.mesh_files import (
 )
 from solver.scenes.named_sides import deeds_of
 from solver.settings.values import SettingError
+from solver.study.quantities import QUANTITIES
+from solver.study.quantities.finished import finished_run
 
 MESH = CATALOGUE["mesh"]
 FIELDS = {
@@ -450,6 +452,27 @@ def test_each_body_has_its_material() -> None:
     bodies = MESH.checked({"materials": rows}).structure().bodies
     assert [body.young for body in bodies] == [1e11, 7e10, 2e11]
     assert bodies[1].weight[1, -1] == -1e4
+
+
+def test_a_table_of_one_material_says_what_the_settings_say(tmp_path: Path) -> None:
+    """Stresses across the plane, and springs of contacts, are of the bodies' own E, ν.
+
+    Both were of the settings that a table replaces: von Mises' stress of a body with
+    ν = 0.45 was that of ν = 0.3, and the springs in series with friction were 100 times
+    as stiff as steel, whatever the bodies were of.
+    """
+    mesh = text_of(two_squares(), tmp_path)
+    common = {"mesh": mesh, "sides": "bottom held, top moved y"}
+    common |= {"load": "ramp", "instants": 5, "displacement": -1e-3}
+    common |= {"friction_law": "compliant", "contact_stiffness": 2.0, "friction": 0.5}
+    by_settings = MESH.checked(common | {"young": 1e6, "poisson": 0.45})
+    rows = [[1, 1e6, 0.45, 0.0], [2, 1e6, 0.45, 0.0]]
+    by_table = MESH.checked(common | {"materials": rows})
+    runs = [finished_run(each, errors=False) for each in (by_settings, by_table)]
+    for name in ("peak_stress", "peak_slip", "peak_friction", "peak_displacement"):
+        first, second = [QUANTITIES[name](run) for run in runs]
+        assert first > 0.0
+        assert second == pytest.approx(first, rel=1e-9)
 
 
 def test_cuts_and_units_of_the_mesh_change_no_force() -> None:
