@@ -165,7 +165,9 @@ class FinishedRun:
             # Rounding must not move the largest stress to a later instant.
             if stress[element] > (1.0 + EQUAL) * largest:
                 largest = float(stress[element])
-                centre = inside.nodes[inside.elements[element]].mean(axis=0)
+                # A triangle has its last corner twice, and a beam both of its ends.
+                corners = np.unique(inside.elements[element])
+                centre = inside.nodes[corners].mean(axis=0)
         return largest, float(centre[0]), float(centre[1])
 
 
