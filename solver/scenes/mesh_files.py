@@ -22,6 +22,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.plane.makers.named_mesh import NamedMesh
 from solver.refusal import RefusedError, Words
+from solver.scenes.abaqus import NUMBER, for_meshio, is_of_abaqus
 
 SURFACES = {
     "triangle": 3,
@@ -43,6 +44,8 @@ FLAT = 1e-9
 """Largest distance of points from a plane, over the size of the mesh."""
 GMSH = ".msh"
 """End of the names of Gmsh's files: they name no other files, as some others do."""
+ABAQUS = ".inp"
+"""End of the names of files of Abaqus, and of some others."""
 HEAD = "mesh:"
 """Beginning of the text of a mesh."""
 SURFACE = "surface "
@@ -82,6 +85,8 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
     import meshio
 
     end = Path(source).suffix.lower()
+    if end == ABAQUS and is_of_abaqus(data):
+        data = for_meshio(data)
     with NamedTemporaryFile(suffix=end) as file:
         file.write(data)
         file.flush()
@@ -93,6 +98,9 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
                     mesh = meshio.gmsh.read(file.name)
                 else:
                     mesh = meshio.read(file.name)
+            return named(mesh)
+        except RefusedError:
+            raise
         except (meshio.ReadError, *ERRORS) as problem:
             found = str(problem)
             if isinstance(problem, SystemExit):
@@ -100,7 +108,6 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
             reason = " ".join(found.replace(file.name, source).split())
             remedy = f"save it again as Gmsh's .msh, format 4.1 ({reason or 'unread'})"
             raise RefusedError("mesh", source, CAN, remedy) from None
-    return named(mesh)
 
 
 def read_example(name: str) -> NamedMesh:
@@ -195,8 +202,9 @@ def _blocks(mesh: Any) -> Iterator[tuple[str, Indices, Any]]:
                 title = titles.get((block.dim, int(tag)), "")
                 names[tags[number] == tag] = title
         else:
-            for name, cells in mesh.cell_sets.items():
-                if cells[number] is not None and ":" not in name:
+            for title, cells in mesh.cell_sets.items():
+                name = title.partition(NUMBER)[0]
+                if cells[number] is not None and name and ":" not in name:
                     names[cells[number]] = name
         yield block.type, np.asarray(block.data), names.astype(str)
 

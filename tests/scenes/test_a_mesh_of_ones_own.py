@@ -278,10 +278,70 @@ def test_named_nodes_of_abaqus_are_sides_and_contacts() -> None:
     ]
 
 
-def test_an_unknown_kind_of_element_is_told_by_its_name() -> None:
-    data = ABAQUS.replace("CPS4", "CPE4").encode()
-    with pytest.raises(SettingError, match="not available: CPE4"):
-        text_of_mesh(data, "squares.inp")
+@pytest.mark.parametrize("kind", ["CPS4R", "CPE4", "CPE4R", "cpe4i"])
+def test_elements_of_abaqus_are_of_either_plane_state(kind: str) -> None:
+    mesh = read_mesh(ABAQUS.replace("CPS4", kind).encode(), "squares.inp")
+    check_named(mesh)
+    assert mesh.names == ("lower", "upper")
+
+
+BLOCKS = """*NODE, NSET=of lower
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+9, 2, 0, 0
+*ELEMENT, TYPE=T2D2
+7, 1, 2
+*ELEMENT, TYPE=CPE4R, ELSET=lower
+1, 1, 2, 3, 4
+*ELEMENT, TYPE=CPE3, ELSET=lower
+3, 2, 9, 3
+*NODE
+5, 0, 1, 0
+6, 1, 1, 0
+7, 1, 2, 0
+8, 0, 2, 0
+*ELEMENT, ELSET=upper,
+TYPE=CPE4R
+** a remark
+2, 5, 6, 7, 8
+*NSET, NSET=contact
+5, 6
+*NSET, NSET=bottom
+1, 2, 9
+"""
+"""Bodies with nodes and elements in several blocks, of which some have no name."""
+
+
+def test_blocks_of_abaqus_are_of_one_mesh() -> None:
+    mesh = read_mesh(BLOCKS.encode(), "blocks.inp")
+    check_named(mesh)
+    assert {name: len(found) for name, found in mesh.surfaces.items()} == {
+        "lower": 3,
+        "upper": 1,
+    }
+    assert np.ptp(mesh.points, axis=0).tolist() == [2.0, 2.0]
+    assert [contact.name for contact in mesh.contacts] == ["contact"]
+    assert [side.name for side in mesh.sides] == ["bottom"]
+
+
+PART = "*PART, NAME={0}\n" + ABAQUS + "*END PART\n*INSTANCE, NAME={0}-1, PART={0}\n{1}"
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [
+        (PART.format("A", "0, 1, 0\n*END INSTANCE"), "a part that is moved"),
+        (PART.format("A", "*END INSTANCE\n") + "*PART, NAME=B\n", "several parts"),
+        (ABAQUS.replace("CPS4", "CAX4"), "not available: CAX4"),
+        ("433 810 3 1 0\n1 0 0 0\n2 1 0 0\n", "save it again as Gmsh's"),
+    ],
+)
+def test_what_would_be_another_mesh_is_refused(data: str, why: str) -> None:
+    """Parts lie where their instances say, and other programs name files alike."""
+    with pytest.raises(SettingError, match=why):
+        text_of_mesh(data.encode(), "squares.inp")
 
 
 def test_a_contact_that_is_named_twice_rubs_once() -> None:
