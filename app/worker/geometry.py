@@ -25,6 +25,7 @@ from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate
+from solver.scenes.plane import poisson_in
 from solver.settings.scene import Settings
 
 THICKNESS = 0.08
@@ -190,18 +191,15 @@ class DrawnMesh(Drawn):
 
     def __init__(self, problem: Problem, settings: Settings, columns: Indices) -> None:
         inside = problem.inside
-        values = settings.values()
         structure = settings.structure()
         self._inside = inside
-        self._poisson = values["poisson"]
-        self._state = values["plane"]
+        self._poisson = poisson_in(settings, inside)
+        self._state = settings.values()["plane"]
         # Positions are drawn from the lower left corner of all bodies on.
         self._corner = np.zeros(2)
         if isinstance(structure, Bodies):
             drawings = drawings_of_shapes(structure, inside)
             self._corner, _ = structure.box
-            poisson = np.array([body.poisson for body in structure.bodies])
-            self._poisson = poisson[inside.bodies]
         else:
             drawings = drawings_of_grids(inside)
         self.extras: Extras = {"stress": self._stress}

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.arrays import Array, Indices, as_slice, in_rows
+from solver.arrays import RESIDUE, Array, Indices, as_slice, in_rows
 from solver.laws import OPEN, Contact
 
 NO_SLIP = 1e-9
@@ -314,7 +314,9 @@ class ContactGroup:
         status = np.sign(slip).astype(np.int8)
         status[np.abs(slip) <= of_interfaces[self.interfaces, None]] = 0
         if law.normal is not None and force is not None:
-            status[law.by_point(force[law.normal.component.above]) <= 0.0] = OPEN
+            normal = law.by_point(force[law.normal.component.above])
+            tangential = law.by_point(np.abs(force[law.tangent.above]))
+            status[~_carries(normal, tangential)] = OPEN
         return status
 
     def _largest_displacement(self, displacement: Array) -> Array:
@@ -325,6 +327,18 @@ class ContactGroup:
             moved = np.abs(displacement[rows]).max(axis=1)
             np.maximum.at(largest, interfaces, moved)
         return largest
+
+
+def _carries(normal: Array, tangential: Array) -> NDArray[np.bool_]:
+    """Check which points of contact are pressed together, and not by rounding alone.
+
+    Where bodies come apart, or begin to touch, rounding presses at some points. A bond
+    that nothing presses carries friction. Pressing and friction forces have the same
+    shape, (n_points, n_instants).
+    """
+    largest = max(normal.max(initial=0.0), tangential.max(initial=0.0))
+    least = RESIDUE * largest
+    return np.asarray((normal > least) | ((normal > 0.0) & (tangential > least)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,11 +52,11 @@ def elastic_matrix(young: float, poisson: float, state: str) -> Array:
     )
 
 
-def von_mises(stress: Array, poisson: float, state: str) -> Array:
+def von_mises(stress: Array, poisson: Array | float, state: str) -> Array:
     """Von Mises' equivalent, (n,), of stresses (xx, yy, xy), (n, 3), in their unit.
 
-    In plane strain the stress across the plane is Poisson's ratio times the sum of the
-    other two.
+    In plane strain the stress across the plane is Poisson's ratio, (n,) or one of all,
+    times the sum of the other two.
     """
     xx, yy, xy = stress.T
     if state == "strain":

@@ -245,6 +245,12 @@ class MeshSettings(PlaneSettings):
         return self.parts.size
 
     @property
+    def contact_unit(self) -> float:
+        """Unit of `contact_stiffness`, N/m^3, by the modulus of the stiffest body."""
+        moduli = [young for _, young, *_ in self.points("materials")]
+        return max(moduli) / self.length
+
+    @property
     def ends(self) -> dict[str, int]:
         """Largest number of parts of each body."""
         counts = [len(shape.elements) for shape in self.parts.shapes]

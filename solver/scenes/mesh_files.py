@@ -22,6 +22,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.plane.makers.named_mesh import NamedMesh
 from solver.refusal import RefusedError, Words
+from solver.scenes.abaqus import NUMBER, for_meshio
 
 SURFACES = {
     "triangle": 3,
@@ -43,9 +44,7 @@ FLAT = 1e-9
 """Largest distance of points from a plane, over the size of the mesh."""
 GMSH = ".msh"
 ABAQUS = ".inp"
-"""End of the names of files of Gmsh, and of Abaqus and CalculiX."""
-INCLUDE = b"*include"
-"""Beginning of a line of Abaqus that names another file."""
+"""Ends of the names of files of Gmsh, and of Abaqus and CalculiX."""
 HEAD = "mesh:"
 """Beginning of the text of a mesh."""
 SURFACE = "surface "
@@ -87,7 +86,7 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
 
     end = Path(source).suffix.lower()
     if end == ABAQUS:
-        _check_is_whole(data, source)
+        data = for_meshio(data)
     with NamedTemporaryFile(suffix=end) as file:
         file.write(data)
         file.flush()
@@ -99,6 +98,9 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
                     mesh = meshio.gmsh.read(file.name)
                 else:
                     mesh = meshio.read(file.name)
+            return named(mesh)
+        except RefusedError:
+            raise
         except (meshio.ReadError, *ERRORS) as problem:
             found = str(problem)
             if isinstance(problem, SystemExit):
@@ -106,15 +108,6 @@ def read_mesh(data: bytes, source: str) -> NamedMesh:
             reason = " ".join(found.replace(file.name, source).split())
             remedy = f"save it again as Gmsh's .msh, format 4.1 ({reason or 'unread'})"
             raise RefusedError("mesh", source, CAN, remedy) from None
-    return named(mesh)
-
-
-def _check_is_whole(data: bytes, source: str) -> None:
-    """Refuse a file of Abaqus that names others, which are not at hand."""
-    for line in data.splitlines():
-        if line.lower().replace(b" ", b"").startswith(INCLUDE):
-            remedy = "put the lines of the files that it includes in its place"
-            raise RefusedError("mesh", source, CAN, remedy)
 
 
 def read_example(name: str) -> NamedMesh:
@@ -224,13 +217,17 @@ def _sets_by_size(mesh: Any) -> dict[str, list[Indices]]:
 
     An element in several sets is of the body of the first. Sets of all elements come
     last, as they do not tell bodies apart, and those without a name of their own not at
-    all: meshio has a colon in these, and sets of sets in lists.
+    all: meshio has a colon in these.
     """
     sets = dict[str, list[Indices]]()
-    for name, cells in mesh.cell_sets.items():
-        found = [np.array([], dtype=int) if each is None else each for each in cells]
-        if ":" not in name and all(isinstance(each, np.ndarray) for each in found):
-            sets[name] = found
+    for title, cells in mesh.cell_sets.items():
+        name = title.partition(NUMBER)[0]
+        if not name or ":" in name:
+            continue
+        of_blocks = sets.setdefault(name, [np.array([], dtype=int)] * len(mesh.cells))
+        for number, found in enumerate(cells):
+            if found is not None:
+                of_blocks[number] = np.union1d(of_blocks[number], found)
     surfaces = [n for n, block in enumerate(mesh.cells) if block.type in SURFACES]
     every = sum(len(mesh.cells[n].data) for n in surfaces)
 

@@ -11,6 +11,8 @@ import param
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
+from solver.discrete.inside import Inside
+from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.laws import FrictionLaw
 from solver.refusal import plain
@@ -111,6 +113,16 @@ class PlaneSettings(Settings):
     def n_interfaces(self) -> int:
         """Number of interfaces: between bodies, or of one body with its support."""
         return max(self.n_bodies - 1, 1)
+
+
+def poisson_in(settings: Settings, inside: Inside) -> Array | float:
+    """Poisson's ratio of every element, (n_elements,), or one of all in the plane."""
+    structure = settings.structure()
+    if isinstance(structure, Bodies):
+        # Bodies of a mesh may each have a material of their own.
+        of_bodies = np.array([body.poisson for body in structure.bodies])
+        return np.asarray(of_bodies[inside.bodies])
+    return float(settings.values()["poisson"])
 
 
 class RectangleSettings(PlaneSettings):

@@ -46,9 +46,9 @@ class FrictionSettings(MethodSettings):
         (1e-3, 1e9),
         (1.0, 1e4),
         "Stiffness of that spring, as a multiple of E S / L² along a rod, with the "
-        "harmonic mean S of its elements, or of E / L in the plane; of all wires of a "
-        "rope alike, as a multiple of the stiffest E S over the square of the longest "
-        "L.",
+        "harmonic mean S of its elements, or of E / L in the plane, with the E of the "
+        "stiffest body; of all wires of a rope alike, as a multiple of the stiffest "
+        "E S over the square of the longest L.",
         applies=lambda settings: settings.friction_law == "compliant",
     )
     tangential_stiffness = CONTACT.quantity(

@@ -20,8 +20,11 @@ from solver.latin import (
     solve,
 )
 from solver.latin.slabs import first_slab, next_slab, solve_in_slabs
+from solver.reference.distance import distance_to
+from solver.reference.incremental import reference_of
 from solver.refusal import RefusedError
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 
 CYCLE = 12
 TIGHT = Latin(finish=None, stop=Stop(tolerance=1e-20, iterations=800))
@@ -141,3 +144,30 @@ def test_what_remembers_more_is_refused(
 ) -> None:
     with pytest.raises(RefusedError, match=f"^{name} = "):
         solve_in_slabs(cyclic(scene, **changes), method, length)
+
+
+def test_a_slab_that_is_far_by_its_changes_does_not_end_by_a_low_indicator() -> None:
+    """A tendon with the paper's k was called converged at five times its accuracy."""
+    settings = settings_of(
+        "belt",
+        guide="duct",
+        wobble=0.0099,
+        young=1.4e11,
+        pull=18.5,
+        pull_load="ramp",
+        tail_force=697.0,
+        elements=169,
+        substructures=17,
+        instants=8,
+        method="paper",
+        start="nested",
+        finish="at-once",
+        accuracy=1.5e-4,
+        max_iterations=240,
+    )
+    problem = discretise(settings)
+    distance = distance_to(reference_of(problem), problem)
+    solution = solve_in_slabs(problem, method_of(settings), 5, distance=distance)
+    error = solution.records[-1].error_force
+    is_converged = solution.status.ending is Ending.CONVERGED
+    assert error <= settings.accuracy or not is_converged

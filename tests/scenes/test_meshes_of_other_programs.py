@@ -1,5 +1,8 @@
 """Names in meshes of programs other than Gmsh are bodies, contacts and sides."""
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 
 from solver.discrete.plane.makers.named_mesh_refused import check_named
@@ -25,10 +28,70 @@ def test_named_nodes_of_abaqus_are_sides_and_contacts() -> None:
     ]
 
 
-def test_an_unknown_kind_of_element_is_told_by_its_name() -> None:
-    data = ABAQUS.replace("CPS4", "CPE4").encode()
-    with pytest.raises(SettingError, match="not available: CPE4"):
-        text_of_mesh(data, "squares.inp")
+@pytest.mark.parametrize("kind", ["CPS4R", "CPE4", "CPE4R", "cpe4i"])
+def test_elements_of_abaqus_are_of_either_plane_state(kind: str) -> None:
+    mesh = read_mesh(ABAQUS.replace("CPS4", kind).encode(), "squares.inp")
+    check_named(mesh)
+    assert mesh.names == ("lower", "upper")
+
+
+BLOCKS = """*NODE, NSET=of lower
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+9, 2, 0, 0
+*ELEMENT, TYPE=T2D2
+7, 1, 2
+*ELEMENT, TYPE=CPE4R, ELSET=lower
+1, 1, 2, 3, 4
+*ELEMENT, TYPE=CPE3, ELSET=lower
+3, 2, 9, 3
+*NODE
+5, 0, 1, 0
+6, 1, 1, 0
+7, 1, 2, 0
+8, 0, 2, 0
+*ELEMENT, ELSET=upper,
+TYPE=CPE4R
+** a remark
+2, 5, 6, 7, 8
+*NSET, NSET=contact
+5, 6
+*NSET, NSET=bottom
+1, 2, 9
+"""
+"""Bodies with nodes and elements in several blocks, of which some have no name."""
+
+
+def test_blocks_of_abaqus_are_of_one_mesh() -> None:
+    mesh = read_mesh(BLOCKS.encode(), "blocks.inp")
+    check_named(mesh)
+    assert {name: len(found) for name, found in mesh.surfaces.items()} == {
+        "lower": 3,
+        "upper": 1,
+    }
+    assert np.ptp(mesh.points, axis=0).tolist() == [2.0, 2.0]
+    assert [contact.name for contact in mesh.contacts] == ["contact"]
+    assert [side.name for side in mesh.sides] == ["bottom"]
+
+
+PART = "*PART, NAME={0}\n" + ABAQUS + "*END PART\n*INSTANCE, NAME={0}-1, PART={0}\n{1}"
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [
+        (PART.format("A", "0, 1, 0\n*END INSTANCE"), "a part that is moved"),
+        (PART.format("A", "*END INSTANCE\n") + "*PART, NAME=B\n", "several parts"),
+        (ABAQUS.replace("CPS4", "CAX4"), "not available: CAX4"),
+        ("433 810 3 1 0\n1 0 0 0\n2 1 0 0\n", "save it again as Gmsh's"),
+    ],
+)
+def test_what_would_be_another_mesh_is_refused(data: str, why: str) -> None:
+    """Parts lie where their instances say, and other programs name files alike."""
+    with pytest.raises(SettingError, match=why):
+        text_of_mesh(data.encode(), "squares.inp")
 
 
 OF_GMSH = """*NODE
@@ -86,9 +149,22 @@ def test_groups_of_gmsh_in_a_file_of_abaqus_are_bodies_and_sides() -> None:
     assert "bottom held and lid moved x" in settings.sentence()
 
 
-@pytest.mark.parametrize(
-    "line", ["*INCLUDE, INPUT=/etc/passwd", "* Include,input=other.inp", "*ELEMENT"]
-)
+@pytest.mark.parametrize("line", ["*INCLUDE, INPUT=a", "*include,input=a", "*ELEMENT"])
 def test_a_file_of_abaqus_that_is_not_whole_is_refused(line: str) -> None:
     with pytest.raises(SettingError, match=r"squares\.inp"):
         text_of_mesh(f"{ABAQUS}{line}\n".encode(), "squares.inp")
+
+
+@pytest.mark.parametrize(
+    "line", ["INCLUDE, INPUT={}", " *INCLUDE, INPUT={}", "*IN*CLUDE, INPUT={}"]
+)
+def test_no_other_file_is_read_for_one_of_abaqus(line: str, tmp_path: Path) -> None:
+    other = tmp_path / "other.inp"
+    other.write_text("*NODE\na secret\n")
+    text = f"*HEADING\n{line.format(other)}\n{ABAQUS}"
+    for data in (text, line.format(other)):
+        try:
+            found = text_of_mesh(data.encode(), "squares.inp")
+        except SettingError as refused:
+            found = str(refused)
+        assert "secret" not in found

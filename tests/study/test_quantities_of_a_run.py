@@ -126,6 +126,28 @@ def test_what_friction_could_hold_is_mu_times_all_that_presses(
     )
 
 
+def test_wires_that_stretch_alike_rub_by_nothing_and_could_hold_by_all() -> None:
+    """Rounding takes no energy, and is no share of friction that is in use.
+
+    So the force that could hold is that of the instant at which the most presses: it
+    was that at which rounding was largest.
+    """
+    run = ran(
+        "strand",
+        broken=0,
+        wires=4,
+        elements=6,
+        instants=36,
+        substructures=1,
+        pressure_load="tightening",
+        friction_law="compliant",
+    )
+    for name in ("dissipation", "peak_slip", "ratchet", "holding_friction"):
+        assert taken(name, run) == 0.0
+    # Half an element beside the clamp is held, and does not rub.
+    assert taken("holding_force", run) == pytest.approx(1500.0 * (1.0 - 0.5 / 6.0))
+
+
 def test_what_holds_one_side_balances_the_other() -> None:
     """Layers bent at one end and held at the other carry nothing else along y."""
     run = ran("layers", elements=12, instants=11, substructures=2)

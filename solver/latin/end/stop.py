@@ -17,7 +17,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.checks import Number, check
 from solver.latin.end.certified import certified_answer, own_answer
-from solver.latin.end.estimate import AGAIN, OBEYED, ErrorEstimate
+from solver.latin.end.estimate import AGAIN, OBEYED, SAFETY, ErrorEstimate
 from solver.latin.end.status import (
     ABOVE,
     AT_LIMIT,
@@ -82,8 +82,8 @@ class Stop:
         Largest time of a run, s; a start or a status step that takes longer is given
         up.
     sufficient
-        LATIN indicator that ends a run by itself, though the accuracy is not known; 0
-        switches this criterion off.
+        LATIN indicator that ends a run by itself where the accuracy is not known, and
+        not estimated to be missed; 0 switches this criterion off.
 
     Raises
     ------
@@ -294,7 +294,11 @@ class StopState:
         status = self._converged(iterate, error)
         if status is not None:
             return status
-        if self._stop.sufficient > 0.0 and self._is_low(iterate, self._stop.sufficient):
+        # With the paper's k on many elements a low indicator says little: what is too
+        # far away even by its changes alone goes on.
+        is_far = error > SAFETY * self._stop.accuracy
+        sufficient = self._stop.sufficient
+        if sufficient > 0.0 and not is_far and self._is_low(iterate, sufficient):
             return BELOW
         if self._stall.has_stalled(iterate):
             is_low = self._stall.indicator <= self._stop.tolerance

@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import RESIDUE, Array
 from solver.discrete.contacts import Stacked
 from solver.latin import Iterate
 from solver.settings.scene import Settings
@@ -60,6 +60,9 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
         # Slip is the motion of the slider, without the elastic part.
         slider = law.tangential.slider(displacement, force)
         slip = np.diff(slider, axis=1, prepend=0.0)
+        # What sticks moves by rounding, which takes no energy and leaves no slip.
+        moved = [np.abs(displacement[rows]).max() for rows in law.tangent.sides]
+        slip[np.abs(slip) <= RESIDUE * max(moved)] = 0.0
         # On its image a body moves by half of the slip.
         slip *= law.slip_ratio * scales.displacement
         yield stacked, slip, force[law.tangent.above] * slip * -scales.force

@@ -29,6 +29,7 @@ from solver.reference.rules import States
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
+from solver.scenes.plane import poisson_in
 from solver.settings.scene import Settings
 from solver.study.quantities.cycles import LoadCycles, cycles_of, slips_of
 
@@ -151,19 +152,22 @@ class FinishedRun:
     def peak_stress(self) -> tuple[float, float, float]:
         """Largest von Mises stress in the plane, Pa, and x and y of its element, m."""
         inside = self.problem.inside
-        values = self.settings.values()
         assert inside is not None
+        state = self.settings.values()["plane"]
+        poisson = poisson_in(self.settings, inside)
         largest = 0.0
         centre = np.full(2, np.nan)
         for instant in range(self.problem.n_instants):
             vectors = inside.displacement(self.iterate.displacement, [instant])[:, :, 0]
             components = inside.stress(vectors)
-            stress = von_mises(components, values["poisson"], values["plane"])
+            stress = von_mises(components, poisson, state)
             element = first_largest(stress)
             # Rounding must not move the largest stress to a later instant.
             if stress[element] > (1.0 + EQUAL) * largest:
                 largest = float(stress[element])
-                centre = inside.nodes[inside.elements[element]].mean(axis=0)
+                # A triangle has its last corner twice, and a beam both of its ends.
+                corners = np.unique(inside.elements[element])
+                centre = inside.nodes[corners].mean(axis=0)
         return largest, float(centre[0]), float(centre[1])
 
 

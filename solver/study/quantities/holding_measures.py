@@ -139,8 +139,14 @@ def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
 
 
 def _largest_needed(holds: list[_Hold]) -> float:
-    """Largest coefficient of friction in use at any interface and instant."""
-    return max(float(hold.needed.max(initial=0.0)) for hold in holds)
+    """Largest coefficient of friction in use at any interface and instant.
+
+    Zero where rounding alone leaves something.
+    """
+    needed = max(float(hold.needed.max(initial=0.0)) for hold in holds)
+    if needed > RESIDUE:
+        return needed
+    return 0.0
 
 
 @quantity("Smallest friction that holds", applies=_rubs_by_mu)
@@ -156,10 +162,7 @@ def holding_friction(run: FinishedRun) -> float:
     holds = _holds(run)
     if any(hold.slides.any() for hold in holds):
         return math.nan
-    needed = _largest_needed(holds)
-    if needed > RESIDUE:
-        return needed
-    return 0.0
+    return _largest_needed(holds)
 
 
 @quantity("Largest force that friction could hold", "N", applies=_rubs_by_mu)
