@@ -24,13 +24,14 @@ from app.charts import library
 from app.frame import OPEN, Frame, Run, Selection
 from app.state import PageState
 from app.status import figures_line, status_line
-from app.units import unit_for, unit_of
+from app.units import unit_of
 from app.views.layout import shape_of
 from app.views.scene import Scene
 from app.views.view import View
 from app.widgets import TEMPLATES, download, up_to
 from app.worker.cells import thinned
 from app.worker.references import has_reference
+from solver.files.amounts import unit_for
 from solver.files.saved import dump
 from solver.settings.definitions import Parameter, title_of
 from solver.settings.scene import Settings

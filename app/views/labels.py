@@ -12,7 +12,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.units import number
 from app.views.acts import Arrows, anchor_of, color_of, ground_edge, text_of
 from app.views.colors import FORCE, REFERENCE
 from app.views.colors import GROUND as GROUND_COLOR
@@ -21,6 +20,7 @@ from app.views.picture import Columns, Picture
 from app.views.words import Word, around, in_rows, inside, lies_on, meets
 from solver.arrays import Array
 from solver.discrete.structure import Act
+from solver.files.amounts import number
 
 NAMED = 0.4
 """Largest length of the name of a joint over that of all bodies."""

@@ -13,7 +13,6 @@ from bokeh.palettes import Cividis256, RdBu11
 from bokeh.plotting import figure
 
 from app.frame import LINEAR, LOCAL, Frame, Run, Selection
-from app.units import number, unit_for
 from app.views.acts import Arrows, Rest
 from app.views.axis import rounded_up
 from app.views.colors import (
@@ -33,6 +32,7 @@ from app.views.layout import Layout, layout_of
 from app.views.parts import LEAST, bare, color_bar, explain
 from app.views.picture import Picture
 from app.views.view import View
+from solver.files.amounts import number, unit_for
 from solver.settings.scene import Settings
 
 WIDTH = 950.0

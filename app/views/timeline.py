@@ -10,7 +10,6 @@ from bokeh.events import Pan, Tap
 from bokeh.models import PanTool
 
 from app.frame import Frame, Run, Selection
-from app.units import Unit, number, unit_for
 from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_equal, is_opposite
@@ -18,6 +17,7 @@ from app.views.parts import bare
 from app.views.view import View
 from solver.arrays import Array
 from solver.discrete.structure import Description
+from solver.files.amounts import Unit, number, unit_for
 
 PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
 """Colours of the paths; further paths are not drawn."""

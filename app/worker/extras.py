@@ -12,13 +12,14 @@ import numpy as np
 
 from app.frame import Floats
 from app.messages import Needs
-from app.units import percent, unit_for
+from app.units import percent
 from app.worker.cells import floats, thinned
 from app.worker.geometry import MOST_POINTS
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.structure import Loop
+from solver.files.amounts import unit_for
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
