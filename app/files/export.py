@@ -98,18 +98,20 @@ def contact_table(frame: Frame) -> str:
     """Contact at all points and instants of the interfaces that a frame has.
 
     CSV with one line of heads, in SI: of several interfaces the name, position x, time
-    t, friction force on the body above, pressure where it is found, slip, and status.
-    It can be opened as the results of another program.
+    t, friction on the body above, as on plots a traction or a force per length,
+    pressure where it is found, slip, and status. It can be opened as the results of
+    another program.
     """
     run = frame.run
     unit = PER[run.settings.kind]
+    kind = "traction" if unit == "Pa" else "force"
     tables = []
     for name, fields in frame.contact.items():
         x, t = np.meshgrid(run.interfaces[name].positions, run.instants, indexing="ij")
         columns = {
             "x, m": x,
             "t, s": t,
-            f"friction force, {unit}": fields.friction,
+            f"friction {kind}, {unit}": fields.friction,
             "pressure, Pa": fields.pressure,
             "slip, m": fields.slip,
         }

@@ -126,6 +126,10 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
     read = pd.read_csv(io.StringIO(text))
     assert not read.isna().any(axis=None)
     assert {"x, m", "t, s", "slip, m", "status"} <= set(read.columns)
+    # A force per area and one per length are named as on the plot.
+    (head,) = [name for name in read.columns if name.startswith("friction")]
+    is_plane = frame.run.settings.kind == "plane"
+    assert head == ("friction traction, Pa" if is_plane else "friction force, N/m")
     several = len(frame.run.interfaces) > 1
     assert ("contact" in read.columns) == several
     brought = results_in(table_of(text.encode(), "contact.csv"), frame.run.settings)
