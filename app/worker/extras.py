@@ -30,6 +30,7 @@ from solver.settings.values import SettingError
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import (
+    LAST,
     LoadCycles,
     cycles_of,
     ends_of,
@@ -143,6 +144,10 @@ def _fate_text(cycles: LoadCycles) -> str:
     energy = unit_for(abs(cycles.energy[-1]), "J")(cycles.energy[-1])
     most = cycles.slip.max(axis=0)
     match fate_of(cycles):
+        case None if len(cycles) < LAST:
+            return f"how slip goes on is told from {LAST} cycles on"
+        case None if not cycles.is_repeated:
+            return "the last cycles of the load differ"
         case None:
             return "not settled yet"
         case "elastic shakedown":

@@ -14,6 +14,7 @@ from bokeh.core.serialization import Serializer
 from bokeh.document import Document
 from bokeh.events import Tap
 from bokeh.models import DataRange1d, LogScale
+from frames import frame_of
 from pictures import meet
 
 from app.frame import Frame, Selection
@@ -553,3 +554,11 @@ def test_a_picture_follows_its_size_after_another_tab_was_shown(
     for name, size in (("inner_width", 476), ("inner_height", 410)):
         plot.set_from_json(name, size)
     assert (plot.x_range.end, plot.y_range.end) == (476.0, 410.0)
+
+
+def test_a_chart_of_few_cycles_says_how_many_tell_how_slip_goes_on() -> None:
+    few = default_settings("strand").replace(load="cycle", elements=20, instants=21)
+    frame = frame_of(few, Needs(extras=frozenset({"cycles"})), ends=True)
+    cycles = frame.extras["cycles"]
+    assert len(cycles["energy"]) == 2
+    assert cycles["text"] == "how slip goes on is told from 3 cycles on"
