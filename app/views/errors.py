@@ -104,7 +104,6 @@ class Convergence(ErrorPlot):
             "x y text",
             text_color=ERROR,
             text_baseline="middle",
-            text_font=value("Roboto, sans-serif"),
             text_font_size=self.words,
         )
         self.add("ghost", color=GHOST, width=2, dash="dotted")

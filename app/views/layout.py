@@ -341,7 +341,12 @@ def is_aside(act: Act) -> bool:
 
 def is_opposite(act: Act, other: Act) -> bool:
     """Check whether two loads are the same pressure from both sides."""
-    return act.unit == other.unit and np.array_equal(act.values, -other.values)
+    if act.unit != other.unit or act.values.shape != other.values.shape:
+        return False
+    if np.ndim(act.towards) != 1 or np.ndim(other.towards) != 1:
+        return False
+    same = np.dot(act.towards, other.towards)
+    return same != 0.0 and np.array_equal(act.values, -same * other.values)
 
 
 def is_equal(act: Act, other: Act) -> bool:

@@ -19,6 +19,7 @@ from app.views.colors import (
     BODY,
     EDGE,
     ERROR,
+    FORCE,
     GHOST,
     GROUND,
     HINT,
@@ -119,6 +120,14 @@ class Scene(View):
             line_width=2.5,
         )
         self.add(
+            "leaders",
+            "MultiLine",
+            "xs ys",
+            color=FORCE,
+            line_dash="dotted",
+            line_width=1.5,
+        )
+        self.add(
             "words",
             "Text",
             "x y text text_align text_color",
@@ -174,7 +183,9 @@ class Scene(View):
                 self._dragged[arrows.setting] = arrows, run.settings
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
-        self.fill("words", **labels_of(picture))
+        words, leaders = labels_of(picture)
+        self.fill("words", **words)
+        self.fill("leaders", **leaders)
         if not self.is_bare:
             hints = NONE
             if self.state.is_new:
