@@ -101,7 +101,7 @@ class Convergence(ErrorPlot):
         self.add(
             "goal name",
             "Text",
-            "x y text",
+            "x y text text_align",
             text_color=ERROR,
             text_baseline="middle",
             text_font_size=self.words,
@@ -214,11 +214,14 @@ class Convergence(ErrorPlot):
                 is_inside = (taken > low) & (taken < low + size)
                 places.append((np.all(is_inside, axis=1).sum(), left, foot))
         _, left, foot = min(places, key=lambda place: place[0])
+        # By its nearer end: in a page that is saved the plot may become narrower.
+        is_right = left + 0.5 * size[0] > 0.5
         self.fill(
             "goal name",
-            x=[left * self._last],
+            x=[(left + size[0] * is_right) * self._last],
             y=self._at(np.array([foot + 0.5 * size[1]])).tolist(),
             text=[text],
+            text_align=["right" if is_right else "left"],
         )
 
     def _taken(self) -> Floats:

@@ -252,10 +252,12 @@ class Scene(View):
         can_open = any(each.strength is None for each in run.interfaces.values())
         self.show("open", can_open)
         note = f"displacement × {number(self._factor)}"
-        if run.geometry.description.height is None:
-            note += ", thickness not to scale"
-        if not self.state.running and not frame.is_answer:
+        is_waiting = not self.state.running and not frame.is_answer
+        if is_waiting and not self.is_bare:
+            # A phone has room for one of both notes.
             note += f"; {STAGES[stage]}"
+        elif run.geometry.description.height is None:
+            note += ", thickness not to scale"
         self.show("note", note)
         arrangement = []
         if layout.angle or not layout.key_rows:

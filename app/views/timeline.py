@@ -109,7 +109,7 @@ def paths_of(run: Run) -> list[tuple[str, Array]]:
     description = run.geometry.description
     changing = []
     constant = []
-    for symbol, values, unit in _given_in(description):
+    for symbol, values, unit in given_in(description):
         # Adding 0 takes the sign from a zero.
         low = float(values.min()) + 0.0
         high = float(values.max()) + 0.0
@@ -124,7 +124,7 @@ def paths_of(run: Run) -> list[tuple[str, Array]]:
     return [*changing, *constant]
 
 
-def _given_in(description: Description) -> list[tuple[str, Array, Unit]]:
+def given_in(description: Description) -> list[tuple[str, Array, Unit]]:
     """Symbol, values, (n_given,), and unit of the tilt and of each load.
 
     The same pressure from both sides is a single load, as are equal loads of bodies of

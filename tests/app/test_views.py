@@ -405,8 +405,10 @@ def test_the_name_of_the_goal_is_at_its_line_and_on_no_curve(
     (at,) = on_plot(view, goal["x"], goal["y"])
     half = np.array([0.0, 0.4 * view.type_size])
     width = np.array([0.5 * view.type_size * len("goal 1 %"), 0.0])
+    if goal["text_align"] == ["right"]:
+        at -= width
     box = np.array([at - half, at + half + width])
-    assert box[1, 0] <= WIDTH
+    assert 0.0 <= box[0, 0] < box[1, 0] <= WIDTH
     (line,) = on_plot(view, [0.0], view.sources["goal"].data["y"])
     assert abs(line[1] - at[1]) < view.type_size
     for name in CURVES:
