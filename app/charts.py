@@ -16,10 +16,10 @@ from bokeh.models import NoOverlap
 from bokeh.palettes import Viridis256
 from bokeh.resources import Resources
 
-from app.units import unit_for
 from app.views.colors import REFERENCE
 from app.widgets import html
 from solver.arrays import Array
+from solver.files.amounts import unit_for
 from solver.study.page import (
     HUES,
     Chart,

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from app.units import Unit, number, unit_of, units_of_points
+from app.units import unit_of, units_of_points
+from solver.files.amounts import Unit, number
 from solver.refusal import RefusedError, Words
 from solver.settings.definitions import CurveParameter, about, title_of
 from solver.settings.scene import Settings

@@ -11,8 +11,9 @@ import numpy as np
 from app.frame import LOCAL, Frame, Selection
 from app.refusals import advice_in_titles
 from app.state import PageState
-from app.units import number, percent, settled, unit_for
+from app.units import percent, settled
 from app.widgets import MEANINGS, explained, html
+from solver.files.amounts import number, unit_for
 from solver.latin import Ending
 from solver.study.quantities.finished import KeyFigure, key_figures, slipping_shares
 

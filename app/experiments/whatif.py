@@ -22,7 +22,6 @@ from app.experiments.questions import (
 )
 from app.refusals import advice_in_titles, message_of
 from app.state import WHAT_IF, PageState, answer
-from app.units import unit_for
 from app.widgets import PlainText, button, download, up_to
 from solver.files.saved import dump
 from solver.refusal import RefusedError
@@ -144,7 +143,7 @@ class WhatIf:
         # Its thread goes on to append to them.
         rows = list(self.sweep.rows)
         is_log = SCALES[self._scale.value]
-        chart = chart_of(plan, rows, 0, _amount, logarithmic=is_log)
+        chart = chart_of(plan, rows, 0, logarithmic=is_log)
         if chart.runs is None:
             return chart
         # Advice on runs that failed names settings as scripts do.
@@ -270,11 +269,6 @@ def _first_failure(sweep: Sweep) -> str:
     except RefusedError as refusal:
         reason = message_of(refusal, plan.settings)
     return f" The first {first.ending}: {reason}"
-
-
-def _amount(value: float, unit: str) -> str:
-    """A value in SI in the unit in which it is read."""
-    return unit_for(abs(value), unit)(value, 4)
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:

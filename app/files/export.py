@@ -24,13 +24,15 @@ from app.charts import library
 from app.frame import OPEN, Frame, Run, Selection
 from app.state import PageState
 from app.status import figures_line, status_line
-from app.units import unit_for, unit_of
+from app.units import unit_of
 from app.views.layout import shape_of
 from app.views.scene import Scene
+from app.views.timeline import Timeline, given_in
 from app.views.view import View
 from app.widgets import TEMPLATES, download, up_to
 from app.worker.cells import thinned
 from app.worker.references import has_reference
+from solver.files.amounts import unit_for
 from solver.files.saved import dump
 from solver.settings.definitions import Parameter, title_of
 from solver.settings.scene import Settings
@@ -49,6 +51,8 @@ for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)
 print(solution.status.ending)
 """
+LOOKS = "color", "line_color", "line_width", "text_align", "text_color"
+"""Columns of plots that are no data."""
 STATUSES = {-1: "slip backward", 0: "stick", 1: "slip forward", OPEN: "open"}
 """Words for the status of a point in tables."""
 MOST_INSTANTS = 60
@@ -90,6 +94,19 @@ def program(settings: Settings) -> str:
 def history_table(frame: Frame) -> str:
     """Scalars of every iteration of a run, a line each (CSV with one line of heads)."""
     table = pd.DataFrame(dict(frame.history)).rename(columns={"seconds": "seconds, s"})
+    return table.astype({"iteration": int}).to_csv(index=False)
+
+
+def path_table(frame: Frame) -> str:
+    """All loads over time (CSV with one line of heads), in the units of their words."""
+    description = frame.run.geometry.description
+    table = pd.DataFrame({"t, s": description.instants})
+    for symbol, values, unit in given_in(description):
+        # Several loads may have the same symbol.
+        head = unit.titled(symbol)
+        table.insert(
+            len(table.columns), head, values / unit.factor, allow_duplicates=True
+        )
     return table.to_csv(index=False)
 
 
@@ -97,18 +114,20 @@ def contact_table(frame: Frame) -> str:
     """Contact at all points and instants of the interfaces that a frame has.
 
     CSV with one line of heads, in SI: of several interfaces the name, position x, time
-    t, friction force on the body above, pressure where it is found, slip, and status.
-    It can be opened as the results of another program.
+    t, friction on the body above, as on plots a traction or a force per length,
+    pressure where it is found, slip, and status. It can be opened as the results of
+    another program.
     """
     run = frame.run
     unit = PER[run.settings.kind]
+    kind = "traction" if unit == "Pa" else "force"
     tables = []
     for name, fields in frame.contact.items():
         x, t = np.meshgrid(run.interfaces[name].positions, run.instants, indexing="ij")
         columns = {
             "x, m": x,
             "t, s": t,
-            f"friction force, {unit}": fields.friction,
+            f"friction {kind}, {unit}": fields.friction,
             "pressure, Pa": fields.pressure,
             "slip, m": fields.slip,
         }
@@ -130,11 +149,17 @@ def plot_table(view: View) -> str:
     """Points of a plot's curves, a line each (CSV with one line of heads).
 
     Columns are those of the plot's sources, in the units of its axes; paths are
-    numbered, and a curve has the name of its source.
+    numbered, and a curve has the name of its source. Words and looks are left out.
     """
     tables = []
     for key, source in view.sources.items():
-        columns = {name: list(column) for name, column in source.data.items()}
+        if "text" in source.data:
+            continue
+        columns = {
+            name: list(column)
+            for name, column in source.data.items()
+            if name not in LOOKS
+        }
         table = pd.DataFrame(columns)
         paths = [name for name, cells in columns.items() if any(map(np.ndim, cells))]
         # A cell of a path has all its points: they become rows.
@@ -330,9 +355,10 @@ def offers(state: PageState, views: Sequence[View]) -> list[Any]:
     tables = {
         "All iterations": lambda: history_table(state.frame),
         "Contact over x and t": lambda: contact_table(state.frame),
+        "Loads over t": lambda: path_table(state.frame),
     }
-    # A picture of bodies has no curves.
-    plots = [view for view in views if not isinstance(view, Scene)]
+    # A picture of bodies has no curves, and loads are drawn over their largest values.
+    plots = [view for view in views if not isinstance(view, Scene | Timeline)]
     tables |= {view.name: partial(plot_table, view) for view in plots}
     for title, make in tables.items():
         slug = title.lower().replace(" ", "-").replace("/", "-")

@@ -12,8 +12,8 @@ import panel as pn
 
 from app.lessons.catalogue import CASES, PENDING
 from app.state import PageState
-from app.units import number, unit_for
 from app.widgets import PlainText, button, looks, mask_of
+from solver.files.amounts import number, unit_for
 from solver.study.quantities.quantity import Quantity
 from solver.study.trade_case import Case
 

@@ -10,9 +10,10 @@ from pathlib import Path
 
 from app.frame import Frame
 from app.state import SEARCH
-from app.units import number, percent, unit_for
+from app.units import percent
 from app.views.catalogue import CARDS
 from app.views.view import View
+from solver.files.amounts import number, unit_for
 from solver.settings.scene import Settings
 from solver.study.lessons import SUBJECTS, Lesson, lesson_from_file
 from solver.study.quantities import reading

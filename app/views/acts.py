@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from app.units import Unit, settled, unit_for
+from app.units import settled
 from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import (
     BAND,
@@ -22,6 +22,7 @@ from app.views.layout import (
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, Footing, on_side
+from solver.files.amounts import Unit, unit_for
 
 SHORTEST = 0.02
 """Value over the largest one below which an arrow is not drawn, nor dragged."""

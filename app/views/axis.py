@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from numpy.typing import ArrayLike
 
 from app.frame import Floats
-from app.units import Unit, unit_for
+from solver.files.amounts import Unit, unit_for
 
 LONGEST = 16
 """Letters in a line of the title beside a plot: a small plot is no higher."""

@@ -8,13 +8,14 @@ import numpy as np
 from bokeh.models import BasicTicker, LinearColorMapper, Range1d
 
 from app.frame import Floats, Frame, Selection
-from app.units import percent, unit_for
+from app.units import percent
 from app.views.axis import whole
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
 from app.views.parts import color_bar, explain, hover
 from app.views.view import ExtraView
 from app.worker.cells import thinned
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
+from solver.files.amounts import unit_for
 from solver.study.quantities.reduction_measures import can_be_clipped
 
 SMALLEST = 1e-4

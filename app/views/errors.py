@@ -14,6 +14,7 @@ from app.frame import LOCAL, Floats, Frame, Selection
 from app.units import percent
 from app.views.axis import extent, rounded_up, whole
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
+from app.views.parts import LEAST as LEAST_SIZE
 from app.views.parts import hover
 from app.views.view import View
 from app.worker.references import has_reference
@@ -22,7 +23,14 @@ SEEN = (1e-3, 10.0)
 """Errors that are in sight in any case. Indicators widen the axis downwards alone:
 they are numbers of other sizes."""
 HEIGHT = 160.0
-"""Height of a plot until the browser reports its own, px."""
+WIDTH = 380.0
+"""Size of a plot until the browser reports its own, px."""
+LETTER = 0.56
+"""Width of a letter over its type size, about."""
+NAME = 6.0
+"""Distance of the name of a curve from its end, px."""
+STEPS = 9
+"""Number of places along the line of the goal that its name may have."""
 LEAST = 1e-14
 """Value at which smaller ones, which are rounding, and zero are drawn."""
 FOOT = 8.0
@@ -30,9 +38,6 @@ FOOT = 8.0
 NAMED = 1.25
 """Length of the axis of iterations over that of the curves, at whose ends their names
 stand."""
-UNNAMED = 0.65
-"""Largest length of curves over that of the axis for which the right end is free of
-these names."""
 APART = 1.05
 """Least distance of two of these names over their type size."""
 SEEN_IN_TIME = (1e-2, 2.0)
@@ -98,7 +103,7 @@ class Convergence(ErrorPlot):
             "Text",
             "x y text text_align",
             text_color=ERROR,
-            text_baseline="bottom",
+            text_baseline="middle",
             text_font_size=self.words,
         )
         self.add("ghost", color=GHOST, width=2, dash="dotted")
@@ -112,7 +117,7 @@ class Convergence(ErrorPlot):
             "names",
             "Text",
             "x y text text_color",
-            x_offset=6,
+            x_offset=NAME,
             text_baseline="middle",
             text_font=value("Roboto, sans-serif"),
             text_font_size=self.words,
@@ -122,8 +127,9 @@ class Convergence(ErrorPlot):
         self.legend(**titles, stage="local stage", ghost="ghost")
         hover(plot, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
         plot.on_event(Tap, self._go_back)
-        self._inner_height = HEIGHT
-        plot.on_change("inner_height", self._resize)
+        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
+        for size in self._size:
+            plot.on_change(size, self._resize)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
@@ -145,21 +151,10 @@ class Convergence(ErrorPlot):
         answers = []
         if newest.is_answer:
             answers = [newest.iteration]
-        foot = self._at(np.full(len(answers), FOOT / self._inner_height))
+        foot = self._at(np.full(len(answers), FOOT / self._size["inner_height"]))
         self.draw("answer", answers, foot)
-        goal = newest.run.settings.accuracy
-        self.fill("goal", y=[goal])
-        # At an end of its line: the right one, unless the names of curves are there.
-        end = float(self.figure.x_range.reset_end)
-        is_left = newest.iteration > UNNAMED * end
-        self.fill(
-            "goal name",
-            x=[0.0 if is_left else end],
-            y=[goal],
-            text=[f" goal {percent(goal)} "],
-            text_align=["left" if is_left else "right"],
-        )
         self._show_names(newest)
+        self._show_goal(newest.run.settings.accuracy)
 
     def _scale(self, newest: Frame) -> None:
         """Have all that is drawn in sight; indicators only from their largest error."""
@@ -182,18 +177,17 @@ class Convergence(ErrorPlot):
 
     def _show_names(self, newest: Frame) -> None:
         """Write the names of curves at their ends, one above the other."""
-        low, high = self._ends
         names = []
         for column, (title, color, *_) in CURVES.items():
             data = self.sources[column].data
             if len(data["x"]):
-                height = (np.log10(data["y"][-1]) - low) / (high - low)
+                (height,) = self._heights(data["y"][-1:])
                 names.append((height, float(data["x"][-1]), title, color))
         for iteration in self.sources["answer"].data["x"]:
-            foot = FOOT / self._inner_height
+            foot = FOOT / self._size["inner_height"]
             names.append((foot, float(iteration), "exact", ERROR))
         names.sort()
-        apart = APART * self.type_size / self._inner_height
+        apart = APART * self.type_size / self._size["inner_height"]
         heights = spread([height for height, *_ in names], apart)
         self.fill(
             "names",
@@ -203,11 +197,79 @@ class Convergence(ErrorPlot):
             text_color=[color for *_, color in names],
         )
 
+    def _show_goal(self, goal: float) -> None:
+        """Draw the line of the goal, with its name where nothing else is.
+
+        Of free places it takes the one at the right end, above the line.
+        """
+        self.fill("goal", y=[goal])
+        text = f"goal {percent(goal)}"
+        size = self._size_of(text)
+        (level,) = self._heights([goal])
+        taken = self._taken()
+        places = []
+        for left in np.linspace(1.0 - size[0], 0.0, STEPS):
+            for foot in (level, level - size[1]):
+                low = np.array([left, foot])
+                is_inside = (taken > low) & (taken < low + size)
+                places.append((np.all(is_inside, axis=1).sum(), left, foot))
+        _, left, foot = min(places, key=lambda place: place[0])
+        # By its nearer end: in a page that is saved the plot may become narrower.
+        is_right = left + 0.5 * size[0] > 0.5
+        self.fill(
+            "goal name",
+            x=[(left + size[0] * is_right) * self._last],
+            y=self._at(np.array([foot + 0.5 * size[1]])).tolist(),
+            text=[text],
+            text_align=["right" if is_right else "left"],
+        )
+
+    def _taken(self) -> Floats:
+        """Points on all curves, and on their names, over the size of the plot, (n, 2).
+
+        They are as close to each other as the letters of words.
+        """
+        fine = np.linspace(0.0, 1.0, round(2.0 * self._size["inner_width"]))
+        points = [np.zeros((0, 2))]
+        for name in (*CURVES, "ghost"):
+            data = self.sources[name].data
+            if len(data["x"]):
+                x = np.asarray(data["x"]) / self._last
+                # Upright pieces have points on the way, too.
+                number = np.arange(len(x))
+                along = np.interp(fine * number[-1], number, x)
+                up = np.interp(fine * number[-1], number, self._heights(data["y"]))
+                points.append(np.stack([along, up], axis=1))
+        names = self.sources["names"].data
+        for x, y, text in zip(names["x"], names["y"], names["text"], strict=True):
+            width, height = self._size_of(text)
+            begin = x / self._last + NAME / self._size["inner_width"]
+            along = np.linspace(begin, begin + width, len(text) + 1)
+            middle = self._heights([y])
+            for up in (middle - 0.4 * height, middle, middle + 0.4 * height):
+                points.append(np.stack([along, np.full_like(along, up)], axis=1))
+        return np.concatenate(points)
+
+    def _size_of(self, text: str) -> Floats:
+        """Width and height of a text over the size of the plot, about, shape (2,)."""
+        letters = np.array([LETTER * len(text), 1.0]) * self.type_size
+        return np.asarray(letters / [*self._size.values()])
+
+    @property
+    def _last(self) -> float:
+        """The end of the axis of iterations."""
+        return float(self.figure.x_range.reset_end)
+
     @property
     def _ends(self) -> Floats:
         """Logarithms of the ends of the axis up, shape (2,)."""
         axis = self.figure.y_range
         return np.log10([axis.reset_start, axis.reset_end])
+
+    def _heights(self, values: Floats) -> Floats:
+        """Heights over that of the axis, of values, shape (n,) each."""
+        low, high = self._ends
+        return np.asarray((np.log10(values) - low) / (high - low))
 
     def _at(self, heights: Floats) -> Floats:
         """Values at heights over that of the axis, shape (n,) each."""
@@ -221,7 +283,7 @@ class Convergence(ErrorPlot):
 
     def _resize(self, name: str, old: float, new: float) -> None:
         # A figure that is out of sight reports a size of zero.
-        self._inner_height = max(float(new), 60.0)
+        self._size[name] = max(float(new), LEAST_SIZE)
 
     def _go_back(self, event: Any) -> None:
         """Show the iterate nearest to a tap."""

@@ -12,15 +12,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.units import number
 from app.views.acts import Arrows, anchor_of, color_of, ground_edge, text_of
 from app.views.colors import FORCE, REFERENCE
 from app.views.colors import GROUND as GROUND_COLOR
 from app.views.layout import EACH, FOOTING, GROUND, is_opposite
 from app.views.picture import Columns, Picture
-from app.views.words import Word, around, in_rows, inside, lies_on, meets
+from app.views.words import Word, around, box_of, in_rows, inside, lies_on, meets
 from solver.arrays import Array
 from solver.discrete.structure import Act
+from solver.files.amounts import number
 
 NAMED = 0.4
 """Largest length of the name of a joint over that of all bodies."""
@@ -32,12 +32,18 @@ ALONG = 9
 """Number of places along an arrow which words make way for."""
 HANDLE = 5.5
 """Half of the size of the handle of an arrow, px."""
+FAR = 1.5
+"""Distance of words of a weight from its arrow, over that of rows, from which on a line
+leads there."""
 MOST_ROWS = 3
 """Largest number of rows by which a word makes way for another."""
 
 
-def labels_of(picture: Picture) -> Columns:
-    """Columns of all words on a picture, moved off each other and off arrows."""
+def labels_of(picture: Picture) -> tuple[Columns, Columns]:
+    """Columns of all words on a picture, and of lines from words to arrows far away.
+
+    Words are moved off each other and off arrows.
+    """
     obstacles = Obstacles(picture)
     words = _words_of_loads(picture, obstacles)
     if not picture.layout.is_bare:
@@ -47,13 +53,14 @@ def labels_of(picture: Picture) -> Columns:
         words.append(_slope(picture))
     words = _apart(inside(picture.layout, words), obstacles)
     x, y = np.reshape([word.anchor for word in words], (-1, 2)).T
-    return {
+    columns = {
         "x": x,
         "y": y,
         "text": [word.text for word in words],
         "text_align": [word.align for word in words],
         "text_color": [word.color for word in words],
     }
+    return columns, _leaders(picture, words, obstacles)
 
 
 class Obstacles:
@@ -78,6 +85,15 @@ class Obstacles:
             return True
         handles = self._handles
         return lies_on(self.layout, word, handles - HANDLE, handles + HANDLE)
+
+    def block(self, line: Array, words: Sequence[Word]) -> bool:
+        """Check whether handles or words lie on a line, (n, 2), px."""
+        for word in words:
+            low, high = box_of(self.layout, word)
+            if np.any(np.all((line > low) & (line < high), axis=1)):
+                return True
+        away = np.hypot(*np.moveaxis(line[:, None] - self._handles, -1, 0))
+        return bool(np.any(away < 2.0 * HANDLE))
 
     @cached_property
     def _cells(self) -> tuple[Array, Array]:
@@ -170,21 +186,49 @@ def _beside(word: Word, line: Array, obstacles: Obstacles) -> Word:
     return next(iter(free), word)
 
 
-def _slope(picture: Picture) -> Word:
-    """The angle of bodies that tilt, beside their foot.
+def _leaders(picture: Picture, words: Sequence[Word], obstacles: Obstacles) -> Columns:
+    """Lines to the tails of arrows of a weight from its words, which bodies keep away.
 
-    It stands at the side at which they rise, below them.
+    None where the line would lie on other words or arrows.
     """
+    layout = picture.layout
+    columns: Columns = {"xs": [], "ys": []}
+    for arrows in picture.arrows:
+        if arrows.act.side != "body" or not len(arrows.lines):
+            continue
+        text = text_of(arrows.act, picture.now)
+        tail = picture.page(arrows.lines[0, 0])
+        others = [word for word in words if word.text != text]
+        for word in words:
+            if word.text != text:
+                continue
+            low, high = box_of(layout, word)
+            # From the point of the words that is nearest.
+            begin = np.clip(tail, low, high)
+            way = tail - begin
+            length = float(np.hypot(*way))
+            if length < FAR * layout.row:
+                continue
+            shares = np.linspace(0.1, 0.9, ALONG)[:, None]
+            points = begin + shares * way
+            if not obstacles.block(points, others):
+                columns["xs"].append([begin[0], tail[0]])
+                columns["ys"].append([begin[1], tail[1]])
+    return columns
+
+
+def _slope(picture: Picture) -> Word:
+    """The angle of bodies that tilt, at the end of the horizontal below their foot."""
     layout = picture.layout
     side = 1.0
     align = "left"
     if picture.tilt < 0.0:
         side = -1.0
         align = "right"
-    x = side * (0.5 * picture.description.length * layout.scale[0] + 30.0)
     text = f"slope {number(float(np.degrees(picture.tilt)))}°"
-    # The word is not turned with the bodies.
-    anchor = np.array([x, -14.0]) + layout.origin
+    _, end = picture.horizontal
+    # Lower than the ground, which ends beside it where it hardly tilts.
+    anchor = picture.page(end) + np.array([8.0 * side, -0.5 * layout.row])
     return Word(text, anchor, align, FORCE)
 
 

@@ -341,7 +341,12 @@ def is_aside(act: Act) -> bool:
 
 def is_opposite(act: Act, other: Act) -> bool:
     """Check whether two loads are the same pressure from both sides."""
-    return act.unit == other.unit and np.array_equal(act.values, -other.values)
+    if act.unit != other.unit or act.values.shape != other.values.shape:
+        return False
+    if np.ndim(act.towards) != 1 or np.ndim(other.towards) != 1:
+        return False
+    same = np.dot(act.towards, other.towards)
+    return same != 0.0 and np.array_equal(act.values, -same * other.values)
 
 
 def is_equal(act: Act, other: Act) -> bool:
@@ -379,14 +384,16 @@ def layout_of(
     """The layout with larger bodies in a figure in px.
 
     Keys stand below or at the left, words beside the bodies or, if these become much
-    larger, in rows above.
+    larger, in rows above. Bare bodies have a single key, below them.
     """
+    size = type_size, width, height
+    if is_bare:
+        return Layout(geometry, is_bare, *size, 1, surroundings)
+    if surroundings is not None and surroundings.is_upright:
+        return Layout(geometry, is_bare, *size, 4, surroundings)
     rows = 1
     if width < NARROW:
         rows = 2
-    size = type_size, width, height
-    if surroundings is not None and surroundings.is_upright:
-        return Layout(geometry, is_bare, *size, 4, surroundings)
     layouts = [
         Layout(geometry, is_bare, *size, key_rows, surroundings, in_rows=in_rows)
         for in_rows, key_rows in product((False, True), (rows, 0))

@@ -25,6 +25,8 @@ from solver.arrays import Array
 
 MECHANISM = 0.12
 """Largest motion of a mechanism as drawn, over the height of all bodies."""
+BEYOND = 21.0
+"""Length of a horizontal beyond both ends of the bodies, px."""
 Columns = dict[str, Any]
 """Columns of one source by their names."""
 Strokes = list[tuple[Array, str, float]]
@@ -278,13 +280,20 @@ class Picture:
                 places = self._follow(points)
             strokes.append(footing_strokes(footing, places, layout, self.factor))
         if self.description.tilt is not None:
-            # It begins at the lower end of the ground, and so lies below that.
-            side = math.copysign(1.0, self.tilt)
-            across = side * length * layout.scale[0]
-            corner = np.array([-0.5 * across - 21.0 * side, -5.0])
-            level = turned(np.array([0.9 * across, 0.0]), -self.tilt)
-            strokes.append(np.array([corner, corner + level]))
+            strokes.append(self.horizontal)
         return np.concatenate([np.zeros((0, 2)), *strokes])
+
+    @property
+    def horizontal(self) -> Array:
+        """Line from the lower end of the ground, below it, to under its other end.
+
+        Its ends have shape (2, 2), px from the middle of the foot.
+        """
+        side = math.copysign(1.0, self.tilt)
+        across = side * self.description.length * self.layout.scale[0]
+        corner = np.array([-0.5 * across - BEYOND * side, -5.0])
+        level = np.array([across + 2.0 * BEYOND * side, 0.0])
+        return np.array([corner, corner + turned(level, -self.tilt)])
 
     def _bands(self) -> Strokes:
         """Bands of the interfaces in the colours of their status."""

@@ -12,7 +12,6 @@ from bokeh.core.properties import value
 from bokeh.events import Tap
 
 from app.frame import LINEAR, LOCAL, Frame, Selection
-from app.units import number, unit_for
 from app.views.acts import gapped, hatched
 from app.views.axis import rounded_up
 from app.views.colors import BODY, EDGE, GHOST, MACRO, MICRO
@@ -20,6 +19,7 @@ from app.views.parts import LEAST, bare
 from app.views.view import TEXT, ExtraView
 from app.worker.pieces import Pieces, StageFields
 from solver.arrays import Array, Indices
+from solver.files.amounts import number, unit_for
 
 WIDTH = 600.0
 HEIGHT = 260.0

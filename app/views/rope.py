@@ -11,12 +11,12 @@ from bokeh.models import DataRange1d, LinearColorMapper
 from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
-from app.units import unit_for
 from app.views.axis import extent, rounded_up
 from app.views.colors import EDGE, ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
 from app.views.parts import color_bar, explain, hover
 from app.views.view import ExtraView, joined
 from app.worker.geometry import MOST_WIRES
+from solver.files.amounts import unit_for
 
 COLORS = [color for color in RANKS if color != ERROR]
 """Colours of wires; a broken wire has the colour of errors."""

@@ -13,13 +13,13 @@ from bokeh.palettes import Cividis256, RdBu11
 from bokeh.plotting import figure
 
 from app.frame import LINEAR, LOCAL, Frame, Run, Selection
-from app.units import number, unit_for
 from app.views.acts import Arrows, Rest
 from app.views.axis import rounded_up
 from app.views.colors import (
     BODY,
     EDGE,
     ERROR,
+    FORCE,
     GHOST,
     GROUND,
     HINT,
@@ -33,6 +33,7 @@ from app.views.layout import Layout, layout_of
 from app.views.parts import LEAST, bare, color_bar, explain
 from app.views.picture import Picture
 from app.views.view import View
+from solver.files.amounts import number, unit_for
 from solver.settings.scene import Settings
 
 WIDTH = 950.0
@@ -119,6 +120,14 @@ class Scene(View):
             line_width=2.5,
         )
         self.add(
+            "leaders",
+            "MultiLine",
+            "xs ys",
+            color=FORCE,
+            line_dash="dotted",
+            line_width=1.5,
+        )
+        self.add(
             "words",
             "Text",
             "x y text text_align text_color",
@@ -174,7 +183,9 @@ class Scene(View):
                 self._dragged[arrows.setting] = arrows, run.settings
         for name, columns in picture.columns().items():
             self.fill(name, **columns)
-        self.fill("words", **labels_of(picture))
+        words, leaders = labels_of(picture)
+        self.fill("words", **words)
+        self.fill("leaders", **leaders)
         if not self.is_bare:
             hints = NONE
             if self.state.is_new:
@@ -241,10 +252,12 @@ class Scene(View):
         can_open = any(each.strength is None for each in run.interfaces.values())
         self.show("open", can_open)
         note = f"displacement × {number(self._factor)}"
-        if run.geometry.description.height is None:
-            note += ", thickness not to scale"
-        if not self.state.running and not frame.is_answer:
+        is_waiting = not self.state.running and not frame.is_answer
+        if is_waiting and not self.is_bare:
+            # A phone has room for one of both notes.
             note += f"; {STAGES[stage]}"
+        elif run.geometry.description.height is None:
+            note += ", thickness not to scale"
         self.show("note", note)
         arrangement = []
         if layout.angle or not layout.key_rows:

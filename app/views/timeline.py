@@ -10,7 +10,6 @@ from bokeh.events import Pan, Tap
 from bokeh.models import PanTool
 
 from app.frame import Frame, Run, Selection
-from app.units import Unit, number, unit_for
 from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE, UNSEEN
 from app.views.layout import is_equal, is_opposite
@@ -18,6 +17,7 @@ from app.views.parts import bare
 from app.views.view import View
 from solver.arrays import Array
 from solver.discrete.structure import Description
+from solver.files.amounts import Unit, number, unit_for
 
 PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
 """Colours of the paths; further paths are not drawn."""
@@ -109,7 +109,7 @@ def paths_of(run: Run) -> list[tuple[str, Array]]:
     description = run.geometry.description
     changing = []
     constant = []
-    for symbol, values, unit in _given_in(description):
+    for symbol, values, unit in given_in(description):
         # Adding 0 takes the sign from a zero.
         low = float(values.min()) + 0.0
         high = float(values.max()) + 0.0
@@ -124,7 +124,7 @@ def paths_of(run: Run) -> list[tuple[str, Array]]:
     return [*changing, *constant]
 
 
-def _given_in(description: Description) -> list[tuple[str, Array, Unit]]:
+def given_in(description: Description) -> list[tuple[str, Array, Unit]]:
     """Symbol, values, (n_given,), and unit of the tilt and of each load.
 
     The same pressure from both sides is a single load, as are equal loads of bodies of

@@ -10,11 +10,11 @@ from bokeh.models import GridBox
 from bokeh.plotting import figure
 
 from app.frame import LINEAR, LOCAL, Floats, Frame, Selection
-from app.units import unit_for
 from app.views.colors import ERROR, EXACT, REFERENCE, STAGES, STICK
 from app.views.parts import hover
 from app.views.view import TEXT, ExtraView
 from solver.arrays import Array
+from solver.files.amounts import unit_for
 
 ROOM = 0.08
 """Room at the ends of the axes, as a share of their length."""

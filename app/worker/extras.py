@@ -12,13 +12,14 @@ import numpy as np
 
 from app.frame import Floats
 from app.messages import Needs
-from app.units import percent, unit_for
+from app.units import percent
 from app.worker.cells import floats, thinned
 from app.worker.geometry import MOST_POINTS
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.structure import Loop
+from solver.files.amounts import unit_for
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, of_bases, of_clips
 from solver.reduction.svd import decompositions
@@ -29,6 +30,7 @@ from solver.settings.values import SettingError
 from solver.study.comparison import Comparison, OtherResults
 from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import (
+    LAST,
     LoadCycles,
     cycles_of,
     ends_of,
@@ -142,6 +144,10 @@ def _fate_text(cycles: LoadCycles) -> str:
     energy = unit_for(abs(cycles.energy[-1]), "J")(cycles.energy[-1])
     most = cycles.slip.max(axis=0)
     match fate_of(cycles):
+        case None if len(cycles) < LAST:
+            return f"how slip goes on is told from {LAST} cycles on"
+        case None if not cycles.is_repeated:
+            return "the last cycles of the load differ"
         case None:
             return "not settled yet"
         case "elastic shakedown":

@@ -29,7 +29,7 @@ WORDS = {
         "stroke hub travel extension ext elongation crosshead traverse"
     ),
     "pressure": "pressure load p druck last traction stress spannung",
-    "friction force": "friction reibung reibkraft reibungskraft",
+    "friction force": "friction frictiontraction reibung reibkraft reibungskraft",
     "moment": "moment load last biegemoment",
     "gap": "gap spalt",
     "slip": "slip gleitweg",

@@ -289,7 +289,7 @@ class ArchSettings(PlaneSettings):
             shown = np.linspace(0, len(backs) - 1, SHOWN).round().astype(np.intp)
             heights = ring.crown + self.cover - backs[shown, 1]
             pressures = np.multiply.outer(self.fill * heights, self._hold)
-            yield Act("top fill", "σ", backs[shown], DOWN, pressures, "Pa")
+            yield Act("top fill", "p", backs[shown], DOWN, pressures, "Pa")
         if self.has_live:
             backs = ring.backs.reshape(-1, 2)
             shares = ring.under_load(self.path("place_load")).reshape(len(backs), -1)

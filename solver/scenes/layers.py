@@ -231,8 +231,8 @@ class LayersSettings(RectangleSettings):
             sides={
                 "left": Side(held, held),
                 "right": self._right_side(stack),
-                "top": Side(free, Given(False, -pressing)),
-                "bottom": Side(free, Given(False, pressing)),
+                "top": Side(free, Given(False, -pressing, is_pressure=True)),
+                "bottom": Side(free, Given(False, pressing, is_pressure=True)),
             },
         )
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
@@ -156,7 +156,10 @@ class MeshSides:
                 if number > 1:
                     label = f"{name}, part {number}"
                 nodes = line.nodes[run.start : run.stop + 1]
-                yield Load.of_pressure(label, line.body, body, nodes, inwards[deed])
+                pressure = inwards[deed]
+                load = Load.of_pressure(label, line.body, body, nodes, pressure)
+                # It is named as the setting is.
+                yield replace(load, pressure=pressure)
 
     def _acted(self) -> Iterator[_Acted]:
         """Yield the deeds on all lines; of one name and body they have numbers."""

@@ -364,6 +364,7 @@ class WallSettings(RectangleSettings):
         hold = PRESETS["hold"].value(self.times() / self.duration, 1)
         weight = self.unit_weight * hold
         driven = Given(self.top == "moved", self.path("top_load"))
+        pressed = Given(False, -self.path("pressure_load"), is_pressure=True)
         stack = replace(
             self.stack(),
             bricks=self._bricks,
@@ -371,7 +372,7 @@ class WallSettings(RectangleSettings):
             head_friction=float(self.friction * self.head_friction),
             substructures=(1, 1),
             body_force=-weight * np.stack([np.sin(angle), np.cos(angle)]),
-            sides={"top": Side(driven, Given(False, -self.path("pressure_load")))},
+            sides={"top": Side(driven, pressed)},
             tilt=angle if np.any(angle) else None,
         )
         if self.cap != "none":

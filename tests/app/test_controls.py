@@ -17,7 +17,8 @@ from app.files.points import CurveDialog
 from app.messages import Start
 from app.refusals import advice_in_titles
 from app.state import PageState, default_settings
-from app.units import Unit, typed, unit_of
+from app.units import typed, unit_of
+from solver.files.amounts import Unit
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings.definitions import CurveParameter, TextParameter

@@ -165,6 +165,20 @@ def test_other_views_show_every_instant(frame: Frame) -> None:
     assert values.shape == (len(frame.run.geometry.cells), len(frame.run.instants))
 
 
+@pytest.mark.parametrize(("name", "kind"), [("fault", Stress), ("bundle", Thrust)])
+def test_a_bare_picture_on_a_phone_is_in_the_middle_above_its_only_key(
+    name: str, kind: type[Scene]
+) -> None:
+    view = shown(frame_of(small(name)), kind=kind)
+    view.lay_out(330.0, 210.0)
+    view.update(*view._shown)  # type: ignore[misc]
+    assert view.picture is not None
+    assert view.picture.layout.key_rows == 1
+    assert abs(view.picture.layout.origin[0] - 165.0) < 12.0
+    (legend,) = view.figure.legend
+    assert "column" not in legend.css_classes
+
+
 def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:
     # What goes behind within a step is cut off straight, which takes less than 1 %.
     geometry = frame_of(small("rope")).run.geometry

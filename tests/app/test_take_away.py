@@ -24,6 +24,7 @@ from app.files.export import (
     history_table,
     offers,
     offline_page,
+    path_table,
     plot_table,
     program,
 )
@@ -116,7 +117,16 @@ def test_tables_hold_what_is_drawn() -> None:
     assert {"x, m", "force, kN/m"} <= rows_of(table)[0].keys()
     iterations = rows_of(history_table(frame))
     assert len(iterations) == len(frame.history["indicator"])
+    assert [row["iteration"] for row in iterations][:2] == ["1", "2"]
     assert np.float32(iterations[-1]["indicator"]) == frame.history["indicator"][-1]
+
+
+def test_loads_are_a_table_of_values_with_units() -> None:
+    _, frame = ended("bar")
+    loads = pd.read_csv(io.StringIO(path_table(frame)))
+    assert list(loads.columns) == ["t, s", "F, N", "p, kN/m"]
+    assert loads["F, N"].max() == pytest.approx(900.0)
+    assert loads["p, kN/m"].tolist() == pytest.approx([5.0] * len(loads))
 
 
 @pytest.mark.parametrize("scene", SMALL)
@@ -126,6 +136,10 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
     read = pd.read_csv(io.StringIO(text))
     assert not read.isna().any(axis=None)
     assert {"x, m", "t, s", "slip, m", "status"} <= set(read.columns)
+    # A force per area and one per length are named as on the plot.
+    (head,) = [name for name in read.columns if name.startswith("friction")]
+    is_plane = frame.run.settings.kind == "plane"
+    assert head == ("friction traction, Pa" if is_plane else "friction force, N/m")
     several = len(frame.run.interfaces) > 1
     assert ("contact" in read.columns) == several
     brought = results_in(table_of(text.encode(), "contact.csv"), frame.run.settings)
@@ -151,7 +165,11 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
 @pytest.mark.parametrize("scene", SMALL)
 def test_every_plot_of_every_kind_of_scene_is_a_table(scene: str) -> None:
     for view in page(scene)[1]:
-        assert rows_of(plot_table(view)), view.name
+        rows = rows_of(plot_table(view))
+        assert rows, view.name
+        # What is drawn beside curves, as words and colours, is no data.
+        heads = " ".join(rows[0])
+        assert not re.search("text|color|width", heads), heads
 
 
 def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:

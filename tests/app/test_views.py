@@ -14,6 +14,8 @@ from bokeh.core.serialization import Serializer
 from bokeh.document import Document
 from bokeh.events import Tap
 from bokeh.models import DataRange1d, LogScale
+from frames import frame_of
+from pictures import meet
 
 from app.frame import Frame, Selection
 from app.live import Card
@@ -22,7 +24,7 @@ from app.state import PageState, default_settings
 from app.views.bases import Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
-from app.views.errors import CURVES, HEIGHT, LEAST, Convergence
+from app.views.errors import CURVES, HEIGHT, LEAST, WIDTH, Convergence
 from app.views.loops import HysteresisLoop
 from app.views.pieces import PiecesView
 from app.views.rope import AxialForces
@@ -370,15 +372,51 @@ def test_curves_of_errors_are_named_at_their_ends_and_names_stay_apart() -> None
     view = view_of(Convergence, answer)
     names = view.sources["names"].data
     assert {"force", "displ.", "exact"} <= set(names["text"])
-    # The goal has its name on its line, wherever curves end.
-    goal = view.sources["goal name"].data
-    assert (goal["text"], goal["y"]) == ([" goal 1 % "], [answer.run.settings.accuracy])
-    assert list(view.sources["goal"].data["y"]) == [answer.run.settings.accuracy]
     axis = view.figure.y_range
     heights = np.sort(np.log10(names["y"])) / np.log10(axis.end / axis.start)
     assert np.diff(heights).min() > 0.05
     assert all(axis.start < y < axis.end for y in names["y"])
     assert max(names["x"]) < 0.9 * view.figure.x_range.end
+
+
+def on_plot(view: Convergence, x: Any, y: Any) -> np.ndarray:
+    """Points of a plot of errors, px, (n, 2)."""
+    axis = view.figure.y_range
+    heights = np.log10(np.divide(y, axis.start)) / np.log10(axis.end / axis.start)
+    shares = np.divide(x, view.figure.x_range.end)
+    return np.stack([shares, heights], axis=1) * [WIDTH, HEIGHT]
+
+
+@pytest.mark.parametrize("count", [4, 30, 75, 100])
+@pytest.mark.parametrize("decades", [1.0, 3.0, 6.0])
+def test_the_name_of_the_goal_is_at_its_line_and_on_no_curve(
+    count: int, decades: float
+) -> None:
+    last = frames_of("bar")[1]
+    # Curves fall through the line of the goal, some at the beginning, some at the end.
+    iterations = np.arange(1.0, count + 1.0)
+    shares = iterations / count
+    history = dict.fromkeys(last.history, 10.0 ** (-2.0 * shares))
+    history |= {"iteration": iterations, "indicator": 10.0 ** (-decades * shares)}
+    history["behaviour"] = 10.0 ** (1.0 - decades * shares**2)
+    view = view_of(Convergence, replace(last, iteration=count, history=history))
+    goal = view.sources["goal name"].data
+    assert goal["text"] == ["goal 1 %"]
+    (at,) = on_plot(view, goal["x"], goal["y"])
+    half = np.array([0.0, 0.4 * view.type_size])
+    width = np.array([0.5 * view.type_size * len("goal 1 %"), 0.0])
+    if goal["text_align"] == ["right"]:
+        at -= width
+    box = np.array([at - half, at + half + width])
+    assert 0.0 <= box[0, 0] < box[1, 0] <= WIDTH
+    (line,) = on_plot(view, [0.0], view.sources["goal"].data["y"])
+    assert abs(line[1] - at[1]) < view.type_size
+    for name in CURVES:
+        data = view.sources[name].data
+        x = np.linspace(data["x"][0], data["x"][-1], 2000)
+        y = 10.0 ** np.interp(x, data["x"], np.log10(data["y"]))
+        points = on_plot(view, x, y)
+        assert not meet(box, points, points), name
 
 
 def test_an_answer_of_few_iterations_is_no_line_at_the_left_edge_of_its_axis() -> None:
@@ -518,3 +556,11 @@ def test_a_picture_follows_its_size_after_another_tab_was_shown(
     for name, size in (("inner_width", 476), ("inner_height", 410)):
         plot.set_from_json(name, size)
     assert (plot.x_range.end, plot.y_range.end) == (476.0, 410.0)
+
+
+def test_a_chart_of_few_cycles_says_how_many_tell_how_slip_goes_on() -> None:
+    few = default_settings("strand").replace(load="cycle", elements=20, instants=21)
+    frame = frame_of(few, Needs(extras=frozenset({"cycles"})), ends=True)
+    cycles = frame.extras["cycles"]
+    assert len(cycles["energy"]) == 2
+    assert cycles["text"] == "how slip goes on is told from 3 cycles on"

@@ -55,6 +55,22 @@ def test_words_of_large_type_lie_on_no_arrow(frame: Frame, scene: Scene) -> None
             assert not meet(box, places, places), (phase, text)
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [("layers", "p = 2 MPa"), ("wall", "p = 1 MPa"), ("mesh", "p = 50 MPa each")],
+)
+def test_a_pressure_is_named_in_the_picture_as_its_control_has_it(
+    name: str, text: str
+) -> None:
+    view = shown(frame_of(small(name)))
+    assert text in view.sources["words"].data["text"]
+    # It pushes on the side: heads of its arrows are nearer to the bodies than tails.
+    for arrows in picture_of(view).arrows:
+        if arrows.act.symbol == "p":
+            away = np.array(arrows.act.away)
+            assert np.all((arrows.lines[:, -1] - arrows.lines[:, 0]) @ away < 0.0)
+
+
 @pytest.mark.parametrize("width", [390.0, 560.0])
 def test_words_of_a_pressure_have_a_row_of_their_own_where_no_load_leaves_room_beside(
     width: float,
@@ -129,6 +145,30 @@ def test_words_meet_no_arrow_at_the_end_of_a_body(phase: float) -> None:
     corners = np.stack([x, y], axis=1)
     for text, box in boxes_of_words(view, letter=7.0, half=7.0):
         assert not meet(box, corners, corners), text
+
+
+@pytest.mark.parametrize(("name", "height"), [("incline", 330.0), ("wall", 215.0)])
+def test_a_line_leads_from_the_words_of_a_weight_to_its_arrow(
+    name: str, height: float
+) -> None:
+    view = shown(frame_of(small(name)))
+    view.lay_out(950.0, height)
+    view.update(*view._shown)  # type: ignore[misc]
+    picture = picture_of(view)
+    (weight,) = [arrows for arrows in picture.arrows if arrows.act.symbol == "W"]
+    leaders = view.sources["leaders"].data
+    ((begin, end),) = np.stack([leaders["xs"], leaders["ys"]], axis=-1)
+    np.testing.assert_allclose(end, picture.page(weight.lines[0, 0]))
+    boxes = dict(boxes_of_words(view, letter=9.0, half=12.0))
+    (box,) = [box for text, box in boxes.items() if text.startswith("W = ")]
+    assert meet(box + np.array([[-1.0], [1.0]]), begin, begin)
+
+
+def test_no_line_leads_from_words_that_stand_at_their_arrow() -> None:
+    view = shown(frame_of(small("arch")))
+    view.lay_out(430.0, 330.0)
+    view.update(*view._shown)  # type: ignore[misc]
+    assert view.sources["leaders"].data["xs"] == []
 
 
 @pytest.mark.parametrize("slope", [-29.0, 29.0])

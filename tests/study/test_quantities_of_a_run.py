@@ -372,6 +372,13 @@ def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> 
     )
 
 
+def test_a_weight_that_is_constant_but_for_rounding_leaves_cycles_alike() -> None:
+    run = ran("incline", slope_load="cycles", instants=61)
+    cycles = cut(run)
+    assert np.ptp(cycles.energy) < 1e-6 * cycles.energy[0]
+    assert fate_of(cycles) == "steady slip"
+
+
 def lesson(**changes: Any) -> FinishedRun:
     return finished_run(
         lesson_from_file(LESSON).settings.replace(**changes), errors=False

@@ -18,7 +18,7 @@ from solver.commands import reports as report_commands
 from solver.commands.cli import main
 from solver.scenes.bar import BarSettings
 from solver.settings.values import SettingError
-from solver.study.page import Map
+from solver.study.page import Map, Panel
 from solver.study.sweep.plan import Row, axis_of, plan_of
 from solver.study.sweep.report import chart_of, write_sweep
 from solver.study.sweep.run import snake
@@ -206,6 +206,17 @@ def test_two_numbers_make_a_map_and_names_or_few_values_make_curves(
     for number, x in zip(chart.runs.numbers, chart.runs.x, strict=True):
         value = plan.point(int(number))[plan.axes[0].name]
         assert x == (list(plan.axes[0].values).index(value) if chart.x.names else value)
+
+
+def test_values_of_a_report_are_in_units_that_people_read() -> None:
+    plan = tiny(["peak=300,900000", "settlement=0.00001,0.002"], ["peak_displacement"])
+    chart = chart_of(plan, [holding(2.5e-4, 3)])
+    assert isinstance(chart, Panel)
+    labels = [curve.label for curve in chart.curves]
+    assert [label.rpartition("Settlement ")[2] for label in labels] == ["10 µm", "2 mm"]
+    assert chart.runs is not None
+    (message,) = chart.runs.said
+    assert message == "Peak load 900 kN, Settlement 2 mm: 250 µm"
 
 
 BAR = BarSettings.checked({})

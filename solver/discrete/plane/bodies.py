@@ -245,8 +245,13 @@ class Bodies:
             if held.axis == 2:
                 yield self._act(held, "φ", (0.0, 1.0), held.mean, "rad")
         for load in self.loads:
-            whole = load.force.sum(axis=0)
-            yield self._act(load, "F", *_directed(whole), "N")
+            directions, sizes = _directed(load.force.sum(axis=0))
+            pressure = load.pressure
+            if pressure is None:
+                yield self._act(load, "F", directions, sizes, "N")
+            else:
+                symbol = "p" if pressure.min() >= 0.0 else "σ"
+                yield self._act(load, symbol, directions, np.abs(pressure), "Pa")
         middle = np.array([[0.5, 0.5]])
         yield Act("body", "W", middle, *_directed(self.weights), "N")
 

@@ -253,15 +253,21 @@ class Held:
 
 @dataclass(frozen=True, eq=False)
 class Load:
-    """Nodal forces on a body, shape (n, 2, n_instants), N, at its nodes, (n,)."""
+    """Nodal forces on a body, shape (n, 2, n_instants), N, at its nodes, (n,).
+
+    A `pressure`, (n_instants,), Pa, is what drawings show in place of the force.
+    """
 
     name: str
     body: int
     nodes: Indices
     force: Array
+    pressure: Array | None = None
 
     def __post_init__(self) -> None:
         check(self, nodes=ROWS, force=Numbers(((len(self.nodes), 2, None),)))
+        if self.pressure is not None:
+            check(self, pressure=Numbers(((self.force.shape[-1],),)))
 
     def __str__(self) -> str:
         return f"Load {self.name!r}"

@@ -216,7 +216,9 @@ def _is_repeated(settings: Settings, ends: list[int]) -> bool:
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
         # Ends and extremes: what happens between them does not change the fate of slip.
         marks = [[part[0], part[-1], part.min(), part.max()] for part in parts]
-        if marks and np.ptp(marks, axis=0).max() > REPEATED * np.ptp(path):
+        # A constant load, as a weight on a slope that tilts, swings from rounding.
+        swing = max(REPEATED * np.ptp(path), NO_SWING * np.abs(path).max())
+        if marks and np.ptp(marks, axis=0).max() > swing:
             return False
     return True
 

@@ -6,13 +6,14 @@ import csv
 import io
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.files.amounts import amount
 from solver.files.saved import dump
 from solver.settings.values import SettingError
 from solver.study.page import (
@@ -37,23 +38,15 @@ MARGIN = 0.06
 """Share of the values' range that is added to an axis on either side."""
 NEVER = "never"
 NONE = "none: a run with these settings has no such value"
-Text = Callable[[float, str], str]
-"""A value and its unit as a text."""
 AFTER = "ending", "start", "iterations done", "seconds in all", "reason"
 OWN = "own"
 NEIGHBOURS = "neighbour's"
-
-
-def plainly(value: float, unit: str) -> str:
-    """Text of a value with its unit."""
-    return f"{value:.4g} {unit}".strip().replace("-", "−")
 
 
 def chart_of(
     plan: Plan,
     rows: Sequence[Row],
     index: int = 0,
-    text: Text = plainly,
     *,
     logarithmic: bool | None = None,
 ) -> Chart:
@@ -65,16 +58,14 @@ def chart_of(
         The plan, and the rows of the runs so far.
     index
         Index of the reading.
-    text
-        Text of a value with its unit.
     logarithmic
         Whether the values stand on a logarithmic scale; by default if they go over
         several decades.
     """
-    runs = _runs(plan, rows, index, text)
+    runs = _runs(plan, rows, index)
     if is_map(plan):
         return _map(plan, rows, index, runs, logarithmic)
-    return _panel(plan, index, text, runs, logarithmic)
+    return _panel(plan, index, runs, logarithmic)
 
 
 def _scale(
@@ -118,14 +109,12 @@ def _map(
     )
 
 
-def _panel(
-    plan: Plan, index: int, text: Text, runs: Runs, logarithmic: bool | None
-) -> Panel:
+def _panel(plan: Plan, index: int, runs: Runs, logarithmic: bool | None) -> Panel:
     """Curves of a reading over the first setting, one for each value of the second."""
     across, *up = plan.axes
     labels = [""]
     if up:
-        labels = _texts(up[0], text)
+        labels = _texts(up[0])
     curves = []
     for hue, label in enumerate(labels, start=1):
         members = np.flatnonzero(runs.hues == hue)
@@ -184,13 +173,13 @@ def _limits(values: Array, axis: PanelAxis) -> tuple[float, float]:
     return (low - margin, high + margin)
 
 
-def _runs(plan: Plan, rows: Sequence[Row], index: int, text: Text) -> Runs:
+def _runs(plan: Plan, rows: Sequence[Row], index: int) -> Runs:
     """Points of the runs on the chart of a reading, with their messages."""
     numbers = np.array([row.number for row in rows], dtype=int)
     levels = np.unravel_index(numbers, plan.shape)
     factor, _ = _measure(plan, index)
     values = factor * np.array([row.values[index] for row in rows], dtype=float)
-    messages = _messages(plan, rows, index, values, text)
+    messages = _messages(plan, rows, index, values)
     is_finite = np.isfinite(values)
     values[~is_finite] = np.nan
     y = values
@@ -210,15 +199,13 @@ def _runs(plan: Plan, rows: Sequence[Row], index: int, text: Text) -> Runs:
     )
 
 
-def _messages(
-    plan: Plan, rows: Sequence[Row], index: int, values: Array, text: Text
-) -> list[str]:
+def _messages(plan: Plan, rows: Sequence[Row], index: int, values: Array) -> list[str]:
     """Messages on runs: their settings, the value of a reading, and how they ended.
 
     The values are those of the reading, shape (n_rows,), in its unit.
     """
     _, unit = _measure(plan, index)
-    texts = [_texts(axis, text) for axis in plan.axes]
+    texts = [_texts(axis) for axis in plan.axes]
     numbers = np.array([row.number for row in rows], dtype=int)
     points = np.transpose(np.unravel_index(numbers, plan.shape))
     messages = []
@@ -226,7 +213,7 @@ def _messages(
         words = [names[level] for names, level in zip(texts, point, strict=True)]
         number = ""
         if math.isfinite(value):
-            number = text(value, unit)
+            number = amount(value, unit)
         outcome = filter(None, (number, _reason(row, value)))
         messages.append(f"{', '.join(words)}: {'; '.join(outcome)}")
     return messages
@@ -243,11 +230,11 @@ def _reason(row: Row, value: float) -> str:
     return ""
 
 
-def _texts(axis: Varied, text: Text) -> list[str]:
+def _texts(axis: Varied) -> list[str]:
     """Title of a setting with each of its values."""
     values: Sequence[str] = axis.names
     if axis.is_numeric:
-        values = [text(value, axis.unit) for value in axis.values]
+        values = [amount(value, axis.unit) for value in axis.values]
     return [f"{axis.title} {value}" for value in values]
 
 

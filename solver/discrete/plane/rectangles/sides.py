@@ -38,16 +38,26 @@ class Given:
         Values over time, shape (n_instants,); the slope may be 0. On the left and the
         right s runs over each body anew. Below strips of ground the mean may be that of
         each strip, shape (n_strips, n_instants).
+    is_pressure
+        Whether drawings name a traction across the side a pressure, which is positive
+        into the bodies.
     """
 
     prescribed: bool
     mean: Array
     slope: Array | float = 0.0
+    is_pressure: bool = False
 
     def __post_init__(self) -> None:
         over_time = Numbers(((None,),))
         mean = Numbers(((None,), (None, None)))
-        check(self, prescribed=FLAG, mean=mean, slope=Either(ANY_NUMBER, over_time))
+        check(
+            self,
+            prescribed=FLAG,
+            mean=mean,
+            slope=Either(ANY_NUMBER, over_time),
+            is_pressure=FLAG,
+        )
 
     @property
     def is_zero(self) -> bool:

@@ -45,9 +45,17 @@ def _act_on_side(
     """Load or displacement of a side: drawn at both ends if it is uneven."""
     is_normal = OUTWARD[side][component] != 0.0
     along = "xy"[component]
+    towards = ((1.0, 0.0), (0.0, 1.0))[component]
+    values = given.mean
     if given.prescribed:
         symbol = f"u_{along}"
         unit = "m"
+    elif given.is_pressure:
+        symbol = "p"
+        unit = "Pa"
+        x, y = OUTWARD[side]
+        towards = (-x, -y)
+        values = -OUTWARD[side][component] * values
     elif is_normal:
         symbol = "σ"
         unit = "Pa"
@@ -58,7 +66,6 @@ def _act_on_side(
     shares = [0.15]
     if is_normal:
         shares = [0.7]
-    values = given.mean
     if np.any(given.slope):
         shares = [0.0, 1.0]
         values = np.stack([given.mean - given.slope, given.mean + given.slope])
@@ -68,7 +75,7 @@ def _act_on_side(
         where=f"{side} {along}",
         symbol=symbol,
         points=_on_bodies(side, on_side(side, shares), rectangles),
-        towards=((1.0, 0.0), (0.0, 1.0))[component],
+        towards=towards,
         values=values,
         unit=unit,
     )

@@ -1,0 +1,76 @@
+"""Amounts as people read them: numbers in a unit of a size that suits them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+PREFIXES = {"µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
+PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^2", "N/m^3", "N·m", "N·m/m", "rad")
+"""Units that take a prefix."""
+TIMES = {"s": 1.0, "h": 3600.0, "d": 86400.0}
+LATER = {"GPa": 10.0, "GN/m²": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
+"""Least value in a unit with which the unit is taken, where it is not 1: a stress of
+3000 MPa is not read in GPa."""
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit and its size in SI."""
+
+    name: str
+    factor: float = 1.0
+
+    def __call__(self, value: float, digits: int = 3) -> str:
+        """A value in SI with this unit."""
+        gap = "" if self.name == "°" else " "
+        return f"{number(value / self.factor, digits)}{gap}{self.name}".strip()
+
+    def titled(self, title: str) -> str:
+        """A title with the unit behind it."""
+        if self.name:
+            return f"{title}, {self.name}"
+        return title
+
+
+def sizes_of(unit: str) -> dict[str, float]:
+    """Multiples of an SI unit and their sizes in it, smallest first."""
+    name = unit.replace("^2", "²").replace("^3", "³")
+    if unit == "s":
+        return TIMES
+    if unit in PREFIXED:
+        return {prefix + name: size for prefix, size in PREFIXES.items()}
+    return {name: 1.0}
+
+
+def unit_for(size: float, unit: str) -> Unit:
+    """The unit in which values up to a size in SI are read."""
+    if math.isfinite(size) and size > 0.0:
+        # As it is read: 0.9999 is 1.
+        size = float(f"{size:.3g}") * (1.0 + 1e-9)
+    else:
+        size = 1.0
+    units = sizes_of(unit).items()
+    chosen, factor = next(iter(units))
+    for name, unit_size in units:
+        if unit_size * LATER.get(name, 1.0) <= size:
+            chosen = name
+            factor = unit_size
+    return Unit(chosen, factor)
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number with a printed minus, and with a power of ten where it needs one."""
+    near = float(f"{value:.{digits}g}")
+    if near != 0.0 and math.isfinite(near) and not 1e-3 <= abs(near) < 1e6:
+        digit, exponent = f"{value:.{digits - 1}e}".split("e")
+        text = f"{float(digit):g}·10{str(int(exponent)).translate(RAISED)}"
+    else:
+        text = f"{near:.7g}"
+    return text.replace("-", "−")
+
+
+def amount(value: float, unit: str) -> str:
+    """A value in SI in the unit in which it is read."""
+    return unit_for(abs(value), unit)(value, 4)
