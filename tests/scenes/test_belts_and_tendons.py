@@ -99,7 +99,7 @@ def test_tension_friction_and_the_way_of_the_end_are_those_of_closed_form():
 
 
 def test_the_way_of_a_pulled_end_is_its_own_where_the_other_is_held():
-    """It was that of the end that is held: none."""
+    """The loop was over the way of the end that is held: none."""
     settings = settings_of(tail="held", elements=120, instants=9)
     problem, reference, _ = solved(settings)
     moved, tension = settings.structure().loop(problem).along(reference)
