@@ -30,11 +30,14 @@ from solver.reference.solution import Reference
 from solver.scenes.remarks import remarks_on
 from solver.settings.scene import Settings
 from solver.study.quantities import reading
+from solver.study.quantities.cycles import loads_over_time, turning_points
 from solver.study.quantities.finished import FinishedRun
 
 MOST_INSTANTS = 401
 MOST_POINTS = 401
 """Largest numbers of instants, and of points of an interface, in a frame."""
+MOST_TURNS = 100
+"""Largest number of turning points of a load that are shown beside these instants."""
 MOST_VALUES = 100_000
 """Values of a field up to which a frame has the contact of all interfaces, and not of
 the selected one alone."""
@@ -45,6 +48,24 @@ MOST_ITERATIONS = 1000
 NO_SCALARS = ("modes", "is_answer")
 SCALARS = tuple(f.name for f in fields(Record) if f.name not in NO_SCALARS)
 """Names of the scalars of a record."""
+
+
+def shown_instants(settings: Settings, count: int) -> Indices:
+    """Instants of a run that are shown, in order, (n,), of `count` in all.
+
+    They are evenly thinned, and those at which a load turns back or is largest, as key
+    figures are the largest of what is shown.
+    """
+    kept = thinned(count, MOST_INSTANTS)
+    if len(kept) == count:
+        return kept
+    among = [kept]
+    for path in loads_over_time(settings):
+        among.append(np.array([path.argmin(), path.argmax()]))
+        turns = turning_points(path)
+        if len(turns) <= MOST_TURNS:
+            among.append(np.array(turns, dtype=np.intp))
+    return np.unique(np.concatenate(among))
 
 
 class Sampler:
@@ -58,7 +79,7 @@ class Sampler:
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
         self.problem = problem
         self.settings = settings
-        self.columns = thinned(problem.n_instants, MOST_INSTANTS)
+        self.columns = shown_instants(settings, problem.n_instants)
         contacts = problem.rubbing
         laws = contacts.laws.values()
         # Length, m, or area, m², of each point.

@@ -306,7 +306,8 @@ class ContactGroup:
         if law.normal is not None and force is not None:
             # A stuck contact moves by rounding alone; but a scaled structure's
             # compliance is 1.
-            largest = max(float(np.abs(displacement).max()), float(np.abs(force).max()))
+            largest_force = float(np.abs(force).max())
+            largest = max(float(np.abs(displacement).max()), largest_force)
         else:
             largest = self._largest_displacement(displacement)
         threshold = np.maximum(NO_SLIP * largest, still)
@@ -316,7 +317,8 @@ class ContactGroup:
         if law.normal is not None and force is not None:
             normal = law.by_point(force[law.normal.component.above])
             tangential = law.by_point(np.abs(force[law.tangent.above]))
-            status[~_carries(normal, tangential)] = OPEN
+            least = RESIDUE * largest_force
+            status[~_carries(normal, tangential, least)] = OPEN
         return status
 
     def _largest_displacement(self, displacement: Array) -> Array:
@@ -329,15 +331,13 @@ class ContactGroup:
         return largest
 
 
-def _carries(normal: Array, tangential: Array) -> NDArray[np.bool_]:
+def _carries(normal: Array, tangential: Array, least: float) -> NDArray[np.bool_]:
     """Check which points of contact are pressed together, and not by rounding alone.
 
     Where bodies come apart, or begin to touch, rounding presses at some points. A bond
     that nothing presses carries friction. Pressing and friction forces have the same
-    shape, (n_points, n_instants).
+    shape, (n_points, n_instants); forces up to `least` may be rounding.
     """
-    largest = max(normal.max(initial=0.0), tangential.max(initial=0.0))
-    least = RESIDUE * largest
     return np.asarray((normal > least) | ((normal > 0.0) & (tangential > least)))
 
 

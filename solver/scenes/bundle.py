@@ -19,7 +19,7 @@ from solver.laws import FrictionLaw
 from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.elastic_bodies import HalfPlane
 from solver.refusal import plain
-from solver.scenes.exact import UNCOUPLED, hertz
+from solver.scenes.exact import hertz, is_coupled
 from solver.scenes.plane import PlaneSettings, RectangleSettings
 from solver.settings.definitions import BODY, LOAD, redefined
 from solver.settings.load_paths import PRESETS
@@ -275,7 +275,8 @@ class BundleSettings(PlaneSettings):
             if force is None or not force.any():
                 continue
             rounder, softer = self.wires.contact_of(joint)
-            if joint.below is None and self.friction and self.poisson < UNCOUPLED:
+            is_on_ground = joint.below is None
+            if is_on_ground and self.friction and is_coupled(self.poisson, self.plane):
                 continue
             positions = problem.rubbing[joint.name].positions
             sizes = rounder * self.length, softer * self.modulus

@@ -32,8 +32,8 @@ SMALL = 0.12
 """Largest half-width of a contact, over the length and the height of its body, for
 which a half-plane holds: to some 2 % (tests/reference/test_hertz_and_cattaneo.py)."""
 UNCOUPLED = 0.49
-"""Smallest Poisson's ratio for which pressure and friction on a rigid support are taken
-as uncoupled."""
+"""Smallest Poisson's ratio, in plane strain, for which pressure and friction on a rigid
+support are taken as uncoupled."""
 RIGID = 50.0
 """Smallest ratio of the slide of a body to its largest deformation for which the
 deformation is left out: it is 2 % of the slide."""
@@ -105,6 +105,16 @@ def _is_coulombs(body: Stack) -> bool:
     return body.friction_law == FrictionLaw() and not np.ptp(body.support.friction)
 
 
+def is_coupled(poisson: float, state: str) -> bool:
+    """Check whether pressure and friction on a rigid support change each other.
+
+    Plane stress is plane strain with Poisson's ratio nu / (1 + nu), a third at most.
+    """
+    if state == "stress":
+        poisson = poisson / (1.0 + poisson)
+    return poisson < UNCOUPLED
+
+
 def exact_parabola(
     body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
@@ -116,8 +126,9 @@ def exact_parabola(
     total = contact.normal_force.sum(axis=0)
     largest = float(total.max())
     friction = float(np.max(body.support.friction))
-    is_coupled = friction and body.poisson < UNCOUPLED
-    if largest <= 0.0 or not _is_coulombs(body) or is_coupled:
+    if friction and is_coupled(body.poisson, body.state):
+        return
+    if largest <= 0.0 or not _is_coulombs(body):
         return
     modulus = body.young
     if body.state == "strain":

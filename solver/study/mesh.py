@@ -11,6 +11,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.quantities.finished import finished_run
@@ -119,10 +121,36 @@ def three_of(settings: Settings, names: Sequence[str]) -> tuple[list[Settings], 
     names
         Names of the settings of the mesh, or `instants`, of which the steps count.
     """
+    if "instants" in names:
+        return _three_steps(settings)
     try:
         return [_refined(settings, names, factor) for factor in (0.5, 1, 2)], 1
     except SettingError:
         return [_refined(settings, names, factor) for factor in (1, 2, 4)], 0
+
+
+def _three_steps(settings: Settings) -> tuple[list[Settings], int]:
+    """Settings with three time steps, and the index of the given ones among them.
+
+    Points of paths are instants, too. Where these alone make the steps of a run, other
+    numbers of instants may change nothing: then the longest step counts.
+    """
+    steps = _steps_of(settings)
+    if steps == settings.values()["instants"] - 1:
+        try:
+            coarse = _refined(settings, ["instants"], 0.5)
+        except SettingError:
+            coarse = settings
+        if _steps_of(coarse) < steps:
+            return [coarse, settings, _refined(settings, ["instants"], 2)], 1
+    finer = [settings.replace(instants=factor * steps + 1) for factor in (2, 4)]
+    return [settings, *finer], 0
+
+
+def _steps_of(settings: Settings) -> int:
+    """Number of equal steps of which none is longer than the longest of a run."""
+    longest = float(np.diff(settings.times(), prepend=0.0).max())
+    return math.ceil((1.0 - EQUAL) * settings.duration / longest)
 
 
 def _refined(settings: Settings, names: Sequence[str], factor: float) -> Settings:

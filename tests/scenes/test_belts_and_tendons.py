@@ -98,6 +98,17 @@ def test_tension_friction_and_the_way_of_the_end_are_those_of_closed_form():
     assert friction == pytest.approx(-settings.path("pull_load"), abs=1e-6)
 
 
+def test_the_way_of_a_pulled_end_is_its_own_where_the_other_is_held():
+    """The loop was over the way of the end that is held: none."""
+    settings = settings_of(tail="held", elements=120, instants=9)
+    problem, reference, _ = solved(settings)
+    moved, tension = settings.structure().loop(problem).along(reference)
+    exact = settings.capstan.displacement(settings.tension, None)
+    assert exact.max() == pytest.approx(5.8e-4, rel=0.01)
+    assert moved == pytest.approx(exact, abs=1e-3 * exact.max())
+    assert tension == pytest.approx(settings.tension)
+
+
 def test_a_rope_that_runs_has_the_ratio_of_its_angle_both_ways():
     path = [[0.0, 0.0], [0.25, 0.0], [0.6, 0.003], [1.0, -0.003]]
     settings = settings_of(driven="moved", pull_load=path, elements=120, instants=41)

@@ -116,3 +116,15 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     )
     assert not force[3:].any()
     assert np.all(law.violation(moved, force, 1e-14).energy(1.0, 1.0) < 1e-10)
+
+
+def test_the_force_of_a_rigid_block_is_told_of_blocks_that_are_stiff_enough():
+    """A slender block of rubber loads its spring by 14 % more as it springs back."""
+    stiff = Run()
+    (exact,) = stiff.settings.exact(stiff.solution.iterate.problem)
+    off = np.abs(exact.up - stiff.force).max()
+    assert off < 0.03 * stiff.force.max()
+    soft = Run(slope=23.0, weight=2500.0, height=0.21)
+    assert not list(soft.settings.exact(soft.solution.iterate.problem))
+    rigid = np.maximum(soft.sliding_down, 0.0).max()
+    assert soft.force.max() > 1.1 * rigid

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from solver.commands.cli import main
+from solver.scenes import CATALOGUE
 from solver.study.mesh import (
     LARGEST_ORDER,
     LEAST_ORDER,
     Refinement,
     answer,
+    three_of,
 )
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
@@ -91,6 +95,27 @@ def test_it_is_said_which_to_refine(
     settings = [f"--set={change}" for change in changes]
     assert main(["mesh", name, "--of", asked, *settings]) == 0
     assert f"Refine {refined} first" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"instants": 1},
+        {"instants": 3, "load": [[0, 0], [0.1, 500], [0.2, -900], [0.5, 900], [1, 0]]},
+        {"instants": 11},
+        {"instants": 12},
+    ],
+)
+def test_steps_are_halved_also_where_points_of_the_load_make_them(
+    changes: dict[str, Any],
+) -> None:
+    """Runs of one instant stayed so, and no time step was said to change a thing."""
+    settings = CATALOGUE["bar"].checked({"elements": 10, **changes})
+    three, own = three_of(settings, ["instants"])
+    assert three[own] is settings
+    longest = [np.diff(each.times(), prepend=0.0).max() for each in three]
+    assert longest[1] <= 0.5 * longest[0] * (1.0 + 1e-9)
+    assert longest[2] <= 0.5 * longest[1] * (1.0 + 1e-9)
 
 
 def test_of_a_mesh_of_ones_own_instants_alone_are_refined(

@@ -143,7 +143,7 @@ def ends_of(settings: Settings) -> list[int]:
     Of several loads the one with the most turning points counts, the first of equals.
     Fewer than two instants are no cycle.
     """
-    turns = [turning_points(path) for path in _paths(settings)]
+    turns = [turning_points(path) for path in loads_over_time(settings)]
     return max(turns, key=len, default=[])[::2]
 
 
@@ -197,7 +197,7 @@ def turning_points(path: Array) -> list[int]:
     return turns
 
 
-def _paths(settings: Settings) -> Iterator[Array]:
+def loads_over_time(settings: Settings) -> Iterator[Array]:
     """Loads over time, shape (n_instants,) each, in their units.
 
     Of a load that varies along a side, the point counts at which it changes most.
@@ -212,7 +212,7 @@ def _paths(settings: Settings) -> Iterator[Array]:
 
 def _is_repeated(settings: Settings, ends: list[int]) -> bool:
     """Check whether all loads begin, end and peak alike in the last cycles."""
-    for path in _paths(settings):
+    for path in loads_over_time(settings):
         parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
         # Ends and extremes: what happens between them does not change the fate of slip.
         marks = [[part[0], part[-1], part.min(), part.max()] for part in parts]

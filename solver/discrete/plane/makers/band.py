@@ -149,6 +149,13 @@ class Band(Bodies):
         """Titles and units of the loop."""
         return ("Displacement of the pulled end", "m"), ("Tension", "N")
 
+    @property
+    def _shown(self) -> Held | Load | None:
+        """Load on the last end, where that is pulled, also if the first end is held."""
+        if self.loads and self.loads[0].name == PULL:
+            return self.loads[0]
+        return super()._shown
+
     def loop(self, problem: Problem) -> Loop:
         """Tension at the last end over its displacement away from the guide."""
         if self.loads and self.loads[0].name == PULL:
