@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -19,7 +20,7 @@ from bokeh.resources import Resources
 from app.views.colors import REFERENCE
 from app.widgets import html
 from solver.arrays import Array
-from solver.files.amounts import unit_for
+from solver.files.amounts import number, unit_for
 from solver.study.page import (
     HUES,
     Chart,
@@ -252,15 +253,38 @@ def edges(values: Array, axis: PanelAxis) -> Array:
 
 
 def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:
-    """Names of an axis, or its few whole numbers; None for round numbers."""
+    """Names of an axis, its few whole numbers, or those of a short logarithmic axis.
+
+    None for round numbers.
+    """
     if axis.names:
         return list(enumerate(axis.names))
+    if axis.logarithmic:
+        return _logarithmic_ticks(axis, values)
     if not axis.whole:
         return None
     numbers = sorted({int(value) for value in values})
     if 0 < len(numbers) <= 7:
         return numbers
     return None
+
+
+def _logarithmic_ticks(
+    axis: PanelAxis, values: Iterable[float]
+) -> list[tuple[float, str]] | None:
+    """Ticks at 1, 2, 5, 10, ..., each with its text; None for more than two decades.
+
+    Bokeh's own are few, or lie on one another.
+    """
+    known = np.array([value for value in values if value > 0.0])
+    if not known.size or known.max() > 100.0 * known.min():
+        return None
+    low, high = axis.limits or (known.min(), known.max())
+    first = math.floor(math.log10(low))
+    powers = 10.0 ** np.arange(first, first + 4)
+    ticks = np.outer(powers, [1.0, 2.0, 5.0]).ravel()
+    inside = ticks[(ticks > 0.999 * low) & (ticks < 1.001 * high)]
+    return [(tick, number(tick)) for tick in inside.tolist()]
 
 
 def _table(runs: Runs) -> pd.DataFrame:
@@ -335,9 +359,9 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
         color="#000", alpha=0.75, line_width=1.2
     )
     labels = []
-    for number, line in enumerate(lines):
+    for place, line in enumerate(lines):
         # At one of three positions along the line: lines may be close.
-        index = len(line["x"]) * (1 + number % 3) // 4
+        index = len(line["x"]) * (1 + place % 3) // 4
         labels.append((line["x"][index], line["y"][index], f"{line['z']:.4g}"))
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",

@@ -75,6 +75,7 @@ class Live:
             margin=0,
         )
         self._is_open = False
+        self._has_sheet = False
         self._also: list[str] = []
         look = {"css_classes": ["words"], "sizing_mode": "stretch_width"}
         styles = {"flex-wrap": "wrap", "justify-content": "space-between"}
@@ -170,6 +171,8 @@ class Live:
             classes.append("several")
         if not self._cards:
             classes.append("alone")
+        if self._has_sheet:
+            classes.append("with-sheet")
         shape = []
         if state.frame is not None:
             shape = [shape_of(state.frame.run.geometry)]
@@ -182,6 +185,11 @@ class Live:
 
     def _reshape(self) -> None:
         self.view.css_classes = self._shape
+
+    def make_room(self, is_needed: bool) -> None:
+        """Make room above the controls where they are a sheet below the picture."""
+        self._has_sheet = is_needed
+        self._reshape()
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""

@@ -191,7 +191,7 @@ class Page:
         watch(lambda event: self._on_height(), "height")
         # A person may open or close the controls, too.
         self.template.param.watch(
-            lambda event: self._controls.open(event.new), "sidebar_open"
+            lambda event: self._on_controls(event.new), "sidebar_open"
         )
 
     def loaded(self) -> None:
@@ -341,6 +341,10 @@ class Page:
 
     def _show_controls(self) -> None:
         self.template.sidebar_open = self._has_controls
+
+    def _on_controls(self, is_open: bool) -> None:
+        self._controls.open(is_open)
+        self._live.make_room(is_open and self.state.is_narrow)
 
 
 def follow_itself(template: pmui.Page) -> None:

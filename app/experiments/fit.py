@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pandas as pd
 import panel_material_ui as pmui
 
@@ -20,7 +23,6 @@ from solver.study.fit_report import LOOP
 from solver.study.measured_loop import MeasuredLoop
 from solver.study.page import Panel, PanelAxis, PanelCurve
 
-MEASURED = "measured.csv"
 NO_LOOP = (
     "Open a measured loop: a table of displacement and force, with time if you have "
     "it. It is drawn here, and on the plot Loop of the tab Live beside the run."
@@ -61,8 +63,10 @@ class FitTab(CommandTab):
         loop = self.measured
         if loop is None or not names:
             return None
-        arguments = ("fit", SETTINGS, "--with", MEASURED, "--vary", names, "--out", OUT)
-        return arguments, {SETTINGS: dump(self.state.settings), MEASURED: loop.csv()}
+        # The report names the file as its owner does.
+        file = re.sub(r"[^\w-]+", "-", Path(loop.source).stem) + ".csv"
+        arguments = ("fit", SETTINGS, "--with", file, "--vary", names, "--out", OUT)
+        return arguments, {SETTINGS: dump(self.state.settings), file: loop.csv()}
 
     @property
     def words(self) -> str:

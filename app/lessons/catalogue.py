@@ -97,7 +97,9 @@ def _value(frame: Frame | None, name: str) -> str:
         return PENDING
     value = frame.readings[name]
     quantity = reading(name)
-    if not math.isfinite(value) and frame.status is None:
+    is_of_result = quantity.reads is None
+    # What an iterate loses to friction, say, is none of the cases that texts tell of.
+    if frame.status is None and (is_of_result or not math.isfinite(value)):
         return PENDING
     if math.isnan(value):
         return "–"

@@ -26,7 +26,8 @@ HEIGHT = 160.0
 WIDTH = 380.0
 """Size of a plot until the browser reports its own, px."""
 LETTER = 0.56
-"""Width of a letter over its type size, about."""
+ROW = 1.3
+"""Width of a letter and height of a line of words over their type size, about."""
 NAME = 6.0
 """Distance of the name of a curve from its end, px."""
 STEPS = 9
@@ -246,13 +247,13 @@ class Convergence(ErrorPlot):
             begin = x / self._last + NAME / self._size["inner_width"]
             along = np.linspace(begin, begin + width, len(text) + 1)
             middle = self._heights([y])
-            for up in (middle - 0.4 * height, middle, middle + 0.4 * height):
+            for up in (middle - 0.3 * height, middle, middle + 0.3 * height):
                 points.append(np.stack([along, np.full_like(along, up)], axis=1))
         return np.concatenate(points)
 
     def _size_of(self, text: str) -> Floats:
         """Width and height of a text over the size of the plot, about, shape (2,)."""
-        letters = np.array([LETTER * len(text), 1.0]) * self.type_size
+        letters = np.array([LETTER * len(text), ROW]) * self.type_size
         return np.asarray(letters / [*self._size.values()])
 
     @property

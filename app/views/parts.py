@@ -39,7 +39,9 @@ def bare(
         title=None,
         x_range=Range1d(*across),
         y_range=Range1d(*up),
-        min_border=0,
+        # Of the first row and column of its pixels Bokeh clears but a half: what is
+        # painted there would stay as dots.
+        min_border=1,
         y_axis_type=None,
         **more,
     )

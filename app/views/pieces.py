@@ -32,7 +32,10 @@ LETTERS = 115
 """Height of a line and width of a letter over their type size, and number of letters
 above the pieces, about."""
 TOLD = 0.4
-"""Largest share of the height for words."""
+BESIDE = 0.34
+"""Largest share of the height for words above the pieces, and of the width beside."""
+RAGGED = 1.2
+"""Room of words in a narrow column over that of their letters."""
 SMALL = 30.0
 """Least room for the pieces, px."""
 KEYS = 78
@@ -134,7 +137,8 @@ class PiecesView(ExtraView):
         stage = extra.stages[selection.stage]
         shown = frame.run.column(selection.phase)
         column = int(np.abs(extra.columns - shown).argmin())
-        placed = _Placed(extra, self._box(), frame.run.settings.kind == "plane")
+        is_plane = frame.run.settings.kind == "plane"
+        placed = _Placed(extra, self._box(extra, is_plane), is_plane)
         self._placed = placed
         self._scale(extra, frame)
         placed.move(stage, column, self._scales)
@@ -145,8 +149,11 @@ class PiecesView(ExtraView):
         sentence = _sentence(extra, stage, column, selection.stage)
         self._write(f"{sentence}.", f"{self._note(extra)}.")
 
-    def _box(self) -> Array:
-        """Corners of the room between text and legend, (2, 2), px."""
+    def _box(self, extra: Pieces, is_plane: bool) -> Array:
+        """Corners of the room between text and legend, (2, 2), px.
+
+        The text stands above the pieces, or at their left if high ones are larger so.
+        """
         width, height = self._size.values()
         self._figure.x_range.end = width
         self._figure.y_range.end = height
@@ -156,20 +163,28 @@ class PiecesView(ExtraView):
         line = FOOT * size
         most = max(int(TOLD * height / line), 1)
         self._rows = min(math.ceil(LETTERS * letter / width), most)
+        self._letters = max(int(width / letter), 20)
         low = below * line
         high = max(height - self._rows * line, low)
-        return np.array([[0.0, low], [width, high]])
+        above = np.array([[0.0, low], [width, high]])
+        beside = np.array([[BESIDE * width, low], [width, height]])
+        rows = int((height - low) / line)
+        letters = int(BESIDE * width / letter)
+        is_larger = _fitting(extra, beside).min() > _fitting(extra, above).min()
+        if is_plane and is_larger and rows * letters > RAGGED * LETTERS:
+            self._rows = rows
+            self._letters = letters
+            return beside
+        return above
 
     def _write(self, sentence: str, note: str) -> None:
-        """Write a sentence into the lines above the pieces, and a note if it fits."""
-        width, height = self._size.values()
-        letter = LETTER * float(self._type.removesuffix("px"))
-        letters = max(int(width / letter), 20)
+        """Write a sentence into its lines beside the pieces, and a note if it fits."""
         # A factor stays beside its sign.
         text = f"{sentence} {note}".replace("× ", "×\N{NO-BREAK SPACE}")
-        lines = textwrap.wrap(text, letters)
+        lines = textwrap.wrap(text, self._letters)
         if len(lines) > self._rows:
-            lines = textwrap.wrap(sentence, letters)
+            lines = textwrap.wrap(sentence, self._letters)
+        height = self._size["inner_height"]
         self.fill("words", x=[2.0], y=[height - 2.0], text=["\n".join(lines)])
 
     def _show_forces(self, extra: Pieces, stage: StageFields, column: int) -> None:
@@ -263,6 +278,12 @@ class PiecesView(ExtraView):
         self._show(extra, frame, self.state.selection)
 
 
+def _fitting(extra: Pieces, box: Array) -> Array:
+    """Scales along x and y, (2,), px/m, with which pieces fill a box, (2, 2), px."""
+    size = np.nanmax(extra.corners, axis=0) - np.nanmin(extra.corners, axis=0)
+    return np.asarray(np.maximum(np.ptp(box, axis=0) - 2.0 * ROOM, SMALL) / size)
+
+
 class _Placed:
     """Position of the pieces in a figure, px.
 
@@ -277,16 +298,16 @@ class _Placed:
     def __init__(self, extra: Pieces, box: Array, is_plane: bool) -> None:
         self._extra = extra
         self.is_plane = is_plane
-        room = np.maximum(np.ptp(box, axis=0) - 2.0 * ROOM, SMALL)
         low = np.nanmin(extra.corners, axis=0)
         high = np.nanmax(extra.corners, axis=0)
         lows, highs = _boxes(extra.corners, extra.parts)
-        scale = room / (high - low)
+        scale = _fitting(extra, box)
         if is_plane:
             scale[:] = scale.min()
         else:
             thickness = float(np.median((highs - lows)[:, 1]))
-            scale[1] = min(scale[1], THICK * room[1] / thickness)
+            room = scale[1] * (high - low)[1]
+            scale[1] = min(scale[1], THICK * room / thickness)
         self._pixels = scale
         self._origin = box.mean(axis=0) - 0.5 * (low + high) * scale
         sizes = (highs - lows) * scale

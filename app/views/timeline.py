@@ -44,9 +44,7 @@ class Timeline(View):
         axis.minor_tick_line_alpha = 0.0
         self.add("area", "VArea", "x y2", y1=0, color=FORCE, alpha=0.16)
         self.add("paths", "MultiLine", "xs ys line_color line_width")
-        # Up to the edge it would leave dots there, as Bokeh clears no more than whole
-        # pixels.
-        look = {"y0": LOW, "y1": 0.95 * HIGH, "color": ERROR, "alpha": 0.5}
+        look = {"y0": LOW, "y1": HIGH, "color": ERROR, "alpha": 0.5}
         self.add("instant", "Segment", "", also="x", x0="x", x1="x", **look)
         self.add("now", "Scatter", color=FORCE, size=13)
         self.mark(PATHS | {"time": UNSEEN})

@@ -31,6 +31,8 @@ PARAMETERS = "parameters.csv"
 LOOP = "loop.csv"
 SETTINGS = "settings.toml"
 PAGE = "fit.html"
+ROUNDING = 1e-5
+"""Distance of a loop below which its digits tell nothing."""
 FILES = PARAMETERS, LOOP, SETTINGS, PAGE
 
 
@@ -133,14 +135,21 @@ def _bounds(fit: Fit) -> list[str]:
 
 def _distances(fit: Fit, measured: MeasuredLoop) -> str:
     """Line on the distances of the nearest and of the first run to the loop."""
-    near = f"{100.0 * fit.nearest.distance:.4g} %"
-    far = f"{100.0 * fit.first.distance:.4g} %"
+    near = _percent(fit.nearest.distance)
+    far = _percent(fit.first.distance)
     rows = f"{len(fit.nearest.differences)} of {len(measured.force)} rows"
     quantity = fit.nearest.beside.quantity
     return (
         f"{quantity}: {near} from {measured.source}, {far} before; "
         f"{fit.runs} runs, {rows}"
     )
+
+
+def _percent(distance: float) -> str:
+    """A distance in per cent; what is rounding has no digits."""
+    if 0.0 < distance < ROUNDING:
+        return f"less than {100.0 * ROUNDING:g} %"
+    return f"{100.0 * distance:.4g} %"
 
 
 def _rows(fit: Fit) -> list[list[str]]:

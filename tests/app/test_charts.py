@@ -11,7 +11,7 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import pytest
-from bokeh.models import ColorBar, ColumnDataSource
+from bokeh.models import ColorBar, ColumnDataSource, LogTicker
 from sweeps import tiny
 
 from app.charts import contours, in_units, keys, overlay, render
@@ -72,6 +72,19 @@ def test_values_are_drawn_in_units_that_are_read_but_what_a_scale_cannot_hold() 
     assert sorted(ys) == [["1.0", "2.0", "3.0"], ["1.0", "nan", "2.0"]]
     assert (figure.title.text, figure.yaxis.axis_label) == ("Curves", "Force (kN)")
     assert "> one<" in keys([PANEL])
+
+
+def test_a_short_logarithmic_axis_has_its_ticks_at_1_2_5() -> None:
+    across = PanelAxis("Deflection", "m", logarithmic=True, limits=(0.9e-3, 11e-3))
+    up = PanelAxis("Force", "N", logarithmic=True)
+    x = np.array([1e-3, 3e-3, 1e-2])
+    curve = PanelCurve("one", x, np.array([1.0, 500.0, 1e4]), 1)
+    figure = draw(Panel("Curves", across, up, (curve,)))
+    assert list(figure.xaxis.ticker.ticks) == [1.0, 2.0, 5.0, 10.0]
+    labels = figure.xaxis.major_label_overrides
+    assert [labels[tick] for tick in (1.0, 2.0, 5.0, 10.0)] == ["1", "2", "5", "10"]
+    # On a long one powers of ten have room alone.
+    assert isinstance(figure.yaxis.ticker, LogTicker)
 
 
 def test_a_run_that_did_not_converge_is_hollow_and_says_why() -> None:

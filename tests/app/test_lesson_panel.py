@@ -199,6 +199,11 @@ def test_a_frame_brings_the_quantities_that_a_lesson_names(frame: Frame) -> None
     )
     assert "**" in filled("{value:dissipation@1}", frame)
     assert PENDING in filled("{value:dissipation@1}", None)
+    # An iterate of a search is not what a text tells of.
+    searching = replace(frame, status=None)
+    assert PENDING in filled("{value:dissipation@1}", searching)
+    known = replace(searching, readings={"error_force@10": 0.2})
+    assert "20 %" in filled("{value:error_force@10}", known)
 
 
 def test_what_may_still_come_is_not_called_never(frame: Frame) -> None:

@@ -147,6 +147,8 @@ def test_the_tab_fits_shows_what_it_found_and_opens_it() -> None:
         tab.look()
     assert not folder.exists()
     assert "standard error" in tab.page.object, tab.progress.object
+    # Named as its owner does, and without digits of rounding.
+    assert "less than 0.001 % from made.csv" in tab.page.object
     tab.use()
     assert state.tab == "Live"
     assert state.settings.friction == 0.37

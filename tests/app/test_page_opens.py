@@ -189,3 +189,15 @@ def test_a_page_that_nobody_was_sent_asks_nothing_of_the_internet(
     sheets = [sheet.url for sheet in root.select({"type": ImportedStyleSheet})]
     assert sheets
     assert not [url for url in sheets if url.startswith("http")]
+
+
+@pytest.mark.usefixtures("orders", "document")
+@pytest.mark.parametrize("is_narrow", [False, True])
+def test_a_sheet_of_controls_has_the_picture_move_up_on_a_phone_alone(
+    is_narrow: bool,
+) -> None:
+    page = Page(PageState(default_settings("fault"), is_narrow=is_narrow))
+    page.template.sidebar_open = True
+    assert ("with-sheet" in page._live.view.css_classes) == is_narrow
+    page.template.sidebar_open = False
+    assert "with-sheet" not in page._live.view.css_classes

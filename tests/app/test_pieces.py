@@ -283,12 +283,14 @@ def test_the_view_says_what_fits_keeps_its_scales_and_selects_by_a_tap() -> None
     assert len(view.sources["selected"].data["x"])
 
 
-def on_a_projector(width: float, height: float) -> PiecesView:
-    """The pieces of a bar in a figure of a size, px, with large type."""
-    frame = frame_of(settings_of("bar"), 2)
+def on_a_projector(
+    width: float, height: float, scene: str = "bar", size: str = "23px"
+) -> PiecesView:
+    """The pieces of a scene in a figure of a size, px, with large type."""
+    frame = frame_of(settings_of(scene), 2)
     view = PiecesView(PageState(frame.run.settings))
     assert view.figure is not None
-    view.magnify("23px")
+    view.magnify(size)
     view._size = {"inner_width": width, "inner_height": height}
     view.update(frame, Selection(), None)
     return view
@@ -297,11 +299,25 @@ def on_a_projector(width: float, height: float) -> PiecesView:
 @pytest.mark.parametrize("height", [260.0, 210.0])
 def test_words_on_a_projector_leave_the_pieces_free(height: float) -> None:
     view = on_a_projector(400.0, height)
-    lines = words(view).splitlines()
+    (text,) = view.sources["words"].data["text"]
+    lines = text.splitlines()
     assert lines[0].startswith("Linear stage")
     (top,) = view.sources["words"].data["y"]
     highest = np.nanmax(view.sources["pieces"].data["y"])
     assert highest < top - 23.0 * len(lines)
+
+
+@pytest.mark.parametrize("scene", ["block", "fault"])
+def test_words_stand_beside_high_pieces_which_are_larger_so(scene: str) -> None:
+    view = on_a_projector(690.0, 220.0, scene, "19px")
+    (text,) = view.sources["words"].data["text"]
+    lines = text.splitlines()
+    assert len(lines) > 4
+    pieces = view.sources["pieces"].data
+    assert 0.5 * 19.0 * max(map(len, lines)) < np.nanmin(pieces["x"])
+    assert np.nanmax(pieces["y"]) - np.nanmin(pieces["y"]) > 0.4 * 220.0
+    (top,) = view.sources["words"].data["y"]
+    assert top - 19.0 * len(lines) > 0.0
 
 
 def test_pieces_are_drawn_in_a_figure_that_is_too_small_for_words() -> None:

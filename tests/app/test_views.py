@@ -28,8 +28,9 @@ from app.views.errors import CURVES, HEIGHT, LEAST, WIDTH, Convergence
 from app.views.loops import HysteresisLoop
 from app.views.pieces import PiecesView
 from app.views.rope import AxialForces
-from app.views.scene import Stress
+from app.views.scene import Scene, Stress
 from app.views.status_map import StatusMap
+from app.views.timeline import Timeline
 from app.views.view import View
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -564,3 +565,15 @@ def test_a_chart_of_few_cycles_says_how_many_tell_how_slip_goes_on() -> None:
     cycles = frame.extras["cycles"]
     assert len(cycles["energy"]) == 2
     assert cycles["text"] == "how slip goes on is told from 3 cycles on"
+
+
+@pytest.mark.parametrize("kind", [Scene, Timeline, *VIEWS])
+def test_the_edge_of_a_canvas_which_bokeh_does_not_clear_is_left_free(
+    kind: type[View],
+) -> None:
+    figure = kind(PageState(default_settings("bar"))).figure
+    for side in ("left", "top"):
+        border = getattr(figure, f"min_border_{side}")
+        if border is None:
+            border = figure.min_border
+        assert border >= 1
