@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
+from weakref import WeakSet
 
 import panel as pn
 import param
@@ -38,15 +39,19 @@ after all. Scripts in the page stay allowed, as Bokeh has no nonces for its own:
 `script-src 'self'` there would be no page."""
 PAUSE = 0.02
 """Time between two pages that are made, in which the server answers others, s."""
+OPENING = 20
+"""Number of pictures for which a page that opens is left time, before others have their
+next one. It takes the server as long as a hundred."""
 QUIET = 60.0
 """Least time between two errors of one log that are written, s."""
 
 
 class Pages:
-    """A count of the pages that are open."""
+    """A count of the pages that are open, and states of those that show nothing yet."""
 
     def __init__(self) -> None:
         self.count = 0
+        self.opening: WeakSet[object] = WeakSet()
 
     def enter(self) -> bool:
         """Count a page, if there is room for it."""
@@ -57,6 +62,14 @@ class Pages:
     def leave(self) -> None:
         """Count a page no more."""
         self.count -= 1
+
+    def pause(self, seconds: float) -> float:
+        """Time that a page leaves the others after a piece of work that took some, s.
+
+        Each of them may need as long, and more of it while it opens.
+        """
+        others = self.count - 1 + OPENING * len(self.opening)
+        return max(others, 0) * seconds
 
 
 PAGES = Pages()
