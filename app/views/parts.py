@@ -118,7 +118,7 @@ def laid_out_alone(plot: LayoutDOM) -> pn.pane.Bokeh:
 
 @contextmanager
 def come_last(panes: Sequence[pn.pane.Bokeh], document: Any) -> Iterator[None]:
-    """Have figures that are laid out alone come to a page after all that comes meanwhile.
+    """Have figures that are laid out alone come to a page after what comes meanwhile.
 
     All goes in one message. Panel goes through all models of what is new several times,
     and most of these are the figures'.
