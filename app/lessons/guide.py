@@ -187,7 +187,8 @@ class Guide:
         """
         if not self._rises:
             self._rises = True
-            self.view.jscallback(children=TO_TOP, visible=TO_TOP)
+            self.view.jscallback(children=TO_TOP)
+            self.view.jscallback(visible=TO_TOP)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
         """Make a figure to draw on for a question; in its answer reveal the curve."""
