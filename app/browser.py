@@ -297,8 +297,8 @@ class Display:
             for view in self.views:
                 if view.is_held:
                     view.hold(False)
-        # Each of the other pages may take as long as this one took.
-        pause = self._sent_at + (PAGES.count - 1) * self._took - time.monotonic()
+        PAGES.opening.discard(self._state)
+        pause = self._sent_at + PAGES.pause(self._took) - time.monotonic()
         if pause < SHORTEST:
             self._go_on()
         else:

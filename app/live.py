@@ -16,7 +16,7 @@ from app.status import figures_line, status_line
 from app.transport import Transport
 from app.views.catalogue import CARDS, LARGE_CARDS
 from app.views.layout import shape_of
-from app.views.parts import laid_out_alone
+from app.views.parts import come_last, laid_out_alone
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.views.view import TEXT, View
@@ -100,11 +100,15 @@ class Live:
         self._is_open = True
         self.arrange(kinds)
         boxes = (self._scene, self._timeline)
+        panes = [card.pane for card in self._cards if card.pane is not None]
         for box, view in zip(boxes, self._views, strict=True):
-            box.append(laid_out_alone(view.figure))
+            pane = laid_out_alone(view.figure)
+            panes.append(pane)
+            box.append(pane)
             view.hold(True)
         # All at once: each change goes through all models of the document.
-        self.view.extend([self._scene, self._times, self._plots])
+        with come_last(panes, self._document):
+            self.view.extend([self._scene, self._times, self._plots])
 
     # What changes within a hold is sent at once, and in this order.
     @pn.io.hold()
@@ -245,13 +249,14 @@ class Live:
 
 
 class Card:
-    """Views that share a place as tabs; `seen` is the one in sight."""
+    """Views that share a place as tabs; `seen` is the one in sight, in its `pane`."""
 
     def __init__(self, views: list[View], state: PageState) -> None:
         self._state = state
         self.views = views
         self.kinds: Kinds = tuple([type(view) for view in views])
         self.seen: View | None = None
+        self.pane: pn.pane.Bokeh | None = None
         self._offered: list[View] = []
         # Beside them is the mark of what the plot shows.
         look = {"margin": (0, 28, 0, 0), **looks("small-tabs")}
@@ -282,10 +287,12 @@ class Card:
         self.tabs.param.active.bounds = (0, max(len(offered) - 1, 0))
         self.tabs.param.update(items=[view.name for view in offered], active=active)
         if is_turned:
+            self.pane = None
             if seen is not None:
                 meaning = MEANINGS[seen.name]
                 self._about.object = html("term.html", term="?", meaning=meaning)
-                self.view[:] = [self.tabs, self._about, self._pane(seen)]
+                self.pane = self._pane(seen)
+                self.view[:] = [self.tabs, self._about, self.pane]
             else:
                 self.view[:] = [self.tabs]
 

@@ -217,6 +217,7 @@ class Page:
         """Leave the class, and end the worker of a page that was closed."""
         self._member.close()
         self._supervisor.end()
+        PAGES.opening.discard(self.state)
         PAGES.leave()
 
     def _header(self) -> pn.Row:
@@ -387,6 +388,7 @@ def open_page() -> pmui.Page:
     iteration = shown.pop("iteration", 0)
     show(state, shown)
     begin_with_class(state)
+    PAGES.opening.add(state)
     page = Page(state, iteration)
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(page.end)

@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import SplitResult, urlsplit
+from weakref import WeakSet
 
 import panel as pn
 import param
@@ -38,15 +39,46 @@ after all. Scripts in the page stay allowed, as Bokeh has no nonces for its own:
 `script-src 'self'` there would be no page."""
 PAUSE = 0.02
 """Time between two pages that are made, in which the server answers others, s."""
+OPENING = 20
+"""Number of pictures for which a page that opens is left time, before others have their
+next one. It takes the server as long as a hundred."""
+LOOKS = {
+    "attached",
+    "auto_scroll_limit",
+    "button_style",
+    "button_type",
+    "color",
+    "dark_theme",
+    "description",
+    "description_delay",
+    "disable_elevation",
+    "end_icon",
+    "href",
+    "icon",
+    "icon_size",
+    "orientation",
+    "scroll",
+    "scroll_button_threshold",
+    "sx",
+    "target",
+    "theme_config",
+    "use_shadow_dom",
+    "value_label",
+    "variant",
+    "view_latest",
+}
+"""Names of parameters of components that say how these look, beside sizes and margins,
+and that a page has ten copies of or more."""
 QUIET = 60.0
 """Least time between two errors of one log that are written, s."""
 
 
 class Pages:
-    """A count of the pages that are open."""
+    """A count of the pages that are open, and states of those that show nothing yet."""
 
     def __init__(self) -> None:
         self.count = 0
+        self.opening: WeakSet[object] = WeakSet()
 
     def enter(self) -> bool:
         """Count a page, if there is room for it."""
@@ -57,6 +89,14 @@ class Pages:
     def leave(self) -> None:
         """Count a page no more."""
         self.count -= 1
+
+    def pause(self, seconds: float) -> float:
+        """Time that a page leaves the others after a piece of work that took some, s.
+
+        Each of them may need as long, and more of it while it opens.
+        """
+        others = self.count - 1 + OPENING * len(self.opening)
+        return max(others, 0) * seconds
 
 
 PAGES = Pages()
@@ -126,14 +166,14 @@ def lighten() -> None:
 
 
 def share_looks() -> None:
-    """Have components of a kind share the definitions of their sizes and margins.
+    """Have components of a kind share the definitions of their looks.
 
     Param copies a definition for each component that asks for it, as it may be changed
-    or referred to there: a page has 1800 copies. Nothing does so with these.
+    or referred to there: a page has 2300 copies. Nothing does so with these.
     """
-    looks = set(Layoutable.param) - {"name", "visible"}
+    looks = set(Layoutable.param) - {"name", "visible"} | LOOKS
     for kind in param.descendents(Layoutable):
-        for name in looks:
+        for name in looks & set(kind.param):
             kind.param[name].per_instance = False
 
 

@@ -71,7 +71,7 @@ class Guide:
         self._shown: tuple[str, str, bool] | None = None
         self._type = TEXT
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8))
-        self.view.jscallback(children=TO_TOP)
+        self._rises = False
         self.dialogs = {
             "lesson": dialog("Lessons", width_option="md"),
             "case": dialog("Cases of the trade", width_option="md"),
@@ -168,6 +168,7 @@ class Guide:
             readings = [case.quantity.name]
         state.readings = readings
         if parts:
+            self._rise()
             self.view[:] = parts
         self._changed()
         if not parts:
@@ -176,6 +177,18 @@ class Guide:
         # At last, as it plays what the plots beside show.
         if lesson is not None:
             self._look(lesson)
+
+    def _rise(self) -> None:
+        """Have texts begin at their top from the first one on.
+
+        Panel looks for callbacks of this kind in all of a page that has one, whenever
+        anything new comes to it. The first text comes before the callback does: it is
+        still hidden then.
+        """
+        if not self._rises:
+            self._rises = True
+            self.view.jscallback(children=TO_TOP)
+            self.view.jscallback(visible=TO_TOP)
 
     def _prepare_curve(self, lesson: Lesson) -> None:
         """Make a figure to draw on for a question; in its answer reveal the curve."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import panel as pn
@@ -115,3 +116,20 @@ def laid_out_alone(plot: LayoutDOM) -> pn.pane.Bokeh:
         elements=[own_root], sizing_mode="stretch_both", min_height=plot.min_height
     )
     return pn.pane.Bokeh(room, margin=0)
+
+
+@contextmanager
+def come_last(panes: Sequence[pn.pane.Bokeh], document: Any) -> Iterator[None]:
+    """Have figures that are laid out alone come to a page after what comes meanwhile.
+
+    All goes in one message. Panel goes through all models of what is new several times,
+    and most of these are the figures'.
+    """
+    rooms = [pane.object for pane in panes]
+    figures = [room.elements for room in rooms]
+    with pn.io.hold(document), document.models.freeze():
+        for room in rooms:
+            room.elements = []
+        yield
+        for room, elements in zip(rooms, figures, strict=True):
+            room.elements = elements

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import signal
 import threading
 import time
@@ -20,11 +19,6 @@ from app.worker.references import LastAnswer, ReferenceCache
 from app.worker.runner import Runner
 from solver.refusal import RefusedError
 
-NICENESS = 5
-NICEST = 19
-"""Niceness of a worker that is alone, and of one beside fourteen others or more. The
-server goes first: thirty workers at 5 would leave it a fifth of a processor. At 10 the
-first picture of a worker that is alone waits 0.1 s longer."""
 UNSEEN = 30.0
 """Time without a picture on the screen after which a run waits, as it is unseen, s."""
 LONG = 60.0
@@ -35,9 +29,8 @@ HEARTBEAT = 2.0
 """Time between two signs of life, s."""
 
 
-def main(connection: Connection, others: int) -> None:
+def main(connection: Connection) -> None:
     """Take orders until the server, or the page, is gone."""
-    os.nice(min(NICENESS + others, NICEST))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The status of a run says that it diverges: NumPy need not warn of it, too.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
+from weakref import WeakSet
 
 import numpy as np
 import pytest
@@ -178,6 +179,7 @@ def test_of_many_pages_each_leaves_the_others_time(
     display = Display(state, document, lambda: None)
     monkeypatch.setattr("app.browser.time.thread_time", itertools.count().__next__)
     monkeypatch.setattr(app.browser.PAGES, "count", 31)
+    monkeypatch.setattr(app.browser.PAGES, "opening", WeakSet())
     state.frame = answer
     state.frame = replace(answer)
     sent = display.pulse.sent
@@ -187,6 +189,15 @@ def test_of_many_pages_each_leaves_the_others_time(
     assert milliseconds > 20
     go_on()
     assert display.pulse.sent == sent + 1
+    # More if they open, until their first picture is painted.
+    others = [PageState(answer.run.settings) for _ in range(10)]
+    for other in (state, *others):
+        app.browser.PAGES.opening.add(other)
+    display.pulse.painted = display.pulse.sent
+    state.frame = answer
+    ((_, later_on),) = later[1:]
+    assert later_on > 5 * milliseconds
+    assert set(app.browser.PAGES.opening) == set(others)
 
 
 def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(

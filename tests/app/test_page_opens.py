@@ -12,7 +12,9 @@ import panel as pn
 import pytest
 from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
+from bokeh.plotting import figure
 from panel.io.state import set_curdoc
+from panel.links import Callback
 from panel.util import edit_readonly
 
 import app.supervisor
@@ -23,6 +25,7 @@ from app.page import Page, open_page
 from app.server import PAGES
 from app.state import PageState, default_settings
 from app.status import status_line
+from app.views.parts import come_last, laid_out_alone
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 
@@ -98,6 +101,47 @@ def test_figures_that_come_in_sight_are_painted_once_the_browser_has_laid_them_o
     assert pulse.painted < pulse.sent
     pulse.painted = pulse.sent
     assert not held()
+
+
+def opened(document: Document) -> Page:
+    """A page as a browser has it, before its first picture."""
+    page, _ = small_page()
+    page.template.server_doc(doc=document)
+    page._fill()
+    return page
+
+
+def test_figures_come_to_a_page_after_what_comes_meanwhile(document: Document) -> None:
+    plot = figure()
+    pane = laid_out_alone(plot)
+    around = pn.Column()
+    around.server_doc(doc=document)
+    with come_last([pane], document):
+        around.append(pane)
+        assert not pane.object.elements
+    assert pane.object.document is plot.document is document
+    (root,) = pane.object.elements
+    assert root.elements == [plot]
+
+
+@pytest.mark.usefixtures("orders")
+def test_panel_looks_for_callbacks_in_pages_that_were_in_a_lesson_alone(
+    document: Document,
+) -> None:
+    page = opened(document)
+    (text,) = [
+        model
+        for model in document.models
+        if "lesson" in getattr(model, "css_classes", [])
+    ]
+    page.loaded()
+    assert page._guide.view not in Callback.registry
+    assert not text.js_property_callbacks
+    for name in list(LESSONS)[:2]:
+        page._guide._open("lesson", name)
+        # A first text comes before its callback, and is seen after that.
+        assert set(text.js_property_callbacks) == {"change:children", "change:visible"}
+        assert text.visible
 
 
 @pytest.mark.usefixtures("orders")

@@ -146,3 +146,35 @@ def test_a_worker_that_takes_no_orders_keeps_nobody_waiting_and_leaves_nothing()
         timeout=PATIENCE,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, b"[] 1\n", b"")
+
+
+GIVES_WAY = """
+import multiprocessing, threading
+from app.worker.process import Worker, niceness
+
+first, *more = workers = [Worker(lambda worker, report: None, n) for n in range(3)]
+pids = [process.pid for process in multiprocessing.active_children()]
+print([niceness(pid) - niceness() for pid in pids])
+first.end()
+late = Worker(lambda worker, report: None, 2)
+workers = [*more, late, Worker(lambda worker, report: None, 40)]
+pids = [process.pid for process in multiprocessing.active_children()]
+print([niceness(pid) for pid in pids])
+for worker in workers:
+    worker.end()
+"""
+
+
+def test_all_workers_give_the_same_way_to_a_server_of_many_pages() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", GIVES_WAY],
+        cwd=Path(__file__).resolve().parents[2],
+        capture_output=True,
+        check=False,
+        timeout=PATIENCE,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (
+        0,
+        b"[7, 7, 7]\n[19, 19, 19, 19]\n",
+        b"",
+    )
