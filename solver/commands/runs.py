@@ -42,6 +42,7 @@ from solver.study.mesh import (
     decides,
     size_of,
     three_of,
+    undivided,
     value_on,
     which_to_refine,
 )
@@ -100,15 +101,20 @@ def _mesh(chosen: argparse.Namespace) -> int:
     if not settings.MESH:
         instants = _refined(settings, ["instants"], asked, values)
         print("Elements: They are those of the mesh, refined where it was made.")
-        print(f"Instants: {answer(instants, asked.unit, TIME_STEP)}")
+        print(f"Instants: {_on_instants(settings, instants, asked)}")
         return 0 if instants.is_told else 1
     elements = _refined(settings, settings.MESH, asked, values)
     instants = _refined(settings, ["instants"], asked, values)
     print(f"Elements: {answer(elements, asked.unit)}")
-    print(f"Instants: {answer(instants, asked.unit, TIME_STEP)}")
+    print(f"Instants: {_on_instants(settings, instants, asked)}")
     if which := which_to_refine(elements, instants):
         print(which)
     return 0 if which else 1
+
+
+def _on_instants(settings: Settings, instants: Refinement, asked: Quantity) -> str:
+    """Sentences on numbers of instants, and on steps that none of them divides."""
+    return f"{answer(instants, asked.unit, TIME_STEP)} {undivided(settings)}".rstrip()
 
 
 def _refined(

@@ -193,8 +193,9 @@ Axes = tuple[tuple[str, str], tuple[str, str]]
 class Loop:
     """A force over the displacement that it works on; its area is dissipated energy.
 
-    Or a force, or a displacement, over the quantity that drives it: then the loop shows
-    how it lags behind.
+    Of parallel wires, each pulled by the force, the area is one's share of it. Or a
+    force, or a displacement, over the quantity that drives it: then the loop shows how
+    it lags behind.
 
     Attributes
     ----------

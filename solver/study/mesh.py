@@ -147,6 +147,21 @@ def _three_steps(settings: Settings) -> tuple[list[Settings], int]:
     return [settings, *finer], 0
 
 
+def undivided(settings: Settings) -> str:
+    """Sentence on steps that no number of instants of the study divides, or ""."""
+    three, own = _three_steps(settings)
+    times = np.concatenate([[0.0], three[own].times()])
+    # Numbers of the finest instants up to and before each of these.
+    finest = three[-1].times()
+    up_to = np.searchsorted(finest, times, side="right")
+    before = np.searchsorted(finest, times, side="left")
+    stay = (before[1:] == up_to[:-1]) & (np.diff(times) > 0.0)
+    if not stay.any():
+        return ""
+    longest = float(np.diff(times)[stay].max())
+    return f"Steps of up to {longest:.3g} s between points of a load stay as they are."
+
+
 def _steps_of(settings: Settings) -> int:
     """Number of equal steps of which none is longer than the longest of a run."""
     longest = float(np.diff(settings.times(), prepend=0.0).max())

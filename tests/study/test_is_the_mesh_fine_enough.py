@@ -18,6 +18,7 @@ from solver.study.mesh import (
     Refinement,
     answer,
     three_of,
+    undivided,
 )
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
@@ -116,6 +117,13 @@ def test_steps_are_halved_also_where_points_of_the_load_make_them(
     longest = [np.diff(each.times(), prepend=0.0).max() for each in three]
     assert longest[1] <= 0.5 * longest[0] * (1.0 + 1e-9)
     assert longest[2] <= 0.5 * longest[1] * (1.0 + 1e-9)
+
+
+def test_steps_of_a_narrow_peak_are_said_to_stay() -> None:
+    peak = [[0.5, 0.0], [0.501, 900.0], [0.502, 0.0]]
+    settings = CATALOGUE["bar"].checked({"instants": 11, "load": peak})
+    assert "up to 0.001 s" in undivided(settings)
+    assert undivided(CATALOGUE["bar"].checked({"instants": 11})) == ""
 
 
 def test_of_a_mesh_of_ones_own_instants_alone_are_refined(

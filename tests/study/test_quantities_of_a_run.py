@@ -148,6 +148,29 @@ def test_wires_that_stretch_alike_rub_by_nothing_and_could_hold_by_all() -> None
     assert taken("holding_force", run) == pytest.approx(1500.0 * (1.0 - 0.5 / 6.0))
 
 
+def test_a_block_that_only_its_side_holds_presses_on_nothing() -> None:
+    """Rounding of its weight along the support pressed, rubbed, and slid as a whole."""
+    run = ran(
+        "block",
+        top="free",
+        right="roller",
+        gap="parabola",
+        radius=5e4,
+        height=0.001,
+        length=0.08,
+        body_force_x=-5e8,
+        elements=22,
+        elements_up=6,
+        instants=4,
+        substructures=11,
+        substructures_up=3,
+    )
+    assert run.solution.is_certified
+    names = ("peak_pressing", "peak_pressure", "peak_friction", "peak_slip")
+    names += ("holding_friction", "holding_force", "contact_width", "dissipation")
+    assert {name: taken(name, run) for name in names} == dict.fromkeys(names, 0.0)
+
+
 def test_what_holds_one_side_balances_the_other() -> None:
     """Layers bent at one end and held at the other carry nothing else along y."""
     run = ran("layers", elements=12, instants=11, substructures=2)

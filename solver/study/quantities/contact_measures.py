@@ -203,8 +203,9 @@ def peak_friction(run: FinishedRun) -> float:
     """Largest sum over all points of the size of the friction force, N."""
     contacts = run.problem.rubbing
     sums = np.empty((len(contacts), run.problem.n_instants))
-    for law, numbers, _, forces in contacts.stacks:
-        size = np.abs(run.iterate.contact_force[forces[-1]])
+    for law, numbers, places, forces in contacts.stacks:
+        is_open = run.iterate.status[places] == OPEN
+        size = np.where(is_open, 0.0, np.abs(run.iterate.contact_force[forces[-1]]))
         for number, (points, _) in zip(numbers, law.ranges, strict=True):
             sums[number] = law.copies * np.add.reduce(size[points])
     return float(sums.sum(axis=0).max())
@@ -213,11 +214,12 @@ def peak_friction(run: FinishedRun) -> float:
 def _pressing(run: FinishedRun, name: str) -> Array:
     """Pressing force at an interface, shape (n_points, n_instants), N.
 
-    The force is an unknown only in scenes whose contacts open.
+    The force is an unknown only in scenes whose contacts open. Where a point is open,
+    rounding alone leaves something of it.
     """
-    force = run.iterate.contact(name).normal_force
-    assert force is not None
-    return force
+    contact = run.iterate.contact(name)
+    assert contact.normal_force is not None
+    return np.where(contact.status == OPEN, 0.0, contact.normal_force)
 
 
 @quantity("Largest pressing force, all points", "N", applies=_opens)

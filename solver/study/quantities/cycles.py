@@ -53,6 +53,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
     scales = iterate.problem.scales
     displacement = iterate.local_displacement
     force = iterate.boundary_local_force
+    least_force = RESIDUE * float(np.abs(force).max(initial=0.0))
     for stacked in iterate.problem.rubbing.stacks:
         law = stacked.law
         if law.is_spring:
@@ -65,7 +66,10 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
         slip[np.abs(slip) <= RESIDUE * max(moved)] = 0.0
         # On its image a body moves by half of the slip.
         slip *= law.slip_ratio * scales.displacement
-        yield stacked, slip, force[law.tangent.above] * slip * -scales.force
+        # Nor does what slides take energy where rounding alone presses it.
+        friction = force[law.tangent.above]
+        friction = np.where(np.abs(friction) <= least_force, 0.0, friction)
+        yield stacked, slip, friction * slip * -scales.force
 
 
 @dataclass(frozen=True, eq=False)

@@ -111,15 +111,17 @@ def _hold(run: FinishedRun, name: str, determinate: Flags) -> _Hold:
     `determinate` says where the friction is determinate, shape (n_points, n_instants).
     """
     contact = run.iterate.contact(name)
-    pressing = _pressing_by_friction(run, name)
     status = contact.status
+    # Rounding presses at points that are open, and rubs there.
+    is_open = status == OPEN
+    pressing = np.where(is_open, 0.0, _pressing_by_friction(run, name))
+    friction = np.where(is_open, 0.0, contact.tangential_force)
     # Points that carry no friction cannot keep the others from sliding.
-    is_free = (status == OPEN) | ~determinate | (pressing <= 0.0)
+    is_free = is_open | ~determinate | (pressing <= 0.0)
     forward = ((status == 1) | is_free).all(axis=0)
     backward = ((status == -1) | is_free).all(axis=0)
     slides = (forward | backward) & ~is_free.all(axis=0)
-    carried = contact.tangential_force.sum(axis=0)
-    return _Hold(pressing.sum(axis=0), carried, slides)
+    return _Hold(pressing.sum(axis=0), friction.sum(axis=0), slides)
 
 
 def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
