@@ -297,7 +297,6 @@ class Display:
             for view in self.views:
                 if view.is_held:
                     view.hold(False)
-        PAGES.opening.discard(self._state)
         pause = self._sent_at + PAGES.pause(self._took) - time.monotonic()
         if pause < SHORTEST:
             self._go_on()

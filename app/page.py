@@ -198,6 +198,7 @@ class Page:
         """Show the figures once a browser is there, and go on or follow a class."""
         self._supervisor.open()
         self._live.open(kinds_beside(self.state))
+        PAGES.opening.discard(self.state)
         if not self.state.room:
             self._live.display.pulse.on_change("painted", self._go_on)
         elif not self._member.enter(self.state.room):

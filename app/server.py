@@ -41,7 +41,7 @@ PAUSE = 0.02
 """Time between two pages that are made, in which the server answers others, s."""
 OPENING = 20
 """Number of pictures for which a page that opens is left time, before others have their
-next one. It takes the server as long as a hundred."""
+next one. It takes the server as long as fifty."""
 LOOKS = {
     "attached",
     "auto_scroll_limit",
@@ -74,7 +74,7 @@ QUIET = 60.0
 
 
 class Pages:
-    """A count of the pages that are open, and states of those that show nothing yet."""
+    """A count of the pages that are open, and states of those that are still made."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -93,7 +93,7 @@ class Pages:
     def pause(self, seconds: float) -> float:
         """Time that a page leaves the others after a piece of work that took some, s.
 
-        Each of them may need as long, and more of it while it opens.
+        Each of them may need as long, and more while it is made.
         """
         others = self.count - 1 + OPENING * len(self.opening)
         return max(others, 0) * seconds

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -221,6 +221,21 @@ def test_a_page_does_not_follow_how_busy_the_server_is() -> None:
         pn.state.busy = True
         assert not page.template.busy
         pn.state.busy = False
+
+
+@pytest.mark.usefixtures("orders", "document")
+def test_pages_leave_time_to_one_that_is_made_until_a_browser_has_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    loads: list[Callable[[], None]] = []
+    monkeypatch.setattr(pn.state, "onload", loads.append)
+    monkeypatch.setattr(PAGES, "count", 1)
+    alone = PAGES.pause(1.0)
+    open_page()
+    assert PAGES.pause(1.0) > alone + 10.0
+    (load,) = loads
+    load()
+    assert PAGES.pause(1.0) == alone + 1.0
 
 
 @pytest.mark.usefixtures("orders")
