@@ -12,9 +12,10 @@ from solver.latin import Ending, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
 from solver.reference.rules import rules_of
-from solver.scenes import discretise
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
+from solver.study.quantities.finished import finished_run
 from solver.study.stability import Verdict, judge, run
 
 BLOCK = (
@@ -132,3 +133,40 @@ def test_an_error_is_that_of_friction_and_of_next_to_nothing_beside_the_pressure
     )
     fields = SimpleNamespace(displacement=nowhere, contact_force=wrong)
     assert distance.of_friction_force(fields) == pytest.approx(error, rel=1e-2)
+
+
+def test_where_all_slips_a_proven_answer_has_its_displacement_too() -> None:
+    """Forces are their bounds at once, and wires were 0.9 % from where they come to."""
+    settings = CATALOGUE["strand"].checked(
+        {
+            "method": "paper",
+            "linear_stage": "pgd",
+            "pgd_pairs": 6,
+            "accuracy": 1e-4,
+            "tolerance": 1e-3,
+            "max_iterations": 500,
+            "relaxation": 0.9827,
+            "substructures": 2,
+            "elements": 2,
+            "instants": 1,
+            "duration": 0.92959,
+            "wires": 6,
+            "peak": 411.289,
+            "grip": "displacement",
+            "young": 1.02293e8,
+            "section": 5.92203e-7,
+            "pressure_load": [[0.04602, 1270.0], [0.06209, 4196.7], [0.8, 2500.0]],
+            "friction_factors": [
+                [1, 8.9983],
+                [2, 6.1487],
+                [3, 0.48543],
+                [4, 2.34577],
+                [5, 8.5168],
+            ],
+        }
+    )
+    solution = finished_run(settings).solution
+    last = solution.records[-1]
+    assert solution.status.ending is Ending.CONVERGED
+    assert not solution.is_certified
+    assert max(last.error_force, last.error_displacement) <= settings.accuracy

@@ -322,7 +322,12 @@ class StopState:
         """Status of a run that is accurate enough, None if that needs a proof first."""
         estimate = self.estimate
         if estimate.is_proven:
-            return PROVEN
+            # Without a search the iterate is the answer, and its displacement, too, has
+            # to be near: where all slips, forces are right long before.
+            accuracy = self._stop.accuracy
+            if self._searches or estimate.is_proven_within(accuracy, iterate):
+                return PROVEN
+            return None
         # An estimate counts for nothing on bases, or where a step is worth its cost.
         if estimate.needs_proof or estimate.can_be_proven(iterate):
             return None
