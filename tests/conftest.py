@@ -91,10 +91,10 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Together:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtestloop() -> None:
-    """Keep the garbage collector from searching the imported modules again."""
-    gc.enable()
-    gc.collect()
+    """Keep the garbage collector from searching the imported modules."""
+    # What of them is garbage stays: to find it takes a third of a second a process
     gc.freeze()
+    gc.enable()
     # Pages and figures are rings of thousands of models: as the server does
     gc.set_threshold(50_000, 20, 20)
 
