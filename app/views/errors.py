@@ -208,6 +208,8 @@ class Convergence(ErrorPlot):
         size = self._size_of(text)
         (level,) = self._heights([goal])
         taken = self._taken()
+        # Few of the points are near enough.
+        taken = taken[np.abs(taken[:, 1] - level) < size[1]]
         places = []
         for left in np.linspace(1.0 - size[0], 0.0, STEPS):
             for foot in (level, level - size[1]):
@@ -230,7 +232,7 @@ class Convergence(ErrorPlot):
 
         They are as close to each other as the letters of words.
         """
-        fine = np.linspace(0.0, 1.0, round(2.0 * self._size["inner_width"]))
+        fine = np.linspace(0.0, 1.0, round(self._size["inner_width"]))
         points = [np.zeros((0, 2))]
         for name in (*CURVES, "ghost"):
             data = self.sources[name].data
