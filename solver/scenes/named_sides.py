@@ -150,16 +150,15 @@ class MeshSides:
             edges = [frozenset(edge) for edge in pairwise(line.nodes.tolist())]
             is_free = [(deed, line.body, edge) not in taken for edge in edges]
             taken.update((deed, line.body, edge) for edge in edges)
-            runs = _runs(is_free)
-            for number, run in enumerate(runs, start=1):
+            for number, run in enumerate(_runs(is_free), start=1):
                 label = name
                 if number > 1:
                     label = f"{name}, part {number}"
                 nodes = line.nodes[run.start : run.stop + 1]
-                pressure = inwards[deed]
-                load = Load.of_pressure(label, line.body, body, nodes, pressure)
+                inward = inwards[deed]
+                load = Load.of_pressure(label, line.body, body, nodes, inward)
                 # It is named as the setting is.
-                yield replace(load, pressure=pressure)
+                yield replace(load, pressure=inward)
 
     def _acted(self) -> Iterator[_Acted]:
         """Yield the deeds on all lines; of one name and body they have numbers."""

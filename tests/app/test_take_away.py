@@ -138,8 +138,8 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
     assert {"x, m", "t, s", "slip, m", "status"} <= set(read.columns)
     # A force per area and one per length are named as on the plot.
     (head,) = [name for name in read.columns if name.startswith("friction")]
-    is_plane = frame.run.settings.kind == "plane"
-    assert head == ("friction traction, Pa" if is_plane else "friction force, N/m")
+    heads = {"plane": "friction traction, Pa"}
+    assert head == heads.get(frame.run.settings.kind, "friction force, N/m")
     several = len(frame.run.interfaces) > 1
     assert ("contact" in read.columns) == several
     brought = results_in(table_of(text.encode(), "contact.csv"), frame.run.settings)
@@ -158,8 +158,9 @@ def test_contact_is_read_again_as_results_and_by_pandas(scene: str) -> None:
         np.testing.assert_array_equal(
             results.values.astype("f4").reshape(shape), fields.friction
         )
-        times = results.times.reshape(shape)[0]
-        np.testing.assert_array_equal(times.astype("f4"), frame.run.instants)
+        np.testing.assert_array_equal(
+            results.times.reshape(shape)[0].astype("f4"), frame.run.instants
+        )
 
 
 @pytest.mark.parametrize("scene", SMALL)

@@ -395,10 +395,9 @@ def test_the_name_of_the_goal_is_at_its_line_and_on_no_curve(
 ) -> None:
     last = frames_of("bar")[1]
     # Curves fall through the line of the goal, some at the beginning, some at the end.
-    iterations = np.arange(1.0, count + 1.0)
-    shares = iterations / count
+    shares = np.arange(1.0, count + 1.0) / count
     history = dict.fromkeys(last.history, 10.0 ** (-2.0 * shares))
-    history |= {"iteration": iterations, "indicator": 10.0 ** (-decades * shares)}
+    history |= {"iteration": count * shares, "indicator": 10.0 ** (-decades * shares)}
     history["behaviour"] = 10.0 ** (1.0 - decades * shares**2)
     view = view_of(Convergence, replace(last, iteration=count, history=history))
     goal = view.sources["goal name"].data
