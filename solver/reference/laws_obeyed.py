@@ -109,7 +109,8 @@ def law_residuals(
     displacement = answer.displacement / problem.scales.displacement
     force = answer.contact_force / problem.scales.force
     held, prescribed = _prescribed(problem)
-    missing, size = _missing_force(problem, displacement, force, held)
+    deformation = _deformation(problem, displacement)
+    missing, size = _missing_force(problem, displacement, deformation, force, held)
     interfaces = _interface_fields(problem, displacement, force)
     length = ROUNDED * max(largest_size(displacement), size * _softest(problem))
     length = max(length, size / _stiffest(problem))
@@ -118,7 +119,7 @@ def law_residuals(
     balance = [np.delete(missing, held, axis=0)]
     glued = 0.0
     if rows is not None:
-        balance += _balance_of_parts(problem, displacement, rows.force)
+        balance += _balance_of_parts(problem, deformation, rows.force)
         glued = _glued(problem, rows, length, size)
     across = [each.across(length, size) for each in interfaces]
     along = [each.along(length, size) for each in interfaces]
@@ -132,15 +133,20 @@ def law_residuals(
 
 
 def _missing_force(
-    problem: Problem, displacement: Array, force: Array, held: Indices
+    problem: Problem,
+    displacement: Array,
+    deformation: Array,
+    force: Array,
+    held: Indices,
 ) -> tuple[Array, float]:
     """Force that balance lacks, (n_dofs, n_instants), and the size of forces, scaled.
 
-    `displacement` has shape (n_dofs, n_instants), `force` (n_forces, n_instants); at
-    the degrees of freedom `held`, (n_held,), the support gives what is lacking.
+    `displacement` and `deformation` have shape (n_dofs, n_instants), `force`
+    (n_forces, n_instants); at the degrees of freedom `held`, (n_held,), the support
+    gives what is lacking.
     """
     outer = _outer_force(problem)
-    inner, elastic = _inner_force(problem, displacement)
+    inner, elastic = _inner_force(problem, displacement, deformation)
     missing = inner - outer - _contact_force(problem, force)
     return missing, force_size(force, outer, elastic, missing[held], HIDDEN)
 
@@ -352,14 +358,15 @@ def _outer_force(problem: Problem) -> Array:
     return total
 
 
-def _inner_force(problem: Problem, displacement: Array) -> tuple[Array, Array]:
+def _inner_force(
+    problem: Problem, displacement: Array, deformation: Array
+) -> tuple[Array, Array]:
     """Forces that strain all substructures, and sums of their parts without signs.
 
     Both have the shape (n_dofs, n_instants).
     """
     total = np.zeros((problem.n_dofs, problem.n_instants))
     sizes = np.zeros_like(total)
-    deformation = _deformation(problem, displacement)
     for part in problem.substructures:
         stiffness = part.elasticity.stiffness
         np.add.at(total, part.dofs, stiffness @ deformation[part.dofs])
@@ -396,14 +403,13 @@ def _prescribed(problem: Problem) -> tuple[Indices, Array]:
 
 
 def _balance_of_parts(
-    problem: Problem, displacement: Array, force: Array
+    problem: Problem, deformation: Array, force: Array
 ) -> Iterator[Array]:
     """Yield unbalanced forces of every substructure, (n_dofs, n_instants), scaled.
 
-    By displacements (n_dofs, n_instants) of the structure, and forces of all rows
+    By deformations (n_dofs, n_instants) of the structure, and forces of all rows
     (n_rows, n_instants).
     """
-    deformation = _deformation(problem, displacement)
     for part in problem.substructures:
         missing = np.asarray(part.elasticity.stiffness @ deformation[part.dofs])
         if part.body_force is not None:

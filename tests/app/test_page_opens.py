@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import panel as pn
+import panel_material_ui as pmui
 import pytest
 from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
@@ -22,7 +23,7 @@ from app.browser import Browser
 from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import WHOLE, Needs, NewFrame, Order, Pace, Start
 from app.page import Page, open_page
-from app.server import PAGES
+from app.server import PAGES, share_looks
 from app.state import PageState, default_settings
 from app.status import status_line
 from app.views.parts import come_last, laid_out_alone
@@ -260,3 +261,13 @@ def test_a_sheet_of_controls_has_the_picture_move_up_on_a_phone_alone(
     assert ("with-sheet" in page._live.view.css_classes) == is_narrow
     page.template.sidebar_open = False
     assert "with-sheet" not in page._live.view.css_classes
+
+
+def test_components_share_the_definitions_of_their_looks_and_not_their_looks() -> None:
+    share_looks()
+    first = pmui.Button()
+    second = pmui.Button(sx={"opacity": 1.0})
+    first.sx = {"opacity": 0.5}
+    assert first.param["sx"] is second.param["sx"]
+    assert second.sx == {"opacity": 1.0}
+    assert pmui.Button().sx is None
