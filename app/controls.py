@@ -23,9 +23,9 @@ from solver.settings.definitions import (
     CurveParameter,
     Parameter,
     TextParameter,
-    about,
     help_of,
     is_logarithmic,
+    properties_of,
     title_of,
 )
 
@@ -66,7 +66,7 @@ class SettingControl:
         self.name = name
         self._state = state
         self._definition: Parameter = state.settings.definitions()[name]
-        self._about = about(self._definition)
+        self._about = properties_of(self._definition)
         self._unit = unit_of(self._definition)
         self._is_updating = False
         self._is_dragged = False
@@ -230,7 +230,7 @@ class SettingControl:
         slider = self.slider
         low, high = self._definition.softbounds
         # Other settings may allow less than the definition.
-        largest = self._state.settings.ends.get(self.name, high)
+        largest = self._state.settings.largest_counts.get(self.name, high)
         if largest < high:
             high = max(largest, low + 1)
         slider.end = self._to_slider(high)
@@ -449,5 +449,5 @@ def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
     groups: dict[str, list[str]] = {group: [] for group in GROUPS}
     for name, definition in definitions.items():
         if name not in chief and len(getattr(definition, "objects", "any")) > 1:
-            groups.setdefault(about(definition).group, []).append(name)
+            groups.setdefault(properties_of(definition).group, []).append(name)
     return chief, {group: names for group, names in groups.items() if names}

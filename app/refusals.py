@@ -8,7 +8,7 @@ from typing import Any
 from app.units import unit_of, units_of_points
 from solver.files.amounts import Unit, number
 from solver.refusal import RefusedError, Words
-from solver.settings.definitions import CurveParameter, about, title_of
+from solver.settings.definitions import CurveParameter, properties_of, title_of
 from solver.settings.scene import Settings
 from solver.settings.values import allowed
 
@@ -63,7 +63,7 @@ def _units(settings: Settings, name: str) -> tuple[str, Unit]:
     if isinstance(definition, CurveParameter):
         units = settings.curve_units(name)
         return units[1], units_of_points(settings.scene, name, units)[1]
-    return about(definition).unit, unit_of(definition)
+    return properties_of(definition).unit, unit_of(definition)
 
 
 def _in_unit(text: str, si: str, unit: Unit) -> str:

@@ -11,7 +11,7 @@ from solver.files.amounts import Unit, number, sizes_of, unit_for
 from solver.files.numerals import leading_number
 from solver.files.units import size_in
 from solver.scenes import CATALOGUE
-from solver.settings.definitions import Parameter, about
+from solver.settings.definitions import Parameter, properties_of
 
 OTHER_SIZES = {"Pa": 1e6, "m": 1e-3}
 """Typical values, in SI, of a path whose default points are of another quantity."""
@@ -22,7 +22,7 @@ seven digits."""
 
 def unit_of(definition: Parameter) -> Unit:
     """The unit of a setting, by its default value or else its range."""
-    unit = about(definition).unit
+    unit = properties_of(definition).unit
     if not isinstance(definition, param.Number):
         return Unit(unit)
     size = abs(definition.default) or max(map(abs, definition.softbounds))

@@ -77,7 +77,7 @@ def check_value(name: str, value: object, kind: Kind) -> None:
         raise _refusal(name, value, flaw)
 
 
-def alike(part: Made, count: int, **fields: Sequence[object]) -> list[Made]:
+def checked_copies(part: Made, count: int, **fields: Sequence[object]) -> list[Made]:
     """Make a count of parts that are like a checked one but for some fields.
 
     To check hundreds of bodies one by one takes as long as the first iterations on
@@ -272,7 +272,7 @@ class IncreasingInstants:
         return Flaw(Words(f"[..., {before}, {after}, ...]"), self.allowed, remedy)
 
 
-class Part:
+class InstanceOf:
     """Values of some types."""
 
     def __init__(self, *types: type) -> None:
@@ -337,7 +337,7 @@ class Function:
         return Flaw(value, self.allowed, "give what makes it")
 
 
-class Either:
+class AnyOf:
     """Values of one of some kinds; of other values the last kind finds the flaw."""
 
     def __init__(self, *kinds: Kind) -> None:
@@ -361,7 +361,7 @@ class Either:
 
 
 @dataclass(frozen=True)
-class Each:
+class SequenceOf:
     """Sequences of values of one kind: of a length, or of any but zero."""
 
     kind: Kind
@@ -389,7 +389,7 @@ class Each:
 
 
 @dataclass(frozen=True)
-class Named:
+class MappingOf:
     """Mappings from names to values of one kind; without `names` all are allowed."""
 
     kind: Kind

@@ -20,7 +20,7 @@ LAYERS = [
     "arrays",
     "refusal",
     "checks",
-    "kept",
+    "cache",
     "laws",
     "discrete",
     "reference",

@@ -21,7 +21,7 @@ from app.worker.commands import LOG, command
 from solver.refusal import RefusedError
 from solver.study.sweep.executors import opened, processors
 from solver.study.sweep.plan import Plan, Row
-from solver.study.sweep.run import patience, sweep
+from solver.study.sweep.run import longest_wait, sweep
 
 log = logging.getLogger(__name__)
 LOOK = 500
@@ -182,7 +182,7 @@ class Sweep:
         # Sweeps that are under way share the processors from here on.
         share = share_of(named, len(self._under_way))
         try:
-            with opened(share, patience(LIMIT)) as where:
+            with opened(share, longest_wait(LIMIT)) as where:
                 is_cancelled = self._is_cancelled.is_set
                 rows = sweep(self.plan, where, limit=LIMIT, cancelled=is_cancelled)
                 self.rows.extend(rows)

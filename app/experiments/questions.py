@@ -23,8 +23,8 @@ from solver.settings.definitions import (
     CurveParameter,
     Parameter,
     TextParameter,
-    about,
     is_logarithmic,
+    properties_of,
     title_of,
 )
 from solver.settings.scene import Settings
@@ -228,7 +228,7 @@ def _load_of(settings: Settings, numbers: list[str]) -> str | None:
     """The first number, chief settings before others, that a load path multiplies."""
     definitions = settings.definitions()
     for name in (*settings.CHIEF, *numbers):
-        if name in numbers and about(definitions[name]).path:
+        if name in numbers and properties_of(definitions[name]).path:
             return name
     return None
 
@@ -284,7 +284,7 @@ class SettingRange:
         for key, known in variable(settings).items():
             title = title_of(known)
             if titles[title] > 1:
-                title = f"{title} ({about(known).group})"
+                title = f"{title} ({properties_of(known).group})"
             options[title] = key
         self.name.param.update(options=options, value=name)
         definition = settings.definitions().get(name)
@@ -315,7 +315,7 @@ class SettingRange:
         values = self.values.value
         if isinstance(definition, param.Number):
             unit = unit_of(definition)
-            si = about(definition).unit
+            si = properties_of(definition).unit
             try:
                 values = _converted(
                     values, lambda text: f"{typed(text, unit, si):.12g}"

@@ -8,7 +8,7 @@ from solver.files.columns import column_of
 from solver.files.curves import curve_of, path_doubts
 from solver.files.tables import Table, read_table
 from solver.scenes.remarks import ends_of_tables
-from solver.settings.definitions import CurveParameter, about, title_of
+from solver.settings.definitions import CurveParameter, properties_of, title_of
 from solver.settings.scene import Settings
 from solver.study.comparison import OtherResults, results_in
 from solver.study.measured_loop import MeasuredLoop, loop_in
@@ -118,7 +118,7 @@ def _loads(paths: dict[str, CurveParameter]) -> list[str]:
     """Names of the paths that are loads."""
     loads = []
     for name, definition in paths.items():
-        if about(definition).group == "Load":
+        if properties_of(definition).group == "Load":
             loads.append(name)
     return loads
 

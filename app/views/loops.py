@@ -30,7 +30,7 @@ from solver.arrays import Array
 from solver.laws import FrictionLaw
 from solver.study import comparison
 from solver.study.measured_loop import MeasuredLoop
-from solver.study.quantities.cycles import cycles_in
+from solver.study.quantities.cycles import n_cycles_of
 
 NOTHING = np.zeros((2, 0), dtype=np.float32)
 """A curve without points."""
@@ -126,7 +126,7 @@ class CyclePlot(ExtraView):
     needs = frozenset({"cycles"})
 
     applies = staticmethod(
-        lru_cache(maxsize=64)(lambda settings: cycles_in(settings) > 1)
+        lru_cache(maxsize=64)(lambda settings: n_cycles_of(settings) > 1)
     )
 
     def _add_legend(self) -> None:
@@ -212,7 +212,7 @@ class SlipPlane(View):
     # slips and pressures are the four components of jumps.
     applies = staticmethod(
         lambda settings: (
-            settings.opens and settings.jumps == 4 and settings.law == FrictionLaw()
+            settings.opens and settings.n_jumps == 4 and settings.law == FrictionLaw()
         )
     )
 

@@ -90,7 +90,7 @@ class Picture:
     def arrows(self) -> list[Arrows]:
         """The arrows of all loads."""
         layout = self.layout
-        behind = self.frame.run.settings.behind()
+        behind = self.frame.run.settings.load_settings()
         arrows = []
         for act in self.description.acts:
             setting = behind.get(act.where)

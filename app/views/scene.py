@@ -239,7 +239,7 @@ class Scene(View):
     def _rests(self, run: Run) -> list[Rest]:
         """Handles of the loads that were drawn, and are zero in a run."""
         settings = run.settings
-        places = settings.behind().values()
+        places = settings.load_settings().values()
         rests = []
         for name, (arrows, drawn) in self._dragged.items():
             if name in places and getattr(settings, name) == 0.0:

@@ -32,8 +32,8 @@ from solver.study.measured_loop import LoopComparison, MeasuredLoop
 from solver.study.quantities.cycles import (
     LAST,
     LoadCycles,
+    cycle_ends,
     cycles_of,
-    ends_of,
     fate_of,
     slips_of,
 )
@@ -93,7 +93,7 @@ def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats]
         return None
     ((stacked, slip, _),) = slips_of(iterate)
     law = stacked.law
-    ends = ends_of(sampled.settings)
+    ends = cycle_ends(sampled.settings)
     if len(ends) > 1:
         room = room_of_two(space, slice(ends[-2], ends[-1] + 1))
     else:
@@ -110,7 +110,7 @@ def slips(sampled: Sampled, iterate: Iterate, needs: Needs) -> dict[str, Floats]
 @lru_cache(maxsize=1)
 def _slip_space(sampled: Sampled) -> SlipSpace | None:
     problem = sampled.problem
-    if problem.rubbing.sizes.tolist() != [2] or problem.motions is not None:
+    if problem.contacts.sizes.tolist() != [2] or problem.rigid_motions is not None:
         return None
     try:
         space = slip_space(problem)

@@ -60,7 +60,7 @@ class Drawn:
     ) -> None:
         # Numbers of the shown contact points among all, a degree of freedom of the node
         # at each, and numbers of their interfaces.
-        contacts = problem.rubbing
+        contacts = problem.contacts
         kept = [thinned(size, MOST_POINTS) for size in contacts.sizes.tolist()]
         chains = np.repeat(np.arange(len(kept)), [len(some) for some in kept])
         firsts = np.cumsum(contacts.sizes) - contacts.sizes

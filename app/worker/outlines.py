@@ -106,7 +106,7 @@ def outlines_of_rods(
             given = np.zeros((10, problem.n_instants))
             given[::2] = problem.carried[part.dofs[ends]]
         outlines.append(Outline(corners, motion, given))
-    for law in problem.rubbing.laws.values():
+    for law in problem.contacts.laws.values():
         positions[law.tangent.above, 1] -= 0.5 * thickness
         if law.tangent.below is not None:
             positions[law.tangent.below, 1] += 0.5 * thickness

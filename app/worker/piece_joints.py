@@ -68,7 +68,7 @@ class PieceJoints:
         pairs, keys, of_pairs = pairs_of(problem).joints(owners)
         kept = thinned(len(keys), MOST_JOINTS)
         self.left_out = len(keys) - len(kept)
-        names = [*problem.rubbing, ""]
+        names = [*problem.contacts, ""]
         self.names = [names[number] for number in keys[kept, 0]]
         turns = np.zeros(problem.n_rows, dtype=bool)
         if problem.inside is not None:
@@ -220,7 +220,7 @@ def pairs_of(problem: Problem) -> SidePairs:
         above.append(cut.second)
         below.append(cut.first)
         numbers.append(np.full(len(cut.first), NONE))
-    for stacked in problem.rubbing.stacks:
+    for stacked in problem.contacts.stacks:
         law = stacked.law
         support = np.full(len(law.points), NONE)
         for component in law.components:

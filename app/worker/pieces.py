@@ -107,7 +107,7 @@ class Cutter:
         self._structure = settings.structure()
         self._bodies = self._structure.description().bodies
         if self._kind == "helices":
-            self._bodies = len(problem.rubbing)
+            self._bodies = len(problem.contacts)
         self._made: tuple[str, _Apart] | None = None
 
     def pieces(self, iterate: Iterate, needs: Needs) -> Pieces:
@@ -122,7 +122,7 @@ class Cutter:
 
     def _apart(self, name: str) -> _Apart:
         problem = self._problem
-        names = list(problem.rubbing)
+        names = list(problem.contacts)
         numbers = np.arange(len(problem.substructures))
         if self._kind == "plane":
             positions = problem.positions[problem.row_dofs]

@@ -72,7 +72,7 @@ class LastAnswer:
 
 def has_reference(settings: Settings) -> bool:
     """Check whether a run is compared with the incremental solver."""
-    return settings.jumps <= MOST_JUMPS
+    return settings.n_jumps <= MOST_JUMPS
 
 
 class ReferenceCache:

@@ -20,7 +20,7 @@ from app.worker.zigzag import Trail, zigzag
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.probes import LoopFields
-from solver.discrete.problem import nothing_acts
+from solver.discrete.problem import is_unloaded
 from solver.latin import Answer, Iterate, Record, Solution, Status
 from solver.latin.end.status import CANCELLED
 from solver.laws import Contact
@@ -80,7 +80,7 @@ class Sampler:
         self.problem = problem
         self.settings = settings
         self.columns = shown_instants(settings, problem.n_instants)
-        contacts = problem.rubbing
+        contacts = problem.contacts
         laws = contacts.laws.values()
         # Length, m, or area, m², of each point.
         lengths = contacts.of_points([law.by_point(law.weights) for law in laws])
@@ -109,7 +109,7 @@ class Sampler:
             geometry=self.drawn.geometry,
             across=self.loop.across,
             up=self.loop.up,
-            is_idle=nothing_acts(problem),
+            is_idle=is_unloaded(problem),
         )
 
     def keep(self, iterate: Iterate) -> None:
@@ -123,7 +123,7 @@ class Sampler:
         exact = tuple(self._at_columns(curve) for curve in curves)
         known: dict[str, Any] = {"exact": exact, "is_compared": True}
         if reference is not None:
-            known["reference"] = self._contact(reference, self.problem.rubbing)
+            known["reference"] = self._contact(reference, self.problem.contacts)
             known["reference_loop"] = self._loop(reference)
             known["reference_seconds"] = reference.seconds
         self.run = replace(self.run, **known)
@@ -203,7 +203,7 @@ class Sampler:
 
     def _interfaces(self) -> dict[str, FrictionInterface]:
         """Interfaces by name, in the order in which they are stacked."""
-        contacts = self.problem.rubbing
+        contacts = self.problem.contacts
         found = {}
         for law, numbers, _, _ in contacts.stacks:
             is_cut = np.bincount(law.points) > 1
@@ -230,7 +230,7 @@ class Sampler:
 
         Shape (n_points, n_shown), or (n_points, 1) where it does not change.
         """
-        highest = law.by_point(law.tangential.highest)
+        highest = law.by_point(law.tangential.largest_bound)
         # A strength that does not change has a single column.
         if highest.shape[1] > 1:
             highest = highest[:, self.columns]

@@ -267,7 +267,7 @@ class DrawnRope:
         """
         rope = self._rope
         columns = self._columns
-        position = float(np.clip(needs.position or 0.0, 0.0, rope.seen_length))
+        position = float(np.clip(needs.position or 0.0, 0.0, rope.drawn_length))
         cut = cut_at(rope, position)
         lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
         points, _ = self._points_at(cut.wire, cut.arc / lengths)

@@ -26,7 +26,7 @@ class Thrusts:
         self._problem = problem
         self._columns = columns
         self._positions = problem.positions - corner
-        contacts = problem.rubbing
+        contacts = problem.contacts
         self._above = np.full(len(contacts), NONE)
         self._below = np.full(len(contacts), NONE)
         bodies = problem.inside.body_of_dofs
@@ -53,7 +53,7 @@ class Thrusts:
         sizes, (n_joints, n_shown), N. "hinges" is 1 where a joint of a chain is a
         hinge, else 0, (n_joints, n_shown).
         """
-        contacts = self._problem.rubbing
+        contacts = self._problem.contacts
         shape = len(contacts), len(self._columns)
         points = np.zeros((len(contacts), 2, len(self._columns)))
         forces = np.zeros(shape)

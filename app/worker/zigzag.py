@@ -111,7 +111,7 @@ class ContactPoint:
     """
 
     def __init__(self, problem: Problem, name: str, number: int) -> None:
-        self.law = law = problem.rubbing[name]
+        self.law = law = problem.contacts[name]
         self.number = number
         self.pairs: Indices = np.flatnonzero(law.points == number)
         scales = problem.scales
@@ -175,7 +175,7 @@ def zigzag(
     problem = sampled.problem
     columns = sampled.columns
     name = needs.interface
-    law = problem.rubbing[name]
+    law = problem.contacts[name]
     past = trail.iterates or [iterate]
     point = ContactPoint(problem, name, _chosen(trail, iterate, law, needs))
     star = None
@@ -270,7 +270,7 @@ def stiffness_at(sampled: Sampled, name: str, point: int) -> float | None:
     problem = sampled.problem
     if problem.n_dofs > LARGEST:
         return None
-    place = problem.rubbing.forces[name][-1].start + point
+    place = problem.contacts.forces[name][-1].start + point
     pulled = jumps(problem)[[place]].toarray()[0]
     pulled[problem.prescribed[0]] = 0.0
     if not pulled.any():

@@ -28,7 +28,7 @@ from solver.commands.examples import add_examples
 from solver.commands.reports import add_reports
 from solver.commands.runs import add_checks
 from solver.discrete import Problem
-from solver.discrete.problem import nothing_acts
+from solver.discrete.problem import is_unloaded
 from solver.files.disk import check_place, why
 from solver.files.paraview import PARAVIEW, check_plane, write_series
 from solver.files.saved import save_result, scene_settings, summary
@@ -39,14 +39,14 @@ from solver.reference.distance import distance_to, held_instants
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import about, lines_of
+from solver.settings.definitions import lines_of, properties_of
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError, allowed
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantities.finished import (
     FinishedRun,
     KeyFigure,
-    Known,
+    KnownReference,
     figures_of,
     known_reference,
 )
@@ -186,13 +186,13 @@ def _run(chosen: argparse.Namespace) -> int:
     for_paraview = chosen.out is not None and chosen.out.suffix == PARAVIEW
     if for_paraview:
         check_plane(problem.inside, chosen.out)
-    if nothing_acts(problem):
+    if is_unloaded(problem):
         warn("nothing acts on the structure: all loads are zero")
     announce(settings, problem, reference=chosen.reference, limit=limit)
     if chosen.reference:
         known = _known(problem, limit)
     else:
-        known = Known()
+        known = KnownReference()
     solution = _solved(chosen, settings, problem, known, asked, limit, spent)
     if chosen.out is not None:
         with refusing(chosen.out, CAN_BE_WRITTEN):
@@ -226,7 +226,7 @@ def _solved(
     chosen: argparse.Namespace,
     settings: Settings,
     problem: Problem,
-    known: Known,
+    known: KnownReference,
     asked: Sequence[Quantity],
     limit: float,
     spent: float,
@@ -352,7 +352,7 @@ def _number(value: float, unit: str) -> str:
     return f"{value:.6g} {unit}".strip()
 
 
-def _known(problem: Problem, limit: float) -> Known:
+def _known(problem: Problem, limit: float) -> KnownReference:
     """Reference within a time limit, s; warn of its doubts, or that it is missing."""
     end = time.perf_counter() + limit
     known = known_reference(problem, lambda: time.perf_counter() > end)
@@ -377,7 +377,7 @@ def _settings(chosen: argparse.Namespace) -> int:
     of_paper = kind.defaults("paper")
     width = max(len(name) for name in definitions) + 1
     for name, definition in definitions.items():
-        unit = about(definition).unit or "-"
+        unit = properties_of(definition).unit or "-"
         default = json.dumps(definition.default)
         if of_paper[name] != definition.default:
             default += f" (method=paper: {json.dumps(of_paper[name])})"

@@ -42,7 +42,7 @@ from solver.study.sweep.report import (
     rows_in,
     write_sweep,
 )
-from solver.study.sweep.run import patience, sweep
+from solver.study.sweep.run import longest_wait, sweep
 from solver.study.trade_case import case_from_file
 
 TABLE = "sweep.csv"
@@ -236,7 +236,7 @@ def _run(plan: Plan, rows: dict[int, SweepRow], chosen: argparse.Namespace) -> N
     table = chosen.out / TABLE
     with (
         postponed_interrupt() as is_interrupted,
-        opened(chosen.on, patience(chosen.limit)) as executor,
+        opened(chosen.on, longest_wait(chosen.limit)) as executor,
     ):
         # The table is written anew, as its last line may have been cut off.
         write(table, csv_of(plan, list(rows.values())))

@@ -25,7 +25,7 @@ from solver.discrete import Problem
 from solver.latin import Ending, Solution, solve
 from solver.scenes import discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import about
+from solver.settings.definitions import properties_of
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.compared_runs import ComparedRun
@@ -102,7 +102,7 @@ def _mesh(chosen: argparse.Namespace) -> int:
         instants = _refined(settings, ["instants"], asked, values)
         print("Elements: They are those of the mesh, refined where it was made.")
         print(f"Instants: {_on_instants(settings, instants, asked)}")
-        return 0 if instants.is_told else 1
+        return 0 if instants.has_values else 1
     elements = _refined(settings, settings.MESH, asked, values)
     instants = _refined(settings, ["instants"], asked, values)
     print(f"Elements: {answer(elements, asked.unit)}")
@@ -167,8 +167,8 @@ def _comparison(
 ) -> Comparison:
     """Compare with another program along an interface; refuse too few common points."""
     interface = chosen.interface
-    if interface and interface not in problem.rubbing:
-        can = ", ".join(problem.rubbing)
+    if interface and interface not in problem.contacts:
+        can = ", ".join(problem.contacts)
         raise SettingError("--interface", interface, can, "choose one of these")
     comparison = Comparison(results, problem, interface)
     if comparison.counted < FEWEST:
@@ -229,7 +229,7 @@ def _fit(chosen: argparse.Namespace) -> int:
         printed = time.monotonic()
         values = []
         for name, value in zip(names, nearest.values, strict=True):
-            unit = about(settings.definitions()[name]).unit
+            unit = properties_of(settings.definitions()[name]).unit
             values.append(f"{name} {value:.4g} {unit}".strip())
         distance = f"{100.0 * nearest.distance:.3g} % away"
         line = f"{runs} runs: {', '.join(values)}, {distance}"

@@ -10,7 +10,7 @@ from solver.discrete.plane.body import Body, Held, Joint, Load
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.plane.meshes import Mesh
 from solver.discrete.plane.rectangles import stack_problem
-from solver.discrete.plane.rectangles.sides import Given, Side, Spring, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods import cut_rods
@@ -25,7 +25,6 @@ __all__ = [
     "Bodies",
     "Body",
     "End",
-    "Given",
     "Held",
     "Joint",
     "Load",
@@ -34,6 +33,7 @@ __all__ = [
     "Rods",
     "Rope",
     "Side",
+    "SideComponent",
     "Spring",
     "Stack",
     "Structure",

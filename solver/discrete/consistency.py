@@ -54,13 +54,13 @@ def check_cover(
     raise RefusedError(f"Problem.{owners}", shown, allowed, "number them anew")
 
 
-def check_names(rubbing: Contacts) -> None:
+def check_names(contacts: Contacts) -> None:
     """Refuse names that interfaces share, and an order without some of them."""
-    names = rubbing.names_of_laws
-    if len(set(names)) < len(names) or sorted(rubbing.names) != sorted(names):
+    names = contacts.names_of_laws
+    if len(set(names)) < len(names) or sorted(contacts.names) != sorted(names):
         raise RefusedError(
             "Problem.order",
-            Words(f"of {len(rubbing.names)} names"),
+            Words(f"of {len(contacts.names)} names"),
             f"all {len(names)} interfaces with friction once",
             "give each a name of its own, and all of them a place",
         )

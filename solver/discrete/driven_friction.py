@@ -75,7 +75,7 @@ class DrivenFriction:
         if self.along.compliance is not None:
             return self._on_springs(pressing, opening)
         slip = self._slip
-        bound = self.along.allowed(pressing, slip, opening)
+        bound = self.along.bound_after_slip(pressing, slip, opening)
         # A clamped point has what its neighbour has per area, within its own bound.
         even = np.clip(self.share[:, None] * forces[self.beside], -bound, bound)
         return np.where(slip == 0.0, even, -bound * np.sign(slip))
@@ -101,7 +101,7 @@ class DrivenFriction:
         along = self.along
         assert along.compliance is not None
         compliance = along.compliance[:, None]
-        bound = along.without_slip(pressing, opening)
+        bound = along.bound_before_slip(pressing, opening)
         slack = compliance * np.broadcast_to(bound, self.jump.shape)
         if along.slip_factor is None:
             n_points, n_instants = self.jump.shape

@@ -61,7 +61,7 @@ class Drive:
         """Check whether the size of the value falls in the step to an instant."""
         return abs(float(self.values[instant])) < abs(self.before(instant))
 
-    def at(self, instant: int, share: float = 1.0) -> str:
+    def describe(self, instant: int, share: float = 1.0) -> str:
         """Text on the value after a share of the step to an instant.
 
         With the load factor: the value over the largest one of the same sign.
@@ -78,16 +78,16 @@ class Drive:
         return f"{amount} ({factor} times its largest value)"
 
 
-def loads_at(drives: Sequence[Drive], instant: int) -> str:
+def describe_loads(drives: Sequence[Drive], instant: int) -> str:
     """Text on all drives that change, with their values at an instant.
 
     Empty where no drive changes.
     """
-    moving = [drive.at(instant) for drive in drives if drive.changes(instant)]
+    moving = [drive.describe(instant) for drive in drives if drive.changes(instant)]
     return " and ".join(moving)
 
 
-def beyond(drives: Sequence[Drive], instant: int, share: float) -> str:
+def describe_limit(drives: Sequence[Drive], instant: int, share: float) -> str:
     """Text on the loads beyond which something happens.
 
     These are the loads after a share of the step to an instant: "beyond" those that
@@ -99,11 +99,11 @@ def beyond(drives: Sequence[Drive], instant: int, share: float) -> str:
     # At the very beginning all loads are zero, and "beyond 0 N" would say nothing.
     from_nothing = not any(drive.before(instant) for drive in moving)
     if moving and from_nothing and share <= LEAST_STEP:
-        return f"with {loads_at(drives, instant)}"
+        return f"with {describe_loads(drives, instant)}"
     words = []
     for falls, preposition in ((False, "beyond"), (True, "below")):
         passed = [drive for drive in moving if drive.falls(instant) is falls]
-        amounts = [drive.at(instant, share) for drive in passed]
+        amounts = [drive.describe(instant, share) for drive in passed]
         if amounts:
             words.append(f"{preposition} {' and '.join(amounts)}")
     return " and ".join(words)

@@ -15,8 +15,8 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Indices
+from solver.cache import CACHE, content_of
 from solver.discrete.contacts import Contacts
-from solver.kept import KEPT, content_of
 from solver.laws import Contact, Interface, SlipFactor
 from solver.laws.interface import IncrementalForm
 from solver.laws.play import PLAIN
@@ -59,7 +59,7 @@ def reason_against_reference(
     cuts = [form.glued for form in forms if form.glued is not None]
     sides = np.concatenate([np.zeros((2, 0), dtype=np.intp), *cuts], axis=1)
     key = "numbering", content_of(*numbering, sides)
-    if not KEPT.of(key, lambda: _are_glued_as_numbered(sides, numbering)):
+    if not CACHE.get(key, lambda: _are_glued_as_numbered(sides, numbering)):
         return (
             "Rows of one degree of freedom are not glued, or glued rows have two, "
             "so that no matrix of the whole structure says what holds: number them "
@@ -119,4 +119,4 @@ def _has_points(law: Contact, dofs: Indices) -> bool:
 def _slip_factors(contacts: Contacts) -> set[SlipFactor]:
     """Slip-dependent factors of all interfaces on which there is any friction."""
     laws = [law.tangential for law in contacts.laws.values()]
-    return {law.slip_factor or PLAIN for law in laws if law.rubs}
+    return {law.slip_factor or PLAIN for law in laws if law.has_friction}

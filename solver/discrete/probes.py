@@ -206,7 +206,7 @@ def _weighted_reaction(problem: Problem, held: Array) -> Reaction:
             np.add.at(weights, part.dofs, part.elasticity.stiffness @ of_part)
             if part.body_force is not None:
                 loads += of_part @ part.body_force
-    for given in problem.given_forces:
+    for given in problem.prescribed_forces:
         loads += held[problem.row_dofs[given.rows]] @ given.values
     scales = problem.scales
     dofs = np.flatnonzero(weights)
@@ -225,8 +225,8 @@ def _contacts_at(
     forces have (n_points,).
     """
     found: dict[str, tuple[Array | None, Array]] = {}
-    names = problem.rubbing.names
-    for law, numbers, _, _ in problem.rubbing.stacks:
+    names = problem.contacts.names
+    for law, numbers, _, _ in problem.contacts.stacks:
         # All pairs of a point are at one node, so one of them tells its weight.
         _, pairs = np.unique(law.points, return_index=True)
         weights = []

@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
+from solver.cache import CACHE, content_of
 from solver.checks import (
     INSTANTS,
-    Each,
-    Named,
+    InstanceOf,
+    MappingOf,
     Numbers,
-    Part,
+    SequenceOf,
     check,
 )
 from solver.discrete.consistency import (
@@ -41,7 +42,6 @@ from solver.discrete.inside import Inside
 from solver.discrete.no_reference import Numbering, reason_against_reference
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Substructure
-from solver.kept import KEPT, content_of
 from solver.laws import Contact, Interface
 from solver.laws.interface import Glued, IncrementalForm, PrescribedRows
 
@@ -102,10 +102,10 @@ class Problem:
     def __post_init__(self) -> None:
         check(
             self,
-            substructures=Each(Part(Substructure)),
-            interfaces=Named(Part(Interface)),
+            substructures=SequenceOf(InstanceOf(Substructure)),
+            interfaces=MappingOf(InstanceOf(Interface)),
             instants=INSTANTS,
-            scales=Part(Scales),
+            scales=InstanceOf(Scales),
             positions=Numbers(((None,), (None, 2))),
         )
         field = Numbers(((self.n_dofs, self.n_instants),))
@@ -116,11 +116,11 @@ class Problem:
         check_cover("substructures", "degree of freedom", self.n_dofs, dofs)
         check_cover("substructures", "row", self.n_rows, rows, once=True)
         check_cover("interfaces", "row", self.n_rows, rows_of_laws, once=True)
-        check_names(self.rubbing)
+        check_names(self.contacts)
         check_instants(self.n_instants, self.interfaces, self.substructures)
-        check_prescribed(self.given_displacements, self.row_dofs)
+        check_prescribed(self.prescribed_displacements, self.row_dofs)
 
-    def driven_by(self, drives: tuple[Drive, ...]) -> Problem:
+    def with_drives(self, drives: tuple[Drive, ...]) -> Problem:
         """The same problem with drives; what was checked and found stays."""
         driven = copy(self)
         object.__setattr__(driven, "drives", drives)
@@ -187,7 +187,7 @@ class Problem:
         for law in self.interfaces.values():
             if not isinstance(law, Contact):
                 kinds.setdefault(type(law), []).append(law)
-        joined: list[Interface] = [group.law for group in self.rubbing.groups]
+        joined: list[Interface] = [group.law for group in self.contacts.groups]
         for kind, laws in kinds.items():
             joined.extend(kind.together(laws))
         return joined
@@ -199,19 +199,19 @@ class Problem:
         return {name: form for name, form in forms.items() if form is not None}
 
     @cached_property
-    def own_laws(self) -> dict[str, Interface]:
+    def user_laws(self) -> dict[str, Interface]:
         """Interfaces of a user's law, without an incremental form, by name."""
         forms = self.incremental_forms
         return {name: law for name, law in self.interfaces.items() if name not in forms}
 
     @cached_property
-    def given_forces(self) -> list[PrescribedRows]:
+    def prescribed_forces(self) -> list[PrescribedRows]:
         """Forces that are prescribed, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.force for form in forms if form.force is not None]
 
     @cached_property
-    def given_displacements(self) -> list[PrescribedRows]:
+    def prescribed_displacements(self) -> list[PrescribedRows]:
         """Displacements that are prescribed, interface by interface."""
         forms = self.incremental_forms.values()
         return [form.displacement for form in forms if form.displacement is not None]
@@ -228,7 +228,7 @@ class Problem:
         return [form.glued for form in forms if form.glued is not None]
 
     @cached_property
-    def sought_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:
+    def unknown_rows(self) -> tuple[slice | Indices, list[NDArray[np.bool_]]]:
         """Rows whose forces only a solution gives, and masks of their kinds among them.
 
         These are the rows of the bodies above at interfaces with friction, normal ones
@@ -237,9 +237,9 @@ class Problem:
         kinds are left out; masks have the shape (n_sought,).
         """
         kind_of = np.full(self.n_rows, -1)
-        for law in self.own_laws.values():
+        for law in self.user_laws.values():
             kind_of[law.rows] = 2
-        for law in self.rubbing.laws.values():
+        for law in self.contacts.laws.values():
             kind_of[law.tangent.above] = 1
             if law.normal is not None:
                 kind_of[law.normal.component.above] = 0
@@ -256,16 +256,16 @@ class Problem:
         for number, part in enumerate(self.substructures):
             owners[part.rows] = number
         numbering = Numbering(self.row_dofs, owners)
-        return reason_against_reference(self.interfaces, self.rubbing, numbering)
+        return reason_against_reference(self.interfaces, self.contacts, numbering)
 
     @cached_property
     def friction(self) -> Contact:
         """The interface with friction of a problem that has one only."""
-        (contact,) = self.rubbing.values()
+        (contact,) = self.contacts.values()
         return contact
 
     @cached_property
-    def rubbing(self) -> Contacts:
+    def contacts(self) -> Contacts:
         """The interfaces with friction, by name and stacked."""
         laws = {
             name: law
@@ -275,15 +275,15 @@ class Problem:
         return Contacts(laws, self.order)
 
     @cached_property
-    def goes_on(self) -> bool:
+    def has_start(self) -> bool:
         """Check whether sliders begin at given positions, not at rest."""
-        laws = self.rubbing.laws.values()
+        laws = self.contacts.laws.values()
         return any(law.tangential.start is not None for law in laws)
 
     @cached_property
     def opens(self) -> bool:
         """Check whether any interface may open."""
-        return any(law.opens for law in self.rubbing.laws.values())
+        return any(law.opens for law in self.contacts.laws.values())
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
@@ -335,7 +335,7 @@ class Problem:
 
         Shape (n_forces, n_rows): contact forces are stacked as `Contacts` says.
         """
-        return self.rubbing.sum_of_rows(self.n_rows)
+        return self.contacts.sum_of_rows(self.n_rows)
 
     @cached_property
     def _driven(self) -> list[DrivenFriction]:
@@ -343,7 +343,7 @@ class Problem:
         largest = float(np.abs(self.prescribed[1]).max(initial=0.0))
         if self.carried is not None:
             largest = max(largest, float(np.abs(self.carried).max(initial=0.0)))
-        return driven_contacts(self.rubbing, self.row_dofs, self.prescribed, largest)
+        return driven_contacts(self.contacts, self.row_dofs, self.prescribed, largest)
 
     def with_driven_friction(self, forces: Array, displacement: Array) -> Array:
         """Contact forces in which the friction of driven points is that of the law.
@@ -372,7 +372,7 @@ class Problem:
         return bool(np.all(steps == 1))
 
     @cached_property
-    def motions(self) -> Array | None:
+    def rigid_motions(self) -> Array | None:
         """Independent rigid motions of bodies that no side holds, (n_dofs, n_motions).
 
         None without such motions, and along rods, where they cost no digits.
@@ -381,8 +381,8 @@ class Problem:
         if inside is None:
             return None
         fixed = self.prescribed[0]
-        key = "motions", self.place_of_bodies, content_of(fixed)
-        return KEPT.of(key, lambda: inside.rigid_motions(fixed))
+        key = "motions", self.content_of_bodies, content_of(fixed)
+        return CACHE.get(key, lambda: inside.rigid_motions(fixed))
 
     @cached_property
     def content_of_stiffness(self) -> bytes:
@@ -397,7 +397,7 @@ class Problem:
         return content_of(*matrices, np.array(of_parts), *dofs)
 
     @cached_property
-    def place_of_bodies(self) -> bytes:
+    def content_of_bodies(self) -> bytes:
         """Digest of where the degrees of freedom of each body are; b"" of rods."""
         inside = self.inside
         if inside is None:
@@ -415,7 +415,7 @@ class Problem:
         """
         rows = [np.zeros(0, dtype=np.intp)]
         values = [np.zeros((0, self.n_instants))]
-        for given in self.given_displacements:
+        for given in self.prescribed_displacements:
             rows.append(given.rows)
             values.append(given.values)
         every = self.row_dofs[np.concatenate(rows)]
@@ -439,15 +439,15 @@ class Problem:
         return held
 
 
-def nothing_acts(problem: Problem) -> bool:
+def is_unloaded(problem: Problem) -> bool:
     """Check whether loads, displacements and overlaps are zero, and so the answer.
 
     A user's law without an incremental form may act, too.
     """
-    laws = problem.rubbing.laws.values()
-    if problem.own_laws or any(law.is_moved for law in laws):
+    laws = problem.contacts.laws.values()
+    if problem.user_laws or any(law.is_moved for law in laws):
         return False
-    given = problem.given_forces + problem.given_displacements
+    given = problem.prescribed_forces + problem.prescribed_displacements
     forces = [part.body_force for part in problem.substructures]
     acts_on_rows = any(each.values.any() for each in given)
     acts_inside = any(force.any() for force in forces if force is not None)

@@ -42,13 +42,13 @@ class Eliminated(Protocol):
     def nbytes(self) -> int:
         """Memory of factor and response, B."""
 
-    def carried(self, force: Array) -> Array:
+    def condense(self, force: Array) -> Array:
         """Forces inside, (..., n_rest, n_columns), as what is kept has to hold them.
 
         Negative, of shape (..., n_kept, n_columns).
         """
 
-    def moved(self, kept: Array, force: Array | None) -> Array:
+    def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement inside, (n_rest, n_columns), scaled.
 
         From that of what is kept, (n_kept, n_columns), and forces inside, (n_rest,
@@ -87,11 +87,11 @@ class FewEliminated:
         """Memory of factor and response, B."""
         return self._factor_nbytes + self.response.nbytes
 
-    def carried(self, force: Array) -> Array:
+    def condense(self, force: Array) -> Array:
         """Forces on what is kept, negative, (..., n_kept, n_columns)."""
         return np.asarray(self.response.T @ force)
 
-    def moved(self, kept: Array, force: Array | None) -> Array:
+    def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
         rest = -(self.response @ kept)
         if force is not None:
@@ -169,7 +169,7 @@ class ManyEliminated:
         factor = ENTRY * int(self._factor.nnz)
         return factor + response + self._with_springs.nbytes
 
-    def carried(self, force: Array) -> Array:
+    def condense(self, force: Array) -> Array:
         """Forces on what is kept, negative, (..., n_kept, n_columns)."""
         together = force.reshape(-1, *force.shape[-2:])
         on_kept = [
@@ -178,7 +178,7 @@ class ManyEliminated:
         ]
         return np.reshape(on_kept, (*force.shape[:-2], len(self._kept), -1))
 
-    def moved(self, kept: Array, force: Array | None) -> Array:
+    def recover(self, kept: Array, force: Array | None) -> Array:
         """Displacement inside, (n_rest, n_columns), by what is kept and by forces."""
         further = kept
         rest = np.zeros((len(self._rest), kept.shape[1]))
@@ -275,7 +275,7 @@ class SchurComplement:
         condensed -= tied.T @ few.response
         return condensed
 
-    def turned_round(self, signs: Array) -> SchurComplement:
+    def with_signs(self, signs: Array) -> SchurComplement:
         """Make the same stiffness with some directions turned round.
 
         `signs` are -1 for these and 1 for others, (n_kept,). All but the condensed
@@ -305,7 +305,7 @@ class SchurComplement:
             force = self._before.condense(force)
         on_kept = force.take(self._positions, axis=-2)
         if self._eliminated is not None:
-            carried = self._eliminated.carried(force.take(self._rest, axis=-2))
+            carried = self._eliminated.condense(force.take(self._rest, axis=-2))
             carried *= self._signs[:, None]
             on_kept -= carried
         return on_kept
@@ -326,7 +326,7 @@ class SchurComplement:
             if condensed is not None:
                 inside = np.ascontiguousarray(condensed[self._rest])
             turned = self._signs[:, None] * kept
-            whole[self._rest] = self._eliminated.moved(turned, inside)
+            whole[self._rest] = self._eliminated.recover(turned, inside)
         if self._before is None:
             return whole
         return self._before.recover(whole, force)

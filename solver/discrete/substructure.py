@@ -10,7 +10,15 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.checks import ALIKE, Kind, Numbers, Part, alike, check, check_value
+from solver.checks import (
+    ALIKE,
+    InstanceOf,
+    Kind,
+    Numbers,
+    check,
+    check_value,
+    checked_copies,
+)
 from solver.refusal import RefusedError, Words
 
 
@@ -41,7 +49,7 @@ class Elasticity:
     direction: Array
 
     def __post_init__(self) -> None:
-        check(self, stiffness=Part(sparse.sparray, np.ndarray))
+        check(self, stiffness=InstanceOf(sparse.sparray, np.ndarray))
         matrix = self.stiffness
         entries = matrix.data if isinstance(matrix, sparse.csr_array) else matrix
         check_value("Elasticity.stiffness", entries, Numbers(((None,) * entries.ndim,)))
@@ -102,7 +110,7 @@ class Elasticity:
         return dofs, index, self.stiffness[dofs]
 
 
-ELASTICITY = Part(Elasticity)
+ELASTICITY = InstanceOf(Elasticity)
 
 
 @cache
@@ -177,7 +185,9 @@ class Substructure:
                     "make those of each operator together",
                 )
         first = cls(elasticity, dofs[0], rows[0], body_forces[0])
-        return alike(first, len(dofs), dofs=dofs, rows=rows, body_force=body_forces)
+        return checked_copies(
+            first, len(dofs), dofs=dofs, rows=rows, body_force=body_forces
+        )
 
 
 def check_forces(body_forces: Array) -> None:

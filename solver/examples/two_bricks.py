@@ -3,7 +3,7 @@
 import numpy as np
 
 from solver import Stack, discretise, solve
-from solver.discrete import Given, Side
+from solver.discrete import Side, SideComponent
 from solver.discrete.plane.rectangles.bricks import Brick
 
 MU = 0.4
@@ -12,9 +12,9 @@ PRESSURE = 1e5
 """Of friction; m; Pa."""
 
 times = np.linspace(0.0, 1.0, 21)
-still = Given(prescribed=True, mean=0.0 * times)
-moved = Given(prescribed=True, mean=1e-4 * np.maximum(2.0 * times - 1.0, 0.0))
-pressed = Given(prescribed=False, mean=-PRESSURE * np.minimum(2.0 * times, 1.0))
+still = SideComponent(prescribed=True, mean=0.0 * times)
+moved = SideComponent(prescribed=True, mean=1e-4 * np.maximum(2.0 * times - 1.0, 0.0))
+pressed = SideComponent(prescribed=False, mean=-PRESSURE * np.minimum(2.0 * times, 1.0))
 pile = Stack(
     length=WIDTH,
     height=0.1,
@@ -30,7 +30,7 @@ pile = Stack(
 )
 problem = discretise(pile)
 solution = solve(problem)
-(joint,) = problem.rubbing
+(joint,) = problem.contacts
 shear = solution.iterate.contact(joint).tangential_force.sum(axis=0)
 
 print("status:", solution.status.ending)

@@ -3,13 +3,13 @@
 import numpy as np
 
 from solver import Latin, Stack, discretise, solve
-from solver.discrete import Given, Side, Support
+from solver.discrete import Side, SideComponent, Support
 from solver.latin import Auto, Stop
 
 times = np.linspace(0.0, 1.0, 41)
 x = np.linspace(0.0, 0.1, 49)
-pressed = Given(prescribed=True, mean=-4e-6 * np.minimum(4 * times, 1.0))
-sheared = Given(prescribed=True, mean=2e-6 * np.sin(2 * np.pi * times))
+pressed = SideComponent(prescribed=True, mean=-4e-6 * np.minimum(4 * times, 1.0))
+sheared = SideComponent(prescribed=True, mean=2e-6 * np.sin(2 * np.pi * times))
 block = Stack(
     length=0.1,
     height=0.05,

@@ -76,7 +76,7 @@ def write_series(path: Path, iterate: Iterate) -> None:
     folder = path.with_suffix("")
     folder.mkdir(exist_ok=True)
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
-    names = list(iterate.problem.rubbing)
+    names = list(iterate.problem.contacts)
     listed = ElementTree.SubElement(root, "Collection", {INTERFACES: json.dumps(names)})
     displacement = inside.displacement(iterate.displacement, slice(None))
     parts: dict[str, _Bodies | _Contacts] = {
@@ -189,7 +189,7 @@ class _Contacts:
 
     def __init__(self, iterate: Iterate) -> None:
         problem = iterate.problem
-        contacts = problem.rubbing
+        contacts = problem.contacts
         positions = []
         along = []
         areas = []

@@ -362,7 +362,7 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     """
     arrays: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
-    contacts = iterate.problem.rubbing
+    contacts = iterate.problem.contacts
     positions = contacts.of_points([law.positions for law in contacts.laws.values()])
     # A single rod on its support has its fields under short names at the top level.
     is_plain = all(law.is_plain for law in contacts.laws.values())

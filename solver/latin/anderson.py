@@ -252,7 +252,7 @@ def _allowed_growth(problem: Problem) -> float:
         # Where the bound of friction is known 1 is best; twice as much takes up to a
         # third more iterations to 1e-6.
         return 1.0
-    if any(law.is_on_support for law in problem.rubbing.laws.values()):
+    if any(law.is_on_support for law in problem.contacts.laws.values()):
         return GROWTH_ON_SUPPORT
     return GROWTH_BETWEEN_BODIES
 

@@ -99,9 +99,9 @@ def contact_status(iterate: Stages, creep: Array | float = CREEP) -> NDArray[np.
     force = iterate.boundary_local_force
     linear_moved = iterate.boundary_displacement
     linear_force = iterate.boundary_force
-    groups = iterate.problem.rubbing.groups
-    creep = np.broadcast_to(creep, len(iterate.problem.rubbing))
-    n_points = iterate.problem.rubbing.n_points
+    groups = iterate.problem.contacts.groups
+    creep = np.broadcast_to(creep, len(iterate.problem.contacts))
+    n_points = iterate.problem.contacts.n_points
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
     for group in groups:
         slip = group.slip(moved, force)
@@ -165,14 +165,14 @@ def violation_of(problem: Problem, displacement: Array, force: Array) -> float:
     worst = max(energies, default=0.0)
     # Against the mean energy per interface, so that many that hold do not hide one that
     # does not.
-    total = ratio(len(problem.rubbing) * worst, energy)
+    total = ratio(len(problem.contacts) * worst, energy)
     total += _gap_of_bonds(problem, displacement, force, noise)
     return total / _share_of_friction(problem, force)
 
 
 def _known_groups(problem: Problem) -> list[ContactGroup]:
     """Groups of contacts whose laws are those of `Contact.violation`."""
-    groups = problem.rubbing.groups
+    groups = problem.contacts.groups
     return [group for group in groups if group.law.incremental_form() is not None]
 
 
@@ -219,7 +219,7 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
     `force` has shape (n_rows, n_instants), scaled.
     """
     largest = float(np.abs(force).max())
-    laws = [group.law for group in problem.rubbing.groups]
+    laws = [group.law for group in problem.contacts.groups]
     carried = max((law.carried(force) for law in laws), default=0.0)
     by_friction = sum(law.capacity(problem.is_held) for law in laws)
     capacity = max(by_friction, SMALL_CONTACT * carried)

@@ -184,7 +184,7 @@ class Iterate:
         Shape (n_points, n_instants), N: points of all interfaces with friction, one
         interface after the other.
         """
-        contacts = self.problem.rubbing
+        contacts = self.problem.contacts
         force = np.empty((contacts.n_points, self.problem.n_instants))
         for stacked in contacts.stacks:
             # The tangential component is the last one.
@@ -198,7 +198,7 @@ class Iterate:
     @cached_property
     def contacts(self) -> dict[str, ContactFields]:
         """Fields of all interfaces with friction, by name."""
-        return self.problem.rubbing.fields(
+        return self.problem.contacts.fields(
             self.contact_force,
             self.boundary_displacement,
             self.status,

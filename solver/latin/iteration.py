@@ -10,7 +10,7 @@ from itertools import count
 from numpy.linalg import LinAlgError
 
 from solver.arrays import Array, read_only
-from solver.checks import Numbers, Part, check_value
+from solver.checks import InstanceOf, Numbers, check_value
 from solver.discrete.problem import Problem
 from solver.latin.anderson import AndersonState
 from solver.latin.iterate import Checkpoint, Iterate
@@ -45,11 +45,11 @@ def iterations(
     ------
     Snapshots, one per iteration; their seconds stand still while the consumer has one.
     """
-    check_value("problem", problem, Part(Problem))
-    check_value("latin", latin, Part(Latin))
+    check_value("problem", problem, InstanceOf(Problem))
+    check_value("latin", latin, InstanceOf(Latin))
     if start is not None:
         shape = problem.n_rows, problem.n_instants
-        check_value("start", start, Part(Checkpoint))
+        check_value("start", start, InstanceOf(Checkpoint))
         check_value("start.outgoing", start.outgoing, Numbers((shape,)))
     began = time.perf_counter()
     seconds = 0.0
@@ -120,8 +120,8 @@ class Iteration:
             # A body that nothing else holds would have to travel there iteration by
             # iteration.
             start = Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
-        self.linear.go_to(start)
-        self._show()
+        self.linear.restore(start)
+        self._read_fields()
 
     def _rigid_bodies(
         self, latin: Latin, start: Checkpoint | None
@@ -135,7 +135,7 @@ class Iteration:
             return RigidBodies(self._problem, self.k, from_rest=start is None)
         return None
 
-    def _show(self) -> None:
+    def _read_fields(self) -> None:
         """Read the fields of the linear stage."""
         self.incoming = read_only(self.linear.incoming())
         self.outgoing = read_only(self.linear.outgoing())
@@ -152,7 +152,7 @@ class Iteration:
         self.linear.advance(float(self._latin.relaxation))
         if mix is not None:
             mix.mix()
-        self._show()
+        self._read_fields()
 
     def choose_direction(self) -> None:
         """Choose the k of the next iteration."""

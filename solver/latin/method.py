@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from types import NoneType
 
-from solver.checks import FLAG, Count, Number, Part, check
+from solver.checks import FLAG, Count, InstanceOf, Number, check
 from solver.latin.anderson import Anderson
 from solver.latin.direction.directions import Auto, SearchDirection
 from solver.latin.direction.from_status import FromStatus
@@ -70,13 +70,13 @@ class Latin:
     def __post_init__(self) -> None:
         check(
             self,
-            direction=Part(SearchDirection, FromStatus),
-            linear=Part(Full, PGD),
+            direction=InstanceOf(SearchDirection, FromStatus),
+            linear=InstanceOf(Full, PGD),
             multiscale=FLAG,
             relaxation=Number(0.0, 1.0, above=True),
-            acceleration=Part(Anderson, NoneType),
-            start=Part(Nested),
-            finish=Part(StatusStep, NoneType),
-            stop=Part(Stop),
+            acceleration=InstanceOf(Anderson, NoneType),
+            start=InstanceOf(Nested),
+            finish=InstanceOf(StatusStep, NoneType),
+            stop=InstanceOf(Stop),
             threads=Count(1, 64),
         )

@@ -110,7 +110,7 @@ def _check_slabs(problem: Problem, latin: Latin, length: int) -> None:
             "a k that stays as it is in slabs of time",
             "set it to none",
         )
-    for name, law in problem.own_laws.items():
+    for name, law in problem.user_laws.items():
         if law.remembers:
             raise RefusedError(
                 f"the law of {name}",
@@ -151,7 +151,7 @@ def _during(
     if start is not None:
         for name, slider in start.items():
             interfaces[name] = (
-                problem.rubbing.laws[name].during(some).with_start(slider)
+                problem.contacts.laws[name].during(some).with_start(slider)
             )
     return replace(
         problem,
@@ -175,7 +175,7 @@ def next_slab(
     moved = solved.local_displacement
     force = solved.boundary_local_force
     ends = {}
-    for name, law in solved.problem.rubbing.laws.items():
+    for name, law in solved.problem.contacts.laws.items():
         # Pairs of one point that stand apart could never stick together again.
         slider = law.tangential.slider(moved, force)[:, -1]
         ends[name] = law.mean_by_point(slider)[law.points]

@@ -76,7 +76,7 @@ class Nested:
 
 def wrong_waves(solution: Reference) -> float:
     """Length of the longest waves that a solution on a coarser mesh leaves wrong, m."""
-    laws = solution.problem.rubbing.laws.values()
+    laws = solution.problem.contacts.laws.values()
     elements = [float(law.by_point(law.weights).max()) for law in laws]
     return WAVES * max(elements, default=math.inf)
 
@@ -136,7 +136,7 @@ def _check_meshes(coarse: Problem, fine: Problem) -> None:
             raise RefusedError("Nested.coarser", shown, allowed, remedy)
     for kind, are_alike in (
         ("elements", (coarse.inside is None) == (fine.inside is None)),
-        ("interfaces", list(coarse.rubbing) == list(fine.rubbing)),
+        ("interfaces", list(coarse.contacts) == list(fine.contacts)),
         ("bodies", _bodies(coarse).max() == _bodies(fine).max()),
         ("instants", np.array_equal(coarse.instants, fine.instants)),
     ):
@@ -163,8 +163,8 @@ def _moved_contacts(
     """
     moved = np.zeros((fine.n_dofs, fine.n_instants))
     is_known = np.zeros(fine.n_dofs, dtype=bool)
-    for name, target in fine.rubbing.items():
-        law = coarse.rubbing[name]
+    for name, target in fine.contacts.items():
+        law = coarse.contacts[name]
         places = _places(fine, target), _places(coarse, law)
         for component, carried in zip(law.components, target.components, strict=True):
             for rows, to_rows in zip(component.sides, carried.sides, strict=True):
@@ -204,7 +204,7 @@ def _contact_forces(solution: Reference, fine: Problem) -> tuple[Array, Flags]:
     known, _ = known_forces(coarse, solution.contact_force / fine.scales.force)
     force = np.zeros((fine.n_rows, known.shape[1]))
     is_open = np.ones(fine.n_rows, dtype=bool)
-    for name in fine.rubbing:
+    for name in fine.contacts:
         for carried, shared in _shared_forces(coarse, known, fine, name):
             for rows, sign in zip(carried.sides, (1.0, -1.0), strict=False):
                 force[rows] = sign * shared
@@ -220,8 +220,8 @@ def _shared_forces(
     `force` is that of the rows of the coarser mesh, shape (n_coarse_rows, n_instants),
     scaled; those carried have shape (n_pairs, n_instants).
     """
-    law = coarse.rubbing[name]
-    target = fine.rubbing[name]
+    law = coarse.contacts[name]
+    target = fine.contacts[name]
     places = _places(fine, target), _places(coarse, law)
     for component, carried in zip(law.components, target.components, strict=True):
         nodal = law.by_point(force[component.above])

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.checks import Numbers, Part, check
+from solver.checks import InstanceOf, Numbers, check
 from solver.laws.friction import Friction
 from solver.laws.interface import (
     Component,
@@ -132,9 +132,9 @@ class Contact(Pairs):
         super().__post_init__()
         check(
             self,
-            tangential=Part(Friction),
-            normal=Part(Unilateral),
-            stiffness_beside=Part(RodStiffness, BodyStiffness, NodalStiffness),
+            tangential=InstanceOf(Friction),
+            normal=InstanceOf(Unilateral),
+            stiffness_beside=InstanceOf(RodStiffness, BodyStiffness, NodalStiffness),
         )
         # The parts are known to be laws now, so that their sizes may be read.
         size = len(self.tangential.component.above)
@@ -289,7 +289,7 @@ class Contact(Pairs):
         """
         compliance = self.tangential.compliance
         if compliance is None:
-            along = self.tangential.highest.max(axis=1)
+            along = self.tangential.largest_bound.max(axis=1)
         else:
             along = 1.0 / compliance
         whole = self.by_point(along)[self.points]
@@ -365,7 +365,7 @@ class Contact(Pairs):
         return Violation(
             slip=slip,
             friction=force[self.tangent.above],
-            bound=self.tangential.allowed(pressing, slip, opening),
+            bound=self.tangential.bound_after_slip(pressing, slip, opening),
             pressing=pressing,
             opening=opening,
         )

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array
-from solver.checks import NON_NEGATIVE, Number, Numbers, Part, check
+from solver.checks import NON_NEGATIVE, InstanceOf, Number, Numbers, check
 from solver.laws.interface import Component
 from solver.laws.play import SlipFactor
 from solver.refusal import RefusedError
@@ -71,7 +71,7 @@ class FrictionLaw:
             normal_stiffness=above,
             cohesion=NON_NEGATIVE,
             cap=above,
-            slip_factor=Part(SlipFactor),
+            slip_factor=InstanceOf(SlipFactor),
         )
 
     def at(
@@ -135,7 +135,7 @@ class FrictionLaw:
             slip_factor = SlipFactor(slips, slip_factor.factors)
         return replace(self, stiffness=2.0 * self.stiffness, slip_factor=slip_factor)
 
-    def without_slip(self, rubbed: Array, size: float = 1.0) -> Array:
+    def bound_before_slip(self, rubbed: Array, size: float = 1.0) -> Array:
         """Largest friction force before slip, of the shape of `rubbed`, mu N.
 
         Both are forces, N, on an area `size`, m or m^2, or per area with size 1.
@@ -143,7 +143,7 @@ class FrictionLaw:
         return np.asarray(np.minimum(rubbed + self.cohesion * size, self.cap * size))
 
     @property
-    def strongest(self) -> float:
+    def largest_factor(self) -> float:
         """Largest factor on the bound at any slip."""
         if self.slip_factor is None:
             return 1.0
@@ -206,12 +206,12 @@ class Friction:
             friction=Numbers(((size,),), low=0.0),
             cap=Numbers(((size,),), low=0.0),
             compliance=positive,
-            slip_factor=Part(SlipFactor),
+            slip_factor=InstanceOf(SlipFactor),
             start=Numbers(((size,),)),
         )
 
     @property
-    def rubs(self) -> bool:
+    def has_friction(self) -> bool:
         """Check whether there is any friction."""
         return bool(self.bound.any() or self.friction.any())
 
@@ -247,7 +247,7 @@ class Friction:
             )
         return replace(self, start=start)
 
-    def without_slip(
+    def bound_before_slip(
         self, pressing: Array | None, opening: Array | None = None
     ) -> Array:
         """Largest friction force before slip, (n_pairs, n_instants), scaled.
@@ -265,17 +265,17 @@ class Friction:
             bound = np.minimum(bound, self.cap[:, None])
         return bound
 
-    def allowed(
+    def bound_after_slip(
         self, pressing: Array | None, slip: Array, opening: Array | None = None
     ) -> Array:
         """Largest friction force after increments of slip, (n_pairs, n_instants)."""
-        bound = np.broadcast_to(self.without_slip(pressing, opening), slip.shape)
+        bound = np.broadcast_to(self.bound_before_slip(pressing, opening), slip.shape)
         if self.slip_factor is None:
             return bound
         return np.asarray(bound * self.slip_factor(np.cumsum(np.abs(slip), axis=1)))
 
     @property
-    def highest(self) -> Array:
+    def largest_bound(self) -> Array:
         """Largest known part of the bound at any slip, of the shape of the bound."""
         if self.slip_factor is None:
             return self.bound

@@ -126,7 +126,7 @@ class Pairs(Interface):
         pairs_of = [slice(first, last) for first, last in pairwise(ends_of_pairs)]
         return list(zip(points, pairs_of, strict=True))
 
-    def holds_on(self, points: Flags) -> Flags:
+    def spread_to_interfaces(self, points: Flags) -> Flags:
         """Points of interfaces of which any point counts; masks, (n_points,)."""
         counts = [points[some].any() for some, _ in self.ranges]
         return np.repeat(counts, self.sizes)

@@ -153,7 +153,7 @@ class BodyStiffness:
             ):
                 k[rows] = modulus * stiffness * share
 
-    def stick(self, law: Pairs, k: Array) -> None:
+    def choose_sticking(self, law: Pairs, k: Array) -> None:
         """Write the k of two bodies that nowhere slip on each other, as `choose`.
 
         They bend and stretch as one body, except for deformations as short as their
@@ -225,7 +225,7 @@ class NodalStiffness:
             for side, rows in enumerate(component.sides):
                 k[rows] = stiffness[:, number, side]
 
-    def shorten(self, law: Pairs, k: Array, waves: float) -> None:
+    def choose_for_short_waves(self, law: Pairs, k: Array, waves: float) -> None:
         """Raise the k of lines of beams on a support, where only short waves are wrong.
 
         A line of the length l resists as a whole with E A / l, and waves of the length
@@ -241,7 +241,7 @@ class NodalStiffness:
             for rows in component.sides:
                 k[rows] *= factor
 
-    def stick(self, law: Pairs, k: Array) -> None:
+    def choose_sticking(self, law: Pairs, k: Array) -> None:
         """Write the k of two bodies that nowhere slip, as `BodyStiffness.stick`."""
         stiffen(law, k, self.squeezed)
 

@@ -134,7 +134,7 @@ class ContactRule:
             if pressing is None:
                 return self._known_slack
             return self._known_slack + self._grows * pressing
-        return np.asarray(self._along.without_slip(pressing, opening) * self._lag)
+        return np.asarray(self._along.bound_before_slip(pressing, opening) * self._lag)
 
 
 def _share(soft: Array, compliance: Array | None) -> Array | None:

@@ -86,7 +86,7 @@ def of_bases(problem: Problem, force: Array, bases: Sequence[SharedBasis]) -> Si
     """
     lengths = np.zeros(problem.n_rows)
     seen = set[SharedBasis]()
-    for law in problem.rubbing.laws.values():
+    for law in problem.contacts.laws.values():
         lengths[law.components[-1].above] = law.weights
     largest = max(basis.n_modes for basis in bases)
     left = np.zeros(largest + 1)

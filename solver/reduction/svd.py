@@ -115,7 +115,7 @@ def decompositions(
     """
     scales = problem.scales
     lengths = np.zeros(problem.n_rows)
-    for law in problem.rubbing.laws.values():
+    for law in problem.contacts.laws.values():
         for rows in law.tangent.sides:
             lengths[rows] = law.weights
     slides = lengths > 0.0

@@ -53,15 +53,15 @@ def external_force(problem: Problem) -> Array:
     for part in problem.substructures:
         if part.body_force is not None:
             np.add.at(total, part.dofs, part.body_force)
-    for given in problem.given_forces:
+    for given in problem.prescribed_forces:
         np.add.at(total, problem.row_dofs[given.rows], given.values)
     return total
 
 
 def points_dofs(problem: Problem) -> Indices:
     """Degree of freedom of every point that rubs, by interfaces, shape (n_points,)."""
-    dofs = np.zeros(problem.rubbing.n_points, dtype=np.intp)
-    for law, _, points, _ in problem.rubbing.stacks:
+    dofs = np.zeros(problem.contacts.n_points, dtype=np.intp)
+    for law, _, points, _ in problem.contacts.stacks:
         dofs[points[law.points]] = problem.row_dofs[law.tangent.above]
     return dofs
 
@@ -71,7 +71,7 @@ def jumps(problem: Problem) -> sparse.csr_array:
     rows = []
     columns = []
     values = []
-    for law, _, _, forces in problem.rubbing.stacks:
+    for law, _, _, forces in problem.contacts.stacks:
         # All pairs of a point make the same jump, so its first pair stands for it.
         points, pairs = np.unique(law.points, return_index=True)
         for numbers, component in zip(forces, law.components, strict=True):
@@ -82,5 +82,5 @@ def jumps(problem: Problem) -> sparse.csr_array:
     entries = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array(
         (np.concatenate(values), entries),
-        shape=(problem.rubbing.n_forces, problem.n_dofs),
+        shape=(problem.contacts.n_forces, problem.n_dofs),
     )

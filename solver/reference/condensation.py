@@ -38,8 +38,8 @@ from solver.arrays import (
     separated,
     sparse_factor,
 )
+from solver.cache import CACHE, content_of
 from solver.discrete.problem import Problem
-from solver.kept import KEPT, content_of
 from solver.reference.assembly import (
     Interrupted,
     NoReferenceError,
@@ -77,7 +77,7 @@ BLOCK = 500
 class GluedStructure:
     """The structure glued at its contacts: what no friction and no load changes.
 
-    It is kept between runs (`solver.kept`).
+    It is kept between runs (`solver.cache`).
 
     Parameters
     ----------
@@ -277,11 +277,11 @@ class Condensation:
         given = self.given[self.moving]
         key = (
             "glued",
-            problem.place_of_bodies,
+            problem.content_of_bodies,
             problem.content_of_stiffness,
             content_of(self._fixed, moving, rigid, given),
         )
-        return KEPT.of(
+        return CACHE.get(
             key,
             lambda: GluedStructure(problem, self._whole, moving, rigid, given, stop),
         )
@@ -403,15 +403,15 @@ def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
     -------
     The motions, shape (n_dofs, n_motions), and their jumps, shape (n_base, n_motions).
     """
-    if problem.motions is None:
+    if problem.rigid_motions is None:
         return np.zeros((problem.n_dofs, 0)), np.zeros((base.shape[0], 0))
-    _, size = np.linalg.qr(base @ problem.motions)
+    _, size = np.linalg.qr(base @ problem.rigid_motions)
     steps = np.abs(np.diagonal(size))
     if len(steps) < size.shape[1] or steps.min() <= LOOSE * steps.max():
         raise NoReferenceError(_NOT_HELD)
     # From the motions once more, so that a part that a motion leaves in place has
     # exactly no displacement in it.
-    motions = solve_triangular(size, problem.motions.T, trans="T").T
+    motions = solve_triangular(size, problem.rigid_motions.T, trans="T").T
     return motions, np.asarray(base @ motions)
 
 

@@ -242,7 +242,7 @@ class IncrementalContact:
 def jumps_in(problem: Problem) -> int:
     """Number of components of contact that `IncrementalContact` condenses."""
     count = 0
-    for law in problem.rubbing.laws.values():
+    for law in problem.contacts.laws.values():
         count += sum(len(component.above) for component in law.components)
     return count
 

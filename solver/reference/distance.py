@@ -127,7 +127,7 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
     prescribed displacements; and where these are rounding, because nothing resists, the
     forces that such displacements, and closing bodies that overlap, make in elements.
     """
-    forces = [given.values for given in problem.given_forces]
+    forces = [given.values for given in problem.prescribed_forces]
     for part in problem.substructures:
         if part.body_force is not None:
             forces.append(part.body_force)
@@ -170,7 +170,7 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
         Contact forces, stacked, shape (n_forces, n_instants), N.
     """
     held = np.ones(problem.n_instants, dtype=bool)
-    if problem.motions is None:
+    if problem.rigid_motions is None:
         return held
     rules = rules_of(problem)
     force = contact_force / problem.scales.force
@@ -178,7 +178,7 @@ def held_instants(problem: Problem, contact_force: Array) -> Flags:
     force = np.where(force > small, force, 0.0)
     bound = rules.bounds(force, np.zeros_like(force))
     holds = np.where(rules.normal[:, None], force, bound) > 0.0
-    moved = jumps(problem) @ problem.motions
+    moved = jumps(problem) @ problem.rigid_motions
     acts = holds.any(axis=0)
     at_rest = ~np.logical_or.accumulate(acts)
     # Mostly the contacts that hold whenever any do hold the bodies already.

@@ -31,8 +31,8 @@ from solver.reference.assembly import (
 )
 from solver.reference.condensation import LEFT_INSIDE
 from solver.reference.contact import IncrementalContact
+from solver.reference.rod_minimum import Minimum, Search, Tridiagonal
 from solver.reference.rules import Starts, States, rules_of
-from solver.reference.search import Minimum, Search, Tridiagonal
 from solver.reference.solution import Reference
 
 DEARER = 30
@@ -46,11 +46,11 @@ BALANCED = 1e-6
 
 def rubs_on_supports(problem: Problem) -> bool:
     """Check that rods rub by known bounds, on one rigid support at every point."""
-    laws = problem.rubbing.laws.values()
+    laws = problem.contacts.laws.values()
     if not laws or not problem.is_chain or not all(law.is_plain for law in laws):
         return False
     dofs = points_dofs(problem)
-    return len(problem.rubbing) == 1 or len(np.unique(dofs)) == len(dofs)
+    return len(problem.contacts) == 1 or len(np.unique(dofs)) == len(dofs)
 
 
 class IncrementalRod:
@@ -301,7 +301,7 @@ def incremental_solver(
     """
     if problem.no_reference:
         raise NoReferenceError(problem.no_reference)
-    if problem.goes_on:
+    if problem.has_start:
         raise NoReferenceError(
             "Incremental solvers begin where nothing has slipped yet."
         )

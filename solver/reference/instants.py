@@ -20,7 +20,7 @@ from solver.reference.rules import (
     HELD,
     Increment,
     InstantSolution,
-    Sides,
+    RightSides,
     Starts,
     States,
 )
@@ -136,7 +136,7 @@ class Instants:
             rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         )
         held = before - np.where(rules.normal, self._opening, 0.0)
-        step = self._together(Sides(load, self._bound(instant), held), instant)
+        step = self._together(RightSides(load, self._bound(instant), held), instant)
         # Only now, as the step was from the load and the shift before.
         self._load = condensed.load[:, instant]
         self._shift = condensed.shift[:, instant]
@@ -169,14 +169,14 @@ class Instants:
         """Friction force that needs no normal force, (n,): none of broken bonds."""
         return self._rules.bound_at(instant) * self._intact
 
-    def _together(self, sides: Sides, instant: int) -> Increment:
+    def _together(self, right_sides: RightSides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""
         done = self.system.solutions
         from_guess = self._starts.from_guess
         for _ in range(PASSES):
-            solved = self._solved(sides, instant)
+            solved = self._solved(right_sides, instant)
             if solved is None:
-                return self._stuck(sides)
+                return self._stuck(right_sides)
             self._states, step, _ = solved
             # Without rings there is nothing to pull together.
             if not self._condensed.stresses.size:
@@ -184,15 +184,15 @@ class Instants:
             pull = self._pull_together(step, instant)
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._newton.largest_load:
                 break
-            sides = replace(sides, load=sides.load - pull)
+            right_sides = replace(right_sides, load=right_sides.load - pull)
         self._starts.took(self.system.solutions - done, from_guess=from_guess)
         return step
 
-    def _stuck(self, sides: Sides) -> Increment:
+    def _stuck(self, right_sides: RightSides) -> Increment:
         """The step in which all contacts stay where they are."""
-        held = sides.held + self._rules.normal * self._opening
+        held = right_sides.held + self._rules.normal * self._opening
         states = np.full_like(self._states, HELD)
-        return self.system(states, replace(sides, held=held))
+        return self.system(states, replace(right_sides, held=held))
 
     def _pull_together(self, step: Increment, instant: int) -> Array:
         """Forces by which dependent jumps that are apart tie each other, (n_base,)."""
@@ -203,27 +203,31 @@ class Instants:
         moved += step.strained + condensed.gauge @ step.motion
         return np.asarray(condensed.tie * (stresses @ (stresses.T @ moved)))
 
-    def _solved(self, sides: Sides, instant: int) -> InstantSolution | None:
+    def _solved(self, right_sides: RightSides, instant: int) -> InstantSolution | None:
         """Find states and step of an instant; None where there is no solution."""
         rules = self._rules
         newton = self._newton
         # A body that falls, rolls or slides a long way touches elsewhere than one
         # instant before, or slips as a whole.
         known = [states[:, instant] for states in self._guesses]
-        still = np.zeros_like(sides.held)
-        nothing = Increment(still, self._force, still[: len(sides.load)], still[:0])
+        still = np.zeros_like(right_sides.held)
+        nothing = Increment(
+            still, self._force, still[: len(right_sides.load)], still[:0]
+        )
         begin = InstantSolution(self._states, nothing, still)
         guesses = begin.guesses(known)
         # Where there may be several solutions, the states of the instant before come
         # first.
         if self._has_guess and self._starts.from_guess and not rules.is_nonlinear:
             guesses[:2] = guesses[1::-1]
-        solved = newton.follow(begin, sides, guesses)
+        solved = newton.follow(begin, right_sides, guesses)
         if solved is None and not self._is_lost:
             if rules.is_nonlinear:
-                solved = self._in_parts(begin, sides, known, instant)
+                solved = self._in_parts(begin, right_sides, known, instant)
             elif self._may_hold(instant):
-                solved = newton.follow(begin, sides, newton.approach(begin, sides))
+                solved = newton.follow(
+                    begin, right_sides, newton.approach(begin, right_sides)
+                )
         # Where one instant is lost the next ones start from nothing sure: they get no
         # costly search.
         self.is_stuck = solved is None
@@ -231,7 +235,11 @@ class Instants:
         return solved
 
     def _in_parts(
-        self, at: InstantSolution, sides: Sides, known: list[States], instant: int
+        self,
+        at: InstantSolution,
+        right_sides: RightSides,
+        known: list[States],
+        instant: int,
     ) -> InstantSolution | None:
         """Follow the solution of the instant before; where it is lost, seek another.
 
@@ -242,8 +250,10 @@ class Instants:
         held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
         # Under these nothing is added to the instant before.
         pulled = -self.system.on_base(force)
-        begin = Sides(pulled, self._bound(max(instant - 1, 0)), held)
-        at, share = self._followed(lambda _: self._newton, at, (begin, sides), known)
+        begin = RightSides(pulled, self._bound(max(instant - 1, 0)), held)
+        at, share = self._followed(
+            lambda _: self._newton, at, (begin, right_sides), known
+        )
         if share == 1.0:
             return at
         # Only friction that falls with slip lets the structure snap.
@@ -253,26 +263,26 @@ class Instants:
             return None
         if not rules.softens:
             newton = self._newton
-            return newton.follow(at, sides, newton.approach(at, sides))
-        return self._beyond(at, (begin.towards(sides, share), sides), known)
+            return newton.follow(at, right_sides, newton.approach(at, right_sides))
+        return self._beyond(at, (begin.towards(right_sides, share), right_sides), known)
 
     def _followed(
         self,
         newton_at: Callable[[float], Newton],
         at: InstantSolution,
-        sides: tuple[Sides, Sides],
+        right_sides: tuple[RightSides, RightSides],
         known: list[States],
     ) -> tuple[InstantSolution, float]:
-        """Follow a solution from some right sides to others, in parts.
+        """Follow a solution from some right-hand sides to others, in parts.
 
         Parameters
         ----------
         newton_at
             Newton's method at a share of the change from one to the other.
         at
-            Solution with the first right sides.
-        sides
-            The right sides at both ends.
+            Solution with the first right-hand sides.
+        right_sides
+            The right-hand sides at both ends.
         known
             States to try, shape (n,) each.
 
@@ -280,7 +290,7 @@ class Instants:
         -------
         The last solution found, and at which share.
         """
-        begin, end = sides
+        begin, end = right_sides
         # Parts grow while they succeed and shrink where they fail.
         share = 0.0
         length = FIRST_PART
@@ -299,7 +309,10 @@ class Instants:
         return at, share
 
     def _beyond(
-        self, at: InstantSolution, sides: tuple[Sides, Sides], known: list[States]
+        self,
+        at: InstantSolution,
+        right_sides: tuple[RightSides, RightSides],
+        known: list[States],
     ) -> InstantSolution | None:
         """Seek a stable solution beyond one that is lost.
 
@@ -313,7 +326,7 @@ class Instants:
 
         `known` are states to try, shape (n,) each.
         """
-        begin, end = sides
+        begin, end = right_sides
         fallen = np.abs(at.slip)
         for number in range(SLIDES + 1):
             is_last = number == SLIDES
@@ -330,7 +343,7 @@ class Instants:
             fallen = falls
             if not is_last and not np.array_equal(at.states, before.states):
                 continue
-            near = self._newton.near(at, end)
+            near = self._newton.seek_from(at, end)
             if near is None:
                 continue
             if self._newton.stability.is_stable(near, end):
@@ -343,18 +356,18 @@ class Instants:
     def _slid(
         self,
         at: InstantSolution,
-        sides: tuple[Sides, Sides],
+        right_sides: tuple[RightSides, RightSides],
         fallen: tuple[Array, Array],
         known: list[States],
     ) -> InstantSolution | None:
-        """Follow a solution to other right sides with friction of given slips.
+        """Follow a solution to other right-hand sides with friction of given slips.
 
         Parameters
         ----------
         at
-            Solution with the first right sides.
-        sides
-            The right sides at both ends.
+            Solution with the first right-hand sides.
+        right_sides
+            The right-hand sides at both ends.
         fallen
             Slips up to which friction has fallen at both ends, shape (n,) each, scaled.
         known
@@ -362,17 +375,17 @@ class Instants:
         """
         before, after = fallen
         newton = self._newton.with_friction_left(after)
-        slid = newton.follow(at, sides[1], at.guesses(known))
+        slid = newton.follow(at, right_sides[1], at.guesses(known))
         if slid is not None:
             return slid
 
         def newton_at(share: float) -> Newton:
             return self._newton.with_friction_left(before + share * (after - before))
 
-        slid, share = self._followed(newton_at, at, sides, known)
+        slid, share = self._followed(newton_at, at, right_sides, known)
         if share == 1.0:
             return slid
-        return newton.follow(at, sides[1], newton.approach(at, sides[1]))
+        return newton.follow(at, right_sides[1], newton.approach(at, right_sides[1]))
 
 
 def _are_equal(slip: Array, other: Array) -> bool:

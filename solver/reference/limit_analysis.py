@@ -192,9 +192,9 @@ def collapse_of(
     NoReferenceError
         If HiGHS finds no answer.
     """
-    if problem.motions is None:
+    if problem.rigid_motions is None:
         return None
-    motions = sparse.csc_array(problem.motions)
+    motions = sparse.csc_array(problem.rigid_motions)
     loads = motions.T @ external_force(problem)
     unit = float(np.abs(loads).max(initial=0.0)) or 1.0
     program = _Program(problem, motions, unit)
@@ -252,9 +252,9 @@ def load_factors(problem: Problem, without: Problem) -> Array:
         If HiGHS finds no answer.
     """
     factors = np.full(problem.n_instants, np.inf)
-    if problem.motions is None:
+    if problem.rigid_motions is None:
         return factors
-    motions = sparse.csc_array(problem.motions)
+    motions = sparse.csc_array(problem.rigid_motions)
     others = motions.T @ external_force(without)
     loads = motions.T @ external_force(problem) - others
     unit = float(np.abs(others).max(initial=0.0)) or 1.0
@@ -281,12 +281,12 @@ def _collapse_at(
     times = problem.instants
     first = times[max(instant - 1, 0)]
     time = float(first + share * (times[instant] - first))
-    assert problem.motions is not None
-    shares = np.zeros(problem.motions.shape[1])
+    assert problem.rigid_motions is not None
+    shares = np.zeros(problem.rigid_motions.shape[1])
     if balanced.status != INFEASIBLE:
         shares = balanced.eqlin.marginals
     # The multipliers of the balance are the motions that the loads do work on.
-    moved = -problem.motions @ shares
+    moved = -problem.rigid_motions @ shares
     mechanism = moved / (np.abs(moved).max(initial=0.0) or 1.0)
     return Collapse(time, instant, share, mechanism, _motion_of(problem, mechanism))
 

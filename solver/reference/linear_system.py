@@ -19,7 +19,7 @@ from solver.arrays import ROUNDING, Array, Indices, as_slice, largest_size
 from solver.reference.assembly import Interrupted
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors, UpdatedFactors
-from solver.reference.rules import HELD, Increment, Sides, States
+from solver.reference.rules import HELD, Increment, RightSides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is
@@ -144,46 +144,46 @@ class LinearSystem:
         self._states = None
         self._whole = None
 
-    def __call__(self, states: States, sides: Sides) -> Increment:
+    def __call__(self, states: States, right_sides: RightSides) -> Increment:
         """Solve for the step from the instant before, with states of shape (n,)."""
         if self.stop is not None and self.stop():
             raise Interrupted
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)
         self.solutions += 1
-        solved = self._solved(sides)
-        self._set_carried(solved, sides)
-        end = self._ends(solved, sides.held)
+        solved = self._solved(right_sides)
+        self._set_carried(solved, right_sides)
+        end = self._ends(solved, right_sides.held)
         return Increment(end, solved.force, solved.strained, solved.motion)
 
-    def _solved(self, sides: Sides) -> Solved:
+    def _solved(self, right_sides: RightSides) -> Solved:
         """Solve the factored system."""
         # Jumps of the base, then forces of the jumps beyond it.
         unknown = np.zeros(len(self._of_unknowns))
-        unknown[self._kept] = sides.held[self._base[self._kept]]
+        unknown[self._kept] = right_sides.held[self._base[self._kept]]
         force = self._forces(unknown, self._kept)
-        force[self._base_rows] -= sides.load
-        missing = self._missing(unknown, force, sides)
+        force[self._base_rows] -= right_sides.load
+        missing = self._missing(unknown, force, right_sides)
         unknown[self._unknowns] = self._factors.solve(missing)
         force += self._forces(unknown, self._unknowns, self._stiffness_rows)
         solved = Solved(unknown, unknown[: len(self._base)], unknown[:0], force)
         if self._is_plain:
             return solved
-        return self._apart(solved, sides)
+        return self._apart(solved, right_sides)
 
-    def _apart(self, solved: Solved, sides: Sides) -> Solved:
+    def _apart(self, solved: Solved, right_sides: RightSides) -> Solved:
         """Set rigid motions apart, and refine the solution where that is needed."""
         if not self._gauge.size:
-            return self._refined(solved, sides)
+            return self._refined(solved, right_sides)
         motion = self._gauge.T @ solved.strained
         moved = self._gauge @ motion
         strained = solved.strained - moved
         apart = Solved(solved.unknown, strained, motion, solved.force)
         if largest_size(moved) > FAR * largest_size(strained) or len(self._sprung):
-            return self._refined(apart, sides)
+            return self._refined(apart, right_sides)
         return apart
 
-    def _refined(self, solved: Solved, sides: Sides) -> Solved:
+    def _refined(self, solved: Solved, right_sides: RightSides) -> Solved:
         """Refine a solution once.
 
         Beside a motion that is far larger than the deformation, the solution has lost
@@ -201,10 +201,10 @@ class LinearSystem:
             deformed = unknown.copy()
             deformed[: len(strained)] = strained
             force = self._of_unknowns @ deformed
-            force[self._base_rows] -= sides.load
+            force[self._base_rows] -= right_sides.load
         change = np.zeros_like(unknown)
         if not self.is_singular:
-            missing = self._missing(unknown, force, sides)
+            missing = self._missing(unknown, force, right_sides)
             change[self._unknowns] = self._factors.solve(missing)
             force = force + self._forces(change, self._unknowns, self._stiffness_rows)
         changed = change[: len(strained)]
@@ -214,7 +214,7 @@ class LinearSystem:
             motion = motion + further
         return Solved(unknown + change, strained + changed, motion, force)
 
-    def _missing(self, unknown: Array, force: Array, sides: Sides) -> Array:
+    def _missing(self, unknown: Array, force: Array, right_sides: RightSides) -> Array:
         """Differences from the equations, (n_rows,), with some unknowns, (n,).
 
         The forces are those of all jumps by these unknowns, shape (n,).
@@ -222,29 +222,31 @@ class LinearSystem:
         rows = self._rows
         jump = unknown[: len(self._base)]
         missing = (
-            -self._direction * sides.bound[rows]
+            -self._direction * right_sides.bound[rows]
             - self._lengthening * force[rows]
             - self._drag * force[self._carriers]
         )
         if self._grows:
-            slip = sides.held[rows] - self._jumps_of_rows @ jump
+            slip = right_sides.held[rows] - self._jumps_of_rows @ jump
             missing += self._growth_of_rows * slip
         if len(self._sprung):
             springs = rows[self._sprung]
             length = self._compliance[springs] * force[springs]
             end = self._jumps_of_sprung @ jump + length
-            missing[self._sprung] = self._sprung_scale * (sides.held[springs] - end)
+            missing[self._sprung] = self._sprung_scale * (
+                right_sides.held[springs] - end
+            )
         return np.asarray(missing)
 
-    def _set_carried(self, solved: Solved, sides: Sides) -> None:
+    def _set_carried(self, solved: Solved, right_sides: RightSides) -> None:
         """Set the forces of the rows by their friction law, and note the difference."""
         rows = self._rows
         force = solved.force
-        carried = -self._direction * sides.bound[rows]
+        carried = -self._direction * right_sides.bound[rows]
         carried = carried - self._drag * force[self._carriers]
         if self._grows:
             jump = solved.unknown[: len(self._base)]
-            slip = self._jumps_of_rows @ jump - sides.held[rows]
+            slip = self._jumps_of_rows @ jump - right_sides.held[rows]
             carried = (carried - self._growth_of_rows * slip) / self._lengthening
         carried[self._sprung] = force[rows[self._sprung]]
         self.unbalanced = float(np.abs(force[rows] - carried).max(initial=0.0))

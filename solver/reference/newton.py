@@ -28,7 +28,7 @@ from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.friction_over_slip import FrictionOverSlip
 from solver.reference.linear_system import LinearSystem
-from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
+from solver.reference.rules import HELD, Increment, InstantSolution, RightSides, States
 from solver.reference.soft_system import system_of
 from solver.reference.stable_solutions import Stability
 
@@ -106,23 +106,28 @@ class Newton:
         return changed
 
     def follow(
-        self, at: InstantSolution, sides: Sides, guesses: Iterable[InstantSolution]
+        self,
+        at: InstantSolution,
+        right_sides: RightSides,
+        guesses: Iterable[InstantSolution],
     ) -> InstantSolution | None:
-        """Follow a solution to other right sides.
+        """Follow a solution to other right-hand sides.
 
         None where no guess leads to a solution, or only to one of another branch.
         """
         for guess in guesses:
-            reached = self.seek(self.system, guess, sides)
+            reached = self.seek(self.system, guess, right_sides)
             if reached is None:
                 continue
             if not self.friction_law.softens:
                 return reached
-            if self.stability.continues(at, reached, sides):
+            if self.stability.continues(at, reached, right_sides):
                 return reached
         return None
 
-    def approach(self, at: InstantSolution, sides: Sides) -> Iterator[InstantSolution]:
+    def approach(
+        self, at: InstantSolution, right_sides: RightSides
+    ) -> Iterator[InstantSolution]:
         """Yield solutions with softer and softer springs, whose states repeat.
 
         The first is sought from a solution. Nothing is yielded where there are too many
@@ -134,13 +139,13 @@ class Newton:
         if len(condensed.stiffness) > MOST_JUMPS:
             return
         # Springs are relaxed at the deformation that the step before has come to.
-        relaxed = np.zeros_like(sides.load)
+        relaxed = np.zeros_like(right_sides.load)
         tried = b""
         for _ in range(SPRING_STEPS):
             springs = share * np.diagonal(condensed.stiffness)
             # A spring at its relaxed length pulls with nothing, so at rest it changes
             # no solution.
-            pulled = replace(sides, load=sides.load + springs * relaxed)
+            pulled = replace(right_sides, load=right_sides.load + springs * relaxed)
             solved = self.seek(self._with_springs(springs), at, pulled)
             if solved is not None:
                 before = at
@@ -174,12 +179,14 @@ class Newton:
         no_motions = condensed.gauge[:, :0]
         return LinearSystem(condensed, stiffness, no_motions, self.system.stop)
 
-    def near(self, at: InstantSolution, sides: Sides) -> InstantSolution | None:
+    def seek_from(
+        self, at: InstantSolution, right_sides: RightSides
+    ) -> InstantSolution | None:
         """Seek a solution, stable or not, from fields that need not be one."""
-        return self.seek(self.system, at, sides)
+        return self.seek(self.system, at, right_sides)
 
     def seek(
-        self, system: LinearSystem, guess: InstantSolution, sides: Sides
+        self, system: LinearSystem, guess: InstantSolution, right_sides: RightSides
     ) -> InstantSolution | None:
         """Seek states and slips from those of a guess; None where the states cycle.
 
@@ -192,14 +199,14 @@ class Newton:
         pieces: list[bytes] = []
         n_singular = 0
         for _ in range(max(FEWEST_STEPS, len(states))):
-            tangent_sides = sides
+            tangent_sides = right_sides
             if rules.is_nonlinear:
                 slip = _slip_of_states(states, slip)
             piece = self._piece(states, slip)
             if rules.is_nonlinear:
-                tangent = self.friction_law.tangent(sides.bound, force, slip)
+                tangent = self.friction_law.tangent(right_sides.bound, force, slip)
                 system.set_friction(tangent.coefficient, tangent.growth)
-                tangent_sides = replace(sides, bound=tangent.constant)
+                tangent_sides = replace(right_sides, bound=tangent.constant)
                 piece += tangent.is_capped.tobytes()
             if _cycles(pieces, piece, is_nonlinear=rules.is_nonlinear):
                 return None
@@ -216,17 +223,21 @@ class Newton:
                 states, step, tangent_sides, system.friction, rounding
             )
             if rules.is_nonlinear:
-                slip = np.where(rules.normal, 0.0, step.jump - sides.held)
+                slip = np.where(rules.normal, 0.0, step.jump - right_sides.held)
             force = step.force
             reached = InstantSolution(states, step, slip)
             if np.array_equal(corrected, states):
-                if self._obeys(system, reached, sides, rounding[0]):
+                if self._obeys(system, reached, right_sides, rounding[0]):
                     return reached
             states = corrected
         return None
 
     def _obeys(
-        self, system: LinearSystem, at: InstantSolution, sides: Sides, slack: float
+        self,
+        system: LinearSystem,
+        at: InstantSolution,
+        right_sides: RightSides,
+        slack: float,
     ) -> bool:
         """Check that forces balance and friction obeys its law, not only the tangent.
 
@@ -240,7 +251,7 @@ class Newton:
         if not rules.is_nonlinear:
             return True
         force = at.step.force
-        bound = self.friction_law.bound(sides.bound, force, np.abs(at.slip))
+        bound = self.friction_law.bound(right_sides.bound, force, np.abs(at.slip))
         sticks = (at.states == HELD) & ~rules.normal
         slips = np.abs(at.states) == 1
         excess = np.where(sticks, np.abs(force) - bound - slack, 0.0)
@@ -269,7 +280,7 @@ class Newton:
         self,
         states: States,
         step: Increment,
-        sides: Sides,
+        right_sides: RightSides,
         friction: Array,
         rounding: tuple[float, Array],
     ) -> States:
@@ -282,8 +293,8 @@ class Newton:
         force = step.force
         slack, blur = rounding
         # Distance from where the jump would be held, times a stiffness: a force.
-        moved = self.system.unit * (step.jump - sides.held)
-        limit = self._slip_limit(held, force, moved, friction, sides.bound)
+        moved = self.system.unit * (step.jump - right_sides.held)
+        limit = self._slip_limit(held, force, moved, friction, right_sides.bound)
         limit += slack * held
         # A point slips on until it turns back; others slip where the limit is passed.
         corrected = _beyond(np.where(held, -force, moved), limit)

@@ -47,7 +47,7 @@ def other_positions(
     force
         Its contact forces, stacked, shape (n_forces, n_instants), N.
     """
-    motions = problem.motions
+    motions = problem.rigid_motions
     if motions is None or motions.shape[1] > MOST_MOTIONS:
         return {}
     rules = rules_of(problem)

@@ -183,7 +183,7 @@ def rules_of(problem: Problem) -> Rules:
     slip_factors = set[SlipFactor]()
     parts = list[Rules]()
     places = list[Indices]()
-    for law, _, _, forces in problem.rubbing.stacks:
+    for law, _, _, forces in problem.contacts.stacks:
         parts += _components(law, forces[0])
         places += forces
         if not parts[-1].is_frictionless.all():
@@ -230,7 +230,9 @@ def _components(law: Contact, places: Indices) -> list[Rules]:
         # Without friction what is in series along changes nothing, and tells the jump
         # from others.
         rubs = (bound > 0.0).any(axis=1) | (friction > 0.0)
-        compliance = np.where(law.holds_on(rubs), compliance, normal.compliance)
+        compliance = np.where(
+            law.spread_to_interfaces(rubs), compliance, normal.compliance
+        )
     tangential = Rules(
         normal=~is_normal,
         gap=zeros,
@@ -245,8 +247,8 @@ def _components(law: Contact, places: Indices) -> list[Rules]:
 
 
 @dataclass(frozen=True, eq=False)
-class Sides:
-    """Right sides of one instant, scaled.
+class RightSides:
+    """Right-hand sides of one instant, scaled.
 
     Attributes
     ----------
@@ -263,11 +265,11 @@ class Sides:
     bound: Array
     held: Array
 
-    def towards(self, end: Sides, share: float) -> Sides:
-        """Right sides interpolated to others: a share of 0 is these, 1 the others."""
+    def towards(self, end: RightSides, share: float) -> RightSides:
+        """Interpolate to other right-hand sides: these at a share of 0, others at 1."""
         if share == 1.0:
             return end
-        return Sides(
+        return RightSides(
             self.load + share * (end.load - self.load),
             self.bound + share * (end.bound - self.bound),
             self.held + share * (end.held - self.held),
@@ -281,7 +283,7 @@ class Increment(NamedTuple):
     ----------
     jump
         Increments of all jumps, with the new length of what is in series, as
-        `Sides.held`, shape (n,), scaled.
+        `RightSides.held`, shape (n,), scaled.
     force
         Forces of all jumps at the end, shape (n,), scaled.
     strained

@@ -123,7 +123,7 @@ def _forces_of_slips(
 
 def _count(problem: Problem) -> int:
     """Number of points that rub."""
-    return problem.rubbing.n_points
+    return problem.contacts.n_points
 
 
 def _limit_of_points(elastic: Array, bound: Array) -> float:

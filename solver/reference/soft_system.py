@@ -17,7 +17,7 @@ from solver.arrays import Array, largest_size
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors
 from solver.reference.linear_system import LinearSystem, Solved
-from solver.reference.rules import Sides, States
+from solver.reference.rules import RightSides, States
 
 SOFT = 1e3
 """Stiffness of a jump over that of what is in series, from which on this is soft: of
@@ -78,11 +78,11 @@ class SoftSystem(LinearSystem):
         beyond = np.zeros((self._gauge.shape[1], len(self._others)))
         return np.hstack([-self._gauge[self._free].T, beyond, kept.T @ kept])
 
-    def _solved(self, sides: Sides) -> Solved:
+    def _solved(self, right_sides: RightSides) -> Solved:
         """Solve the factored system, and again for what is missing."""
         count = len(self._unknowns)
         n_base = len(self._base)
-        held = sides.held[self._base[self._kept]]
+        held = right_sides.held[self._base[self._kept]]
         deformed = np.zeros(len(self._of_unknowns))
         motion = np.zeros(self._gauge.shape[1])
         rounds = ROUNDS
@@ -91,13 +91,13 @@ class SoftSystem(LinearSystem):
         for number in range(rounds + 1):
             deformed[self._kept] = held - self._gauge[self._kept] @ motion
             force = self._of_unknowns @ deformed
-            force[self._base_rows] -= sides.load
+            force[self._base_rows] -= right_sides.load
             unknown = deformed.copy()
             unknown[:n_base] += self._gauge @ motion
             unknown[self._kept] = held
             if number == rounds:
                 break
-            missing = self._missing(unknown, force, sides)
+            missing = self._missing(unknown, force, right_sides)
             off_gauge = self._gauge.T @ deformed[:n_base]
             right = self._row_scale * np.concatenate([missing, off_gauge])
             change = self._column_scale * self._factors.solve(right)

@@ -96,7 +96,7 @@ class Reference:
         problem = self.problem
         scale = problem.scales.displacement
         rows = self.displacement[problem.row_dofs] / scale
-        return problem.rubbing.fields(self.contact_force, rows, self.status, scale)
+        return problem.contacts.fields(self.contact_force, rows, self.status, scale)
 
 
 def fingerprint(problem: Problem) -> bytes:
@@ -113,7 +113,7 @@ def fingerprint(problem: Problem) -> bytes:
     force = external_force(problem)
     scales = problem.scales
     rules = rules_of(problem)
-    laws = problem.rubbing.laws
+    laws = problem.contacts.laws
     entries: list[ArrayLike] = []
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         # Equal matrices may store their entries in another order.
@@ -123,7 +123,7 @@ def fingerprint(problem: Problem) -> bytes:
     positions = [law.positions for law in laws.values()]
     parts: list[ArrayLike] = [
         [f"{name} {law.opens} {law.is_on_support}" for name, law in laws.items()],
-        list(problem.rubbing),
+        list(problem.contacts),
         [scales.displacement, scales.force, scales.time],
         problem.instants,
         problem.positions,

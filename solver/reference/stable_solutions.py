@@ -17,7 +17,7 @@ from solver.arrays import Array, Indices
 from solver.laws import OPEN
 from solver.reference.condensation import Condensation
 from solver.reference.friction_over_slip import FrictionOverSlip
-from solver.reference.rules import HELD, InstantSolution, Sides
+from solver.reference.rules import HELD, InstantSolution, RightSides
 
 
 class Stability:
@@ -28,12 +28,12 @@ class Stability:
         self._rules = condensed.rules
         self._friction_law = friction_law
 
-    def is_stable(self, at: InstantSolution, sides: Sides) -> bool:
+    def is_stable(self, at: InstantSolution, right_sides: RightSides) -> bool:
         """Check that no further slip of a solution costs less than it gains."""
-        return self.continues(at, at, sides)
+        return self.continues(at, at, right_sides)
 
     def continues(
-        self, at: InstantSolution, reached: InstantSolution, sides: Sides
+        self, at: InstantSolution, reached: InstantSolution, right_sides: RightSides
     ) -> bool:
         """Check that a solution reached continues the branch of another.
 
@@ -41,7 +41,7 @@ class Stability:
         in either have softened in between, whatever else slips: then no other solution
         slips there alone.
         """
-        contacts, free = self._contact_stiffness(at, reached, sides)
+        contacts, free = self._contact_stiffness(at, reached, right_sides)
         if contacts is None:
             return False
         if not len(free):
@@ -54,13 +54,13 @@ class Stability:
             return False
         return True
 
-    def leave(self, at: InstantSolution, sides: Sides) -> InstantSolution:
+    def leave(self, at: InstantSolution, right_sides: RightSides) -> InstantSolution:
         """Disturb a solution that is not stable, in the direction that it gives way.
 
         All points that slip go on along the motion that costs least, until half of the
         slip after which the first of them would stop.
         """
-        direction = self._weakest_direction(at, sides)
+        direction = self._weakest_direction(at, right_sides)
         slip = np.abs(at.slip)
         # An eigenvector has no sign: it is taken such that some points slip on.
         turns = direction < 0.0
@@ -73,10 +73,10 @@ class Stability:
         further = np.maximum(slip + 0.5 * length * direction, 0.0)
         return at._replace(slip=further * at.states)
 
-    def _weakest_direction(self, at: InstantSolution, sides: Sides) -> Array:
+    def _weakest_direction(self, at: InstantSolution, right_sides: RightSides) -> Array:
         """Slip per jump, along its friction, in the motion that costs least, (n,)."""
         condensed = self._condensed
-        contacts, free = self._contact_stiffness(at, at, sides)
+        contacts, free = self._contact_stiffness(at, at, right_sides)
         motion = np.zeros(len(condensed.base))
         if contacts is None:
             motion[free] = self._rules.compliance[condensed.base[free]] > 0.0
@@ -90,7 +90,7 @@ class Stability:
         return np.asarray(direction)
 
     def _contact_stiffness(
-        self, at: InstantSolution, reached: InstantSolution, sides: Sides
+        self, at: InstantSolution, reached: InstantSolution, right_sides: RightSides
     ) -> tuple[Array | None, Indices]:
         """Stiffness of contacts, as far as they soften between two solutions, scaled.
 
@@ -104,7 +104,7 @@ class Stability:
         rules = self._rules
         base = self._condensed.base
         slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
-        growth = np.where(slips, self._lowest_growth(at, reached, sides), 0.0)
+        growth = np.where(slips, self._lowest_growth(at, reached, right_sides), 0.0)
         # Stiffness without softening is positive, so the solution is the only one
         # nearby.
         if not np.any(growth < 0.0):
@@ -122,13 +122,13 @@ class Stability:
         return stiffness, np.flatnonzero(is_free[base])
 
     def _lowest_growth(
-        self, at: InstantSolution, reached: InstantSolution, sides: Sides
+        self, at: InstantSolution, reached: InstantSolution, right_sides: RightSides
     ) -> Array:
         """Lowest growth of friction per slip between two solutions, (n,), scaled."""
         rules = self._rules
         slope = self._friction_law.lowest_slope(np.abs(at.slip), np.abs(reached.slip))
-        before = rules.before_slip(sides.bound, at.step.force)
-        after = rules.before_slip(sides.bound, reached.step.force)
+        before = rules.before_slip(right_sides.bound, at.step.force)
+        after = rules.before_slip(right_sides.bound, reached.step.force)
         return np.asarray(slope * np.maximum(before, after))
 
     def _tangent_stiffness(self, contacts: Array, free: Indices) -> Array:

@@ -40,4 +40,4 @@ CATALOGUE: dict[str, type[Settings]] = {
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem of checked settings, with their loads and motions."""
     problem = discrete.discretise(settings.structure())
-    return problem.driven_by(settings.drives())
+    return problem.with_drives(settings.drives())

@@ -199,7 +199,7 @@ class ArchSettings(PlaneSettings):
     @property
     def has_live(self) -> bool:
         """Check whether a load acts on the back."""
-        return self.acts("live_load")
+        return self.is_active("live_load")
 
     @property
     def n_bodies(self) -> int:
@@ -230,7 +230,7 @@ class ArchSettings(PlaneSettings):
         return int(self.voussoirs) + 1
 
     @property
-    def jumps(self) -> int:
+    def n_jumps(self) -> int:
         """Number of components of all contacts."""
         return int(2 * self.n_interfaces * (2 * self.elements + 1))
 

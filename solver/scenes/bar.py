@@ -239,7 +239,7 @@ class BarSettings(Settings):
         "the temperature",
         "the bar",
         group=LOAD,
-        applies=lambda settings: settings.acts("temperature_load"),
+        applies=lambda settings: settings.is_active("temperature_load"),
     )
     expansion = LOAD.quantity(
         1.2e-5,
@@ -248,7 +248,7 @@ class BarSettings(Settings):
         "Strain of the bar without any force, per kelvin.",
         title="Thermal expansion",
         unit="1/K",
-        applies=lambda settings: settings.acts("temperature_load"),
+        applies=lambda settings: settings.is_active("temperature_load"),
     )
     settlement, settlement_load = shared.sized_path(
         "settlement_load",
@@ -268,7 +268,7 @@ class BarSettings(Settings):
         SETTLEMENTS,
         "a preset, or points (m, factor).",
         group=LOAD,
-        applies=lambda settings: settings.acts("settlement_load"),
+        applies=lambda settings: settings.is_active("settlement_load"),
     )
     friction = shared.friction("mu between bar and support")
     pressure, pressure_load = shared.pressure("the bar on its support", 10_000.0)
@@ -339,7 +339,7 @@ class BarSettings(Settings):
             instants=self.times(),
             duration=self.duration,
             pressure=self.path("pressure_load"),
-            body_force=self.path("body_load") if self.acts("body_load") else None,
+            body_force=self.path("body_load") if self.is_active("body_load") else None,
             strain=self._strain(nodes),
             settlement=self._settlement(nodes),
             section=section,
@@ -351,7 +351,7 @@ class BarSettings(Settings):
 
         `nodes` are their positions, (n_nodes,), m.
         """
-        if not self.acts("temperature_load"):
+        if not self.is_active("temperature_load"):
             return None
         along = means([self.points("temperature_profile")], nodes)
         return np.outer(self.expansion * along, self.path("temperature_load"))
@@ -361,7 +361,7 @@ class BarSettings(Settings):
 
         `nodes` are their positions, (n_nodes,), m.
         """
-        if not self.acts("settlement_load"):
+        if not self.is_active("settlement_load"):
             return None
         along = interpolate(self.points("settlement_profile"), nodes)
         return np.outer(along, self.path("settlement_load"))
@@ -369,7 +369,7 @@ class BarSettings(Settings):
     def sentence(self) -> str:
         """Describe the bar in a sentence."""
         rods = self.bodies
-        strength = self.law.without_slip(rods.strength)
+        strength = self.law.bound_before_slip(rods.strength)
         table = "smooth"
         if strength.all():
             table = "rough"
@@ -386,7 +386,7 @@ class BarSettings(Settings):
         if moved:
             clauses.append(moved)
         for path, (clause, forward, backward) in DONE.items():
-            if self.acts(path):
+            if self.is_active(path):
                 action = shared.acting(self.path(path), forward, backward)
                 clauses.append(clause.format(action))
         if self.pressure_load != "steady":
@@ -396,7 +396,7 @@ class BarSettings(Settings):
     @property
     def loop_is_over_displacement(self) -> bool:
         """Check whether an end is pulled or moved."""
-        acting = {name for name in self.paths if self.acts(name)}
+        acting = {name for name in self.paths if self.is_active(name)}
         driven = [*PATHS["left"].values(), *PATHS["right"].values()]
         return bool(acting.intersection(driven))
 
@@ -405,7 +405,7 @@ class BarSettings(Settings):
         if {self.left_end, self.right_end} & set(HOLDING):
             return
         rods = self.bodies
-        strength = self.law.without_slip(rods.strengths) * self.law.strongest
+        strength = self.law.bound_before_slip(rods.strengths) * self.law.largest_factor
         shares = tributary(self.elements) * (self.length / self.elements)
         largest = np.broadcast_to(shares @ strength, (self.n_instants,))
         forces = [end.force for end in rods.ends.values() if end.force is not None]

@@ -324,7 +324,7 @@ class BeltSettings(PlaneSettings):
         tail = self.tail_tension
         if self.driven == "moved" or tail is None or self.law.cohesion:
             return
-        strongest = self.friction * self.law.strongest
+        strongest = self.friction * self.law.largest_factor
         ratio = replace(self.capstan, friction=strongest).ratio
         largest = ratio * (1.0 + SLACK)
         if np.all(pull <= largest * tail) and np.all(tail <= largest * pull):
@@ -413,7 +413,7 @@ class BeltSettings(PlaneSettings):
             if turns == 1.0:
                 where = "lies once round a drum"
         path = self.path("pull_load")
-        is_tail_alone = self.acts("tail_load") and not np.any(path)
+        is_tail_alone = self.is_active("tail_load") and not np.any(path)
         if (self.driven, self.tail) == ("pulled", "pulled") and is_tail_alone:
             return f"{band} {where}; both ends are pulled alike."
         done = shared.acting(

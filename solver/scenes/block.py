@@ -10,7 +10,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.discrete.drives import Drive, loads_at
+from solver.discrete.drives import Drive, describe_loads
 from solver.discrete.plane.rectangles.rigid_stack import loss_of_equilibrium
 from solver.discrete.plane.rectangles.sides import Spring, Support
 from solver.discrete.plane.rectangles.stack import Stack
@@ -26,7 +26,7 @@ from solver.settings.definitions import (
     Rows,
     SettingGroup,
     TablePreset,
-    about,
+    properties_of,
     redefined,
 )
 from solver.settings.load import POINTS, as_points
@@ -146,7 +146,7 @@ class BlockSettings(SideSettings):
             return tuple(drives)
         for name, values in zip(("body_force_x", "body_force_y"), force, strict=True):
             if np.any(values):
-                unit = about(self.definitions()[name]).unit
+                unit = properties_of(self.definitions()[name]).unit
                 drives.append(Drive(name, unit, values))
         return tuple(drives)
 
@@ -182,7 +182,9 @@ class BlockSettings(SideSettings):
         loss = loss_of_equilibrium(self.bodies)
         if loss is not None:
             time, reason = loss
-            loads = loads_at(self.drives(), int(np.searchsorted(self.times(), time)))
+            loads = describe_loads(
+                self.drives(), int(np.searchsorted(self.times(), time))
+            )
             when = f"from {plain(time)} s on"
             if loads:
                 when = f"with {loads}, {when},"

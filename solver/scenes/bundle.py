@@ -140,7 +140,7 @@ class BundleSettings(PlaneSettings):
     @property
     def has_plate(self) -> bool:
         """Check whether a plate presses on the highest wires."""
-        return self.acts("press_load")
+        return self.is_active("press_load")
 
     @cached_property
     def packing(self) -> Packing:
@@ -176,7 +176,7 @@ class BundleSettings(PlaneSettings):
         return zones * NODES * int(self.elements)
 
     @property
-    def jumps(self) -> int:
+    def n_jumps(self) -> int:
         """Number of components of all contacts."""
         return 2 * self.n_interfaces * (2 * int(self.elements) + 1)
 
@@ -224,13 +224,13 @@ class BundleSettings(PlaneSettings):
     def check_together(self) -> None:
         """Refuse contacts as wide as wires."""
         super().check_together()
-        if self.zone.reach > WIDEST * self.length:
+        if self.zone.half_width > WIDEST * self.length:
+            share = self.zone.half_width / WIDER / self.length
             raise self.refusal(
                 "young",
                 "wires whose contacts are narrow beside their radius",
-                f"half of a contact is {self.zone.reach / WIDER / self.length:.2g} of "
-                f"the radius, and at most {plain(WIDEST / WIDER)} is modelled: raise "
-                "it, or press less",
+                f"half of a contact is {share:.2g} of the radius, and at most "
+                f"{plain(WIDEST / WIDER)} is modelled: raise it, or press less",
             )
 
     @cached_property
@@ -278,7 +278,7 @@ class BundleSettings(PlaneSettings):
             is_on_ground = joint.below is None
             if is_on_ground and self.friction and is_coupled(self.poisson, self.plane):
                 continue
-            positions = problem.rubbing[joint.name].positions
+            positions = problem.contacts[joint.name].positions
             sizes = rounder * self.length, softer * self.modulus
             pressure = hertz(positions, force, *sizes)
             yield ExactCurve("pressure", positions, pressure, interface=joint.name)

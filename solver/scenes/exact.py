@@ -46,7 +46,7 @@ def exact_bar(bar: Rods, problem: Problem) -> Iterator[ExactCurve]:
     # Under a known pressure, friction by pressure and cohesion are one known strength.
     law = replace(bar.friction_law, cohesion=0.0, cap=np.inf)
     bar = replace(
-        bar, strength=bar.friction_law.without_slip(bar.strength), friction_law=law
+        bar, strength=bar.friction_law.bound_before_slip(bar.strength), friction_law=law
     )
     closed = closed_form(bar)
     if closed is not None:
@@ -119,7 +119,7 @@ def exact_parabola(
     body: Stack, radius: float, problem: Problem, solution: LoopFields
 ) -> Iterator[ExactCurve]:
     """Pressure of Hertz, and friction of Cattaneo and Mindlin, for the forces found."""
-    positions = problem.rubbing["support"].positions
+    positions = problem.contacts["support"].positions
     contact = solution.contact("support")
     assert contact.normal_force is not None
     assert body.support is not None
@@ -253,7 +253,7 @@ def _elastic_stiffness(
         return beams * cantilever(body.length, body.height, body.young, body.poisson)
     if solution is None or np.isfinite([law.stiffness, law.normal_stiffness]).any():
         return None
-    if any(solution.contact(name).status.any() for name in problem.rubbing):
+    if any(solution.contact(name).status.any() for name in problem.contacts):
         return None
     if is_graduated:
         return None

@@ -16,7 +16,7 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete import discretise
-from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.probes import LoopFields, Probe
 from solver.discrete.problem import Problem
@@ -26,7 +26,14 @@ from solver.reference.closed_forms import ExactCurve
 from solver.reference.closed_forms.fluid_driven_slip import fronts, spread, stress_ahead
 from solver.refusal import plain
 from solver.scenes.plane import RectangleSettings
-from solver.settings.definitions import BODY, CONTACT, LOAD, POSITIVE, about, redefined
+from solver.settings.definitions import (
+    BODY,
+    CONTACT,
+    LOAD,
+    POSITIVE,
+    properties_of,
+    redefined,
+)
 from solver.settings.load_paths import INJECTIONS, instants_of
 from solver.settings.profiles import Profile
 from solver.settings.scene import Icon
@@ -95,7 +102,7 @@ class Fault:
 
     def loop(self, problem: Problem) -> Loop:
         """Friction along the quarter over the slip of the fault at the middle."""
-        law = problem.rubbing["support"]
+        law = problem.contacts["support"]
         return Loop(
             *self.axes,
             Probe(problem.row_dofs[law.tangent.above[:1]], np.full(1, law.slip_ratio)),
@@ -237,7 +244,7 @@ class FaultSettings(RectangleSettings):
             value = getattr(self, name)
             if isinstance(value, str) or not self.has(name):
                 continue
-            unit = about(self.definitions()[name]).unit
+            unit = properties_of(self.definitions()[name]).unit
             remedy = "give slips twice as large"
             if isinstance(value, float):
                 remedy = f"give {plain(factor * value)} {unit}".rstrip()
@@ -314,8 +321,8 @@ class FaultSettings(RectangleSettings):
         modulus = 0.5 * self.young / (1.0 + self.poisson)
         strength = self.largest_friction(self.places)
         none = np.zeros(self.n_instants)
-        level = Given(True, none)
-        free = Given(False, none)
+        level = SideComponent(True, none)
+        free = SideComponent(False, none)
         moved = none + self.shear_stress / modulus * self.height
         body = replace(
             self.stack(),
@@ -324,8 +331,8 @@ class FaultSettings(RectangleSettings):
             ),
             sides={
                 "left": Side(free, level),
-                "right": Side(free, Given(False, none + self.shear_stress)),
-                "top": Side(Given(True, moved), level),
+                "right": Side(free, SideComponent(False, none + self.shear_stress)),
+                "top": Side(SideComponent(True, moved), level),
             },
         )
         return Fault(body, self.shear_stress, self.path("injection_load"))
@@ -364,7 +371,7 @@ class FaultSettings(RectangleSettings):
         if not front.any() or front.max() > INFINITE * min(self.length, self.height):
             return
         yield ExactCurve("front", front, self.times())
-        nodes = problem.rubbing["support"].positions
+        nodes = problem.contacts["support"].positions
         friction = self._exact_friction(nodes, front, place, margin)
         yield ExactCurve("friction", nodes, -friction)
 

@@ -13,7 +13,7 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.cut_rectangles import ends_along
-from solver.discrete.plane.rectangles.sides import Given, Side
+from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
@@ -221,8 +221,8 @@ class LayersSettings(RectangleSettings):
         ]
         stack = replace(self.stack(), bricks=bricks)
         rest = np.zeros(self.n_instants)
-        held = Given(True, rest)
-        free = Given(False, rest)
+        held = SideComponent(True, rest)
+        free = SideComponent(False, rest)
         pressing = self.path("pressure_load")
         return replace(
             stack,
@@ -231,24 +231,26 @@ class LayersSettings(RectangleSettings):
             sides={
                 "left": Side(held, held),
                 "right": self._right_side(stack),
-                "top": Side(free, Given(False, -pressing, is_pressure=True)),
-                "bottom": Side(free, Given(False, pressing, is_pressure=True)),
+                "top": Side(free, SideComponent(False, -pressing, is_pressure=True)),
+                "bottom": Side(free, SideComponent(False, pressing, is_pressure=True)),
             },
         )
 
     def _right_side(self, stack: Stack) -> Side:
         """Load of the right end: the pull along x, and the bending."""
         bend = self.path("bend_load")
-        pull = Given(False, self.path("pull_load"))
+        pull = SideComponent(False, self.path("pull_load"))
         if self.bending == "force":
-            return Side(pull, Given(False, bend / (stack.longest * self.thickness)))
+            return Side(
+                pull, SideComponent(False, bend / (stack.longest * self.thickness))
+            )
         if self.bending == "moment":
             # A linear traction with the extreme s at the edges of a layer has the
             # moment s h^2 / 6, with the thickness h.
             extreme = -6.0 * bend / (stack.longest * self.thickness**2)
-            free = Given(False, np.zeros(self.n_instants))
+            free = SideComponent(False, np.zeros(self.n_instants))
             return Side(replace(pull, slope=extreme), free)
-        return Side(pull, Given(True, bend))
+        return Side(pull, SideComponent(True, bend))
 
     def exact(
         self, problem: Problem, solution: LoopFields | None = None

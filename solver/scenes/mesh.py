@@ -17,7 +17,7 @@ from solver.discrete.plane.makers.named_mesh_refused import check_named
 from solver.discrete.problem import Problem
 from solver.refusal import RefusedError, Words
 from solver.scenes.mesh_files import from_text, read_example
-from solver.scenes.named_sides import ALLOWED, MeshSides, deeds_of, taken_apart
+from solver.scenes.named_sides import ALLOWED, MeshSides, conditions_of, taken_apart
 from solver.scenes.plane import PlaneSettings, RectangleSettings
 from solver.settings.definitions import BODY, LOAD, Rows, TablePreset, redefined
 from solver.settings.load_paths import PRESETS, PRESSURES
@@ -104,7 +104,7 @@ class MeshSettings(PlaneSettings):
         (-1e-4, 1e-4),
         "Largest displacement of sides that are moved.",
         unit="m",
-        applies=lambda settings: settings.has_deed("moved"),
+        applies=lambda settings: settings.has_condition("moved"),
         path="load",
         places=("body",),
     )
@@ -114,7 +114,7 @@ class MeshSettings(PlaneSettings):
         (0.0, 1e8),
         "Largest traction on sides that are pulled, outwards.",
         unit="Pa",
-        applies=lambda settings: settings.has_deed("pulled"),
+        applies=lambda settings: settings.has_condition("pulled"),
         path="load",
         places=("body",),
     )
@@ -125,7 +125,7 @@ class MeshSettings(PlaneSettings):
         "Displacement or traction over time: a preset of the largest value, or points "
         "(s, m or Pa).",
         title="Path of the load",
-        applies=lambda settings: settings.has_deed("moved", "pulled"),
+        applies=lambda settings: settings.has_condition("moved", "pulled"),
     )
     pressure, pressure_load = shared.sized_path(
         "pressure_load",
@@ -137,7 +137,7 @@ class MeshSettings(PlaneSettings):
         "Pressure on sides that are pressed.",
         "steady",
         PRESSURES,
-        applies=lambda settings: settings.has_deed("pressed"),
+        applies=lambda settings: settings.has_condition("pressed"),
     )
     unit_weight = LOAD.quantity(
         0.0,
@@ -200,24 +200,24 @@ class MeshSettings(PlaneSettings):
             raise _of_setting("mesh", refusal) from None
 
     @cached_property
-    def deeds(self) -> Mapping[str, tuple[str, ...]]:
-        """Deeds on each side, by the name of its line."""
+    def conditions(self) -> Mapping[str, tuple[str, ...]]:
+        """Conditions on each side, by the name of its line."""
         lines = dict.fromkeys(side.name for side in self.parts.sides)
-        return deeds_of(list(lines), self.sides)
+        return conditions_of(list(lines), self.sides)
 
     @property
-    def _every_deed(self) -> list[str]:
-        """Deeds on any of the sides."""
-        return list(chain.from_iterable(self.deeds.values()))
+    def _every_condition(self) -> list[str]:
+        """Conditions on any of the sides."""
+        return list(chain.from_iterable(self.conditions.values()))
 
-    def has_deed(self, *verbs: str) -> bool:
+    def has_condition(self, *verbs: str) -> bool:
         """Check whether any side is "moved", "pulled" or "pressed"."""
         try:
-            every = self._every_deed
+            every = self._every_condition
         except RefusedError:
             # Settings that are refused show all of their controls.
             return True
-        return any(deed.startswith(verbs) for deed in every)
+        return any(condition.startswith(verbs) for condition in every)
 
     @property
     def n_bodies(self) -> int:
@@ -235,7 +235,7 @@ class MeshSettings(PlaneSettings):
         return sum(len(shape.nodes) for shape in self.parts.shapes)
 
     @property
-    def jumps(self) -> int:
+    def n_jumps(self) -> int:
         """Number of components of all contacts."""
         return 2 * sum(len(contact.nodes) for contact in self.parts.contacts)
 
@@ -251,7 +251,7 @@ class MeshSettings(PlaneSettings):
         return max(moduli) / self.length
 
     @property
-    def ends(self) -> dict[str, int]:
+    def largest_counts(self) -> dict[str, int]:
         """Largest number of parts of each body."""
         counts = [len(shape.elements) for shape in self.parts.shapes]
         return {"substructures": min(counts)}
@@ -263,12 +263,12 @@ class MeshSettings(PlaneSettings):
     def check_together(self) -> None:
         """Refuse a mesh, sides or materials that do not fit together."""
         try:
-            deeds = self.deeds
+            conditions = self.conditions
         except RefusedError as refusal:
             raise _of_setting(refusal.name, refusal) from None
-        every = {deed.split()[0] for deed in self._every_deed}
+        every = {condition.split()[0] for condition in self._every_condition}
         if not every & {"held", "moved"}:
-            names = ", ".join(taken_apart(line)[0] for line in deeds) or "no name"
+            names = ", ".join(taken_apart(line)[0] for line in conditions) or "no name"
             raise self.refusal(
                 "sides",
                 "at least one side that is held or moved",
@@ -282,7 +282,7 @@ class MeshSettings(PlaneSettings):
             )
         super().check_together()
         self._check_tables()
-        largest = self.ends["substructures"]
+        largest = self.largest_counts["substructures"]
         if self.substructures > largest:
             raise self.refusal(
                 "substructures",
@@ -315,20 +315,20 @@ class MeshSettings(PlaneSettings):
         yield from super().left_out()
         between = [name for name, bodies in self.parts.groups if len(bodies) > 1]
         for name in dict.fromkeys(between):
-            _, deeds = taken_apart(name)
-            if deeds:
+            _, conditions = taken_apart(name)
+            if conditions:
                 yield (
                     f"mesh: “{name}” is a contact where it lies between two bodies; "
-                    f"{' and '.join(deeds)} says nothing there"
+                    f"{' and '.join(conditions)} says nothing there"
                 )
 
     @cached_property
     def bodies(self) -> Bodies:
         """The bodies; one metre thick."""
         bodies = list(self._bodies())
-        sides = MeshSides(self.parts, self.deeds)
+        sides = MeshSides(self.parts, self.conditions)
         drive = np.zeros(self.n_instants)
-        if self.has_deed("moved", "pulled"):
+        if self.has_condition("moved", "pulled"):
             drive = self.path("load")
         held = list(sides.held(drive))
         loads = list(sides.loads(bodies, drive, self.path("pressure_load")))
@@ -392,9 +392,9 @@ class MeshSettings(PlaneSettings):
         if not self.n_interfaces:
             touch = "touch nothing"
         parts = []
-        for line, deeds in self.deeds.items():
-            if deeds and deeds != ("free",):
-                parts.append(f"{taken_apart(line)[0]} {' and '.join(deeds)}")
+        for line, conditions in self.conditions.items():
+            if conditions and conditions != ("free",):
+                parts.append(f"{taken_apart(line)[0]} {' and '.join(conditions)}")
         return f"{bodies} of a mesh {touch}, with {shared.listed(parts)}."
 
 

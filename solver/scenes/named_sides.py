@@ -19,7 +19,7 @@ from solver.discrete.plane.body import Body, Held, Load
 from solver.discrete.plane.makers.named_mesh import NamedMesh, OuterLine
 from solver.refusal import RefusedError
 
-DEEDS = {
+CONDITIONS = {
     "free": "nothing acts on it",
     "held": "it moves neither along x nor along y",
     "held x": "it does not move along x",
@@ -44,13 +44,13 @@ AXES = {
     "moved y": (1,),
 }
 """Axes along which a side is held or moved."""
-_DEED = "|".join(sorted(DEEDS, key=len, reverse=True)).replace(" ", "[ _]")
+_CONDITION = "|".join(sorted(CONDITIONS, key=len, reverse=True)).replace(" ", "[ _]")
 _PHRASE = re.compile(
-    rf"(.*?)[\s_]*(?<![^\W_])((?:{_DEED})(?:[ _]and[ _](?:{_DEED}))*)",
+    rf"(.*?)[\s_]*(?<![^\W_])((?:{_CONDITION})(?:[ _]and[ _](?:{_CONDITION}))*)",
     re.DOTALL | re.IGNORECASE,
 )
-"""A name and deeds behind it; formats without blanks in names have _ there."""
-ALLOWED = f"a name of a side and one or more of {', '.join(DEEDS)}, joined by and"
+"""A name and conditions behind it; formats without blanks in names have _ there."""
+ALLOWED = f"a name of a side and one or more of {', '.join(CONDITIONS)}, joined by and"
 
 
 def taken_apart(phrase: str) -> tuple[str, tuple[str, ...]]:
@@ -58,16 +58,16 @@ def taken_apart(phrase: str) -> tuple[str, tuple[str, ...]]:
     match = _PHRASE.fullmatch(phrase.strip())
     if match is None:
         return phrase.strip(), ()
-    name, deeds = match.groups()
-    words = deeds.lower().replace("_", " ")
+    name, conditions = match.groups()
+    words = conditions.lower().replace("_", " ")
     return name or phrase.strip(), tuple(words.split(" and "))
 
 
-def deeds_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, ...]]:
-    """Deeds on the sides of a mesh, by the names of its lines, in order.
+def conditions_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, ...]]:
+    """Conditions on the sides of a mesh, by the names of its lines, in order.
 
     Phrases that are `given` between commas go before those in names; where neither says
-    anything, sides have the usual deed of their name.
+    anything, sides have the usual condition of their name.
 
     Raises
     ------
@@ -76,41 +76,41 @@ def deeds_of(lines: Sequence[str], given: str) -> Mapping[str, tuple[str, ...]]:
     """
     known: dict[str, tuple[str, ...]] = {}
     for line in lines:
-        name, deeds = taken_apart(line)
+        name, conditions = taken_apart(line)
         usual = USUAL.get(name.lower())
-        if not deeds and usual:
-            deeds = (usual,)
-        known[line] = deeds
+        if not conditions and usual:
+            conditions = (usual,)
+        known[line] = conditions
     names = {taken_apart(line)[0].lower(): line for line in lines}
     for phrase in given.split(","):
         if not phrase.strip():
             continue
-        name, deeds = taken_apart(phrase)
-        if not deeds:
+        name, conditions = taken_apart(phrase)
+        if not conditions:
             remedy = f"write “{name} held”, or another of these"
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
         if name.lower() not in names:
             sides = ", ".join(taken_apart(line)[0] for line in lines) or "none"
             remedy = f"there is no side {name!r}: those of the mesh are {sides}"
             raise RefusedError("sides", phrase.strip(), ALLOWED, remedy)
-        known[names[name.lower()]] = deeds
+        known[names[name.lower()]] = conditions
     return known
 
 
 class _Acted(NamedTuple):
-    """A deed on a line on the outside of a body, and a name of its own."""
+    """A condition on a line on the outside of a body, and a name of its own."""
 
     name: str
-    deed: str
+    condition: str
     line: OuterLine
 
 
 @dataclass(frozen=True)
 class MeshSides:
-    """Sides of a mesh, and the deeds on them by the names of their lines."""
+    """Sides of a mesh, and the conditions on them by the names of their lines."""
 
     mesh: NamedMesh
-    deeds: Mapping[str, tuple[str, ...]]
+    conditions: Mapping[str, tuple[str, ...]]
 
     def held(self, drive: Array) -> Iterator[Held]:
         """Yield sides that are held, or moved by `drive`, (n_instants,), m.
@@ -118,18 +118,18 @@ class MeshSides:
         Each node is held once along an axis, by the first of its sides.
         """
         taken: set[tuple[int, int, int]] = set()
-        for name, deed, line in self._acted():
-            for axis in AXES.get(deed, ()):
+        for name, condition, line in self._acted():
+            for axis in AXES.get(condition, ()):
                 nodes = []
                 for node in line.nodes.tolist():
                     if (line.body, node, axis) not in taken:
                         nodes.append(node)
                 taken.update((line.body, node, axis) for node in nodes)
                 path = np.zeros_like(drive)
-                if deed.startswith("moved"):
+                if condition.startswith("moved"):
                     path = drive
                 label = name
-                if deed == "held":
+                if condition == "held":
                     label = f"{name} along {'xy'[axis]}"
                 if nodes:
                     yield Held(label, line.body, np.array(nodes), axis, path)
@@ -143,38 +143,38 @@ class MeshSides:
         """
         inwards = {"pulled": -traction, "pressed": pressure}
         taken: set[tuple[str, int, frozenset[int]]] = set()
-        for name, deed, line in self._acted():
-            if deed not in inwards:
+        for name, condition, line in self._acted():
+            if condition not in inwards:
                 continue
             body = bodies[line.body]
             edges = [frozenset(edge) for edge in pairwise(line.nodes.tolist())]
-            is_free = [(deed, line.body, edge) not in taken for edge in edges]
-            taken.update((deed, line.body, edge) for edge in edges)
+            is_free = [(condition, line.body, edge) not in taken for edge in edges]
+            taken.update((condition, line.body, edge) for edge in edges)
             for number, run in enumerate(_runs(is_free), start=1):
                 label = name
                 if number > 1:
                     label = f"{name}, part {number}"
                 nodes = line.nodes[run.start : run.stop + 1]
-                inward = inwards[deed]
+                inward = inwards[condition]
                 load = Load.of_pressure(label, line.body, body, nodes, inward)
                 # It is named as the setting is.
                 yield replace(load, pressure=inward)
 
     def _acted(self) -> Iterator[_Acted]:
-        """Yield the deeds on all lines; of one name and body they have numbers."""
+        """Yield the conditions on all lines; of one name and body they have numbers."""
         counts: dict[str, int] = {}
         for line in self.mesh.sides:
             bodies = {
                 other.body for other in self.mesh.sides if other.name == line.name
             }
-            for deed in self.deeds[line.name]:
-                name = f"{taken_apart(line.name)[0]} {deed}"
+            for condition in self.conditions[line.name]:
+                name = f"{taken_apart(line.name)[0]} {condition}"
                 if len(bodies) > 1:
                     name = f"{name}, {self.mesh.names[line.body]}"
                 counts[name] = counts.get(name, 0) + 1
                 if counts[name] > 1:
                     name = f"{name} {counts[name]}"
-                yield _Acted(name, deed, line)
+                yield _Acted(name, condition, line)
 
 
 def _runs(flags: Sequence[bool]) -> list[range]:

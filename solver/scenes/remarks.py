@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.arrays import Array, Flags
-from solver.discrete.drives import loads_at
+from solver.discrete.drives import describe_loads
 from solver.discrete.inside import Inside
 from solver.discrete.plane.makers.band import Band
 from solver.discrete.plane.rectangles.rigid_stack import is_upright
@@ -115,7 +115,7 @@ def _one_of_several(answer: Answer) -> str:
 
 def _tipping(problem: Problem, first: int) -> str:
     """Sentence on a body that tips from an instant on."""
-    loads = loads_at(problem.drives, first)
+    loads = describe_loads(problem.drives, first)
     time = f"{problem.instants[first]:.4g} s"
     when = f"{time} on"
     if loads:
@@ -133,7 +133,7 @@ def contact_growth(iterate: Iterate) -> int:
     what load opens and closes there takes its size at once, with any instants.
     """
     growth = 0
-    for law, _, points, _ in iterate.problem.rubbing.stacks:
+    for law, _, points, _ in iterate.problem.contacts.stacks:
         if law.normal is None:
             continue
         rubs = law.by_point(law.tangential.friction) > 0.0

@@ -179,7 +179,7 @@ def sized_path(
         bounds=bounds,
         title=f"Path of the {what}",
         applies=lambda settings: (
-            applies(settings) and bool(default or settings.acts(path))
+            applies(settings) and bool(default or settings.is_active(path))
         ),
     )
     return size, over_time

@@ -10,7 +10,7 @@ import numpy as np
 import param
 
 import solver.scenes.shared as shared
-from solver.discrete.plane.rectangles.sides import Given, Side
+from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
     CurveParameter,
@@ -233,15 +233,15 @@ class SideSettings(RectangleSettings):
             if actions:
                 yield f"{shared.listed(actions)} at its {side}"
 
-    def _given(self, side: str, component: str) -> Given:
+    def _given(self, side: str, component: str) -> SideComponent:
         """Displacement or traction of a side over time."""
         kind = getattr(self, side)
         prescribed: bool = getattr(PRESCRIBED[kind], component)
         if kind in AT_REST:
             rest = np.zeros(self.n_instants)
-            return Given(prescribed, rest, rest)
+            return SideComponent(prescribed, rest, rest)
         # On the left side outward is the negative x direction.
         sign = -1.0 if side == "left" and component == "normal" else 1.0
         mean = sign * self.path(f"{side}_{component}_load")
         slope = mean * getattr(self, f"{side}_{component}_slope")
-        return Given(prescribed, mean, slope)
+        return SideComponent(prescribed, mean, slope)

@@ -199,10 +199,10 @@ class StrandSettings(Settings):
         beside = factors[max(self.broken - 2, 0) : self.broken].tolist()
         pressed = self.friction * self.path("pressure_load")
         strength = np.sum(
-            [self.law.without_slip(factor * pressed) for factor in beside], axis=0
+            [self.law.bound_before_slip(factor * pressed) for factor in beside], axis=0
         )
         # Friction alone holds the wire beyond its break.
-        friction = share * self.length * strength * self.law.strongest
+        friction = share * self.length * strength * self.law.largest_factor
         worst = int(np.argmax(tension - friction))
         largest = float(tension[worst])
         capacity = float(friction[worst])

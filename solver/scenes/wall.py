@@ -12,7 +12,7 @@ import solver.scenes.shared as shared
 from solver.arrays import Indices
 from solver.discrete.plane.rectangles.bricks import Brick, bonded, grouped, with_opening
 from solver.discrete.plane.rectangles.cap_and_ground import on_strips, with_cap
-from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.scenes.plane import RectangleSettings
 from solver.settings.definitions import (
@@ -173,7 +173,7 @@ class WallSettings(RectangleSettings):
         "Length of the ground that settles, rounded to elements.",
         title="Length that settles",
         unit="m",
-        applies=lambda settings: settings.acts("settlement_load"),
+        applies=lambda settings: settings.is_active("settlement_load"),
     )
     settled_from = LOAD.quantity(
         1.25,
@@ -183,7 +183,7 @@ class WallSettings(RectangleSettings):
         "elements.",
         title="Settles from",
         unit="m",
-        applies=lambda settings: settings.acts("settlement_load"),
+        applies=lambda settings: settings.is_active("settlement_load"),
     )
     cap = BODY.choice(
         "none",
@@ -253,7 +253,7 @@ class WallSettings(RectangleSettings):
         return len(self._bricks)
 
     @property
-    def reach(self) -> float:
+    def contact_length(self) -> float:
         """Largest position along the contacts, m: the length of the wall."""
         return float(self.bricks * self.length)
 
@@ -282,12 +282,12 @@ class WallSettings(RectangleSettings):
         return grouped(self._bricks, size, self.brick_groups)
 
     @property
-    def ends(self) -> dict[str, int]:
+    def largest_counts(self) -> dict[str, int]:
         """Largest numbers of parts as settings are: each brick may be a group."""
-        return super().ends | {"brick_groups": self.n_substructures}
+        return super().largest_counts | {"brick_groups": self.n_substructures}
 
     @property
-    def jumps(self) -> int:
+    def n_jumps(self) -> int:
         """Number of components of all contacts: a further joint adds two bed nodes."""
         beds = self.elements * self.bricks + 2 * self.bricks + 1
         heads = self.bricks * (self.elements_up - 1)
@@ -350,7 +350,7 @@ class WallSettings(RectangleSettings):
             brick.y == 0 and brick.x < last and brick.x + brick.columns > first
             for brick in self._bricks
         ]
-        return self.acts("settlement_load") and any(is_above)
+        return self.is_active("settlement_load") and any(is_above)
 
     @property
     def _on_ground(self) -> float:
@@ -363,8 +363,8 @@ class WallSettings(RectangleSettings):
         angle = np.radians(self.path("slope_load"))
         hold = PRESETS["hold"].value(self.times() / self.duration, 1)
         weight = self.unit_weight * hold
-        driven = Given(self.top == "moved", self.path("top_load"))
-        pressed = Given(False, -self.path("pressure_load"), is_pressure=True)
+        driven = SideComponent(self.top == "moved", self.path("top_load"))
+        pressed = SideComponent(False, -self.path("pressure_load"), is_pressure=True)
         stack = replace(
             self.stack(),
             bricks=self._bricks,

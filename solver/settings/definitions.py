@@ -20,7 +20,7 @@ POSITIVE = ANY, (0.0, 1e15)
 
 
 @dataclass(frozen=True)
-class About:
+class SettingProperties:
     """Properties of a setting that a front needs beside its value.
 
     Attributes
@@ -138,9 +138,9 @@ class TextParameter(Parameter):
         self.is_file = is_file
 
 
-def about(parameter: Parameter) -> About:
+def properties_of(parameter: Parameter) -> SettingProperties:
     """Properties of a setting that a front needs, from its definition."""
-    record: About = parameter.metadata["about"]
+    record: SettingProperties = parameter.metadata["about"]
     return record
 
 
@@ -152,7 +152,7 @@ def help_of(definition: Parameter) -> str:
 
 def lines_of(definition: Parameter) -> list[str]:
     """Lines on the presets of a setting, which begin with their names."""
-    presets = about(definition).presets
+    presets = properties_of(definition).presets
     return [f"{named_preset(preset)}: {line}" for preset, line in presets.items()]
 
 
@@ -262,7 +262,7 @@ class SettingGroup:
         self, doc: str, title: str | None = None, **record: Any
     ) -> dict[str, Any]:
         """Arguments of param that all settings have."""
-        metadata = {"about": About(self.name, **record)}
+        metadata = {"about": SettingProperties(self.name, **record)}
         return {"doc": doc, "label": title, "constant": True, "metadata": metadata}
 
 
@@ -295,5 +295,5 @@ def redefined(
     again.doc = doc or again.doc
     if title is not None:
         again.label = title
-    again.metadata = {"about": replace(about(definition), **record)}
+    again.metadata = {"about": replace(properties_of(definition), **record)}
     return again

@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.laws import FrictionLaw, SlipFactor
 from solver.refusal import plain
-from solver.settings.definitions import ANY, CONTACT, Rows, TablePreset, about
+from solver.settings.definitions import ANY, CONTACT, Rows, TablePreset, properties_of
 from solver.settings.method import MethodSettings
 
 SHORTEST_SLIP = 1e-12
@@ -187,7 +187,7 @@ class FrictionSettings(MethodSettings):
         # Beyond these bounds the spring, or the body, has no digit left in their sum.
         value = getattr(self, name)
         definition = self.definitions()[name]
-        unit = about(definition).unit
+        unit = properties_of(definition).unit
         low, high = (share * stiffness for share in STIFFNESSES)
         if self.applies(name) and value and not low <= value <= high:
             none = "0, or " if definition.bounds[0] == 0.0 else ""

@@ -10,7 +10,7 @@ import param
 
 from solver.arrays import Array
 from solver.discrete.drives import Drive
-from solver.settings.definitions import LOAD, CurveParameter, Rows, about
+from solver.settings.definitions import LOAD, CurveParameter, Rows, properties_of
 from solver.settings.friction import FrictionSettings
 from solver.settings.load_paths import (
     NO_KNOTS,
@@ -102,7 +102,7 @@ class LoadSettings(FrictionSettings):
         """Names of the settings of the value of presets, by the name of the path."""
         sizes: dict[str, tuple[str, ...]] = {}
         for name, definition in cls.definitions().items():
-            path = about(definition).path
+            path = properties_of(definition).path
             if path:
                 sizes[path] = (*sizes.get(path, ()), name)
         return sizes
@@ -113,7 +113,7 @@ class LoadSettings(FrictionSettings):
         definitions = self.definitions()
         # Of several sizes, as a force or a displacement, the one that applies.
         for name in sizes:
-            if about(definitions[name]).applies(self):
+            if properties_of(definitions[name]).applies(self):
                 return name
         if sizes:
             return sizes[0]
@@ -126,7 +126,7 @@ class LoadSettings(FrictionSettings):
             return 1.0
         return float(getattr(self, name))
 
-    def acts(self, path: str) -> bool:
+    def is_active(self, path: str) -> bool:
         """Check whether a path is a table, or a preset of a value that is not 0."""
         return not isinstance(getattr(self, path), str) or self.size_of(path) != 0.0
 
@@ -142,7 +142,7 @@ class LoadSettings(FrictionSettings):
         size = self.size_setting(name)
         if size is None:
             return units
-        return (units[0], about(self.definitions()[size]).unit)
+        return (units[0], properties_of(self.definitions()[size]).unit)
 
     def preset(self, name: str) -> Preset | None:
         """Preset of a path over time; None where the path is a table."""

@@ -8,8 +8,13 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.settings.definitions import DECOMPOSITION, METHOD, SettingGroup, about
-from solver.settings.values import SettingError, checked_value, unknown
+from solver.settings.definitions import (
+    DECOMPOSITION,
+    METHOD,
+    SettingGroup,
+    properties_of,
+)
+from solver.settings.values import SettingError, checked_value, unknown_setting
 
 STOP = SettingGroup("Stop")
 
@@ -242,7 +247,7 @@ class MethodSettings(param.Parameterized):
         clean = {}
         for name, value in values.items():
             if name not in definitions:
-                raise unknown(name, value, cls.scene, definitions)
+                raise unknown_setting(name, value, cls.scene, definitions)
             clean[name] = checked_value(definitions[name], name, value)
         return clean
 
@@ -332,7 +337,7 @@ class MethodSettings(param.Parameterized):
 
     def applies(self, name: str) -> bool:
         """Check whether a setting changes anything under the present values."""
-        record = about(self.definitions()[name])
+        record = properties_of(self.definitions()[name])
         if record.path and not isinstance(getattr(self, record.path), str):
             return False
         return record.applies(self)

@@ -18,7 +18,7 @@ from solver.discrete.probes import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
 from solver.reference.closed_forms import ExactCurve
-from solver.settings.definitions import about
+from solver.settings.definitions import properties_of
 from solver.settings.load import LoadSettings
 from solver.settings.values import SettingError
 
@@ -118,13 +118,13 @@ class Settings(LoadSettings):
         return ()
 
     @property
-    def jumps(self) -> int:
+    def n_jumps(self) -> int:
         """Number of components of all contacts, which a reference condenses."""
         components = 2 if self.opens else 1
         return components * self.n_interfaces * (self.elements + 1)
 
     @property
-    def reach(self) -> float:
+    def contact_length(self) -> float:
         """Largest position along the contacts, m: of a body, or of several in a row."""
         return float(self.length)
 
@@ -149,7 +149,7 @@ class Settings(LoadSettings):
         """
         return {}
 
-    def behind(self) -> Mapping[str, str]:
+    def load_settings(self) -> Mapping[str, str]:
         """Settings that place or scale loads, by the load: "right x", "body".
 
         "right x" is a load along a side, "body" one throughout. Of several settings of
@@ -159,7 +159,7 @@ class Settings(LoadSettings):
         for name, definition in self.definitions().items():
             if not self.applies(name):
                 continue
-            for load in about(definition).places:
+            for load in properties_of(definition).places:
                 # A setting that is 0 places a load only if no other does.
                 if load not in settings or getattr(self, name):
                     settings[load] = name
@@ -174,7 +174,7 @@ class Settings(LoadSettings):
         return self.replace(**changes)
 
     @property
-    def ends(self) -> dict[str, int]:
+    def largest_counts(self) -> dict[str, int]:
         """Largest numbers of parts as settings are, by the name of the setting."""
         return {part: getattr(self, whole) for part, whole in self.PARTS.items()}
 

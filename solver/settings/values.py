@@ -17,14 +17,14 @@ from solver.settings.definitions import (
     Parameter,
     Rows,
     TextParameter,
-    about,
     named_preset,
+    properties_of,
     title_of,
 )
 
 FAR = 1e6
 """Bound from which on a message calls a range unlimited: no problem has such values."""
-GONE = {
+REMOVED = {
     "interpolation": "paths are linear between their points",
     "k_friction_scale": "k_scale is for all interfaces",
     "k_normal_scale": "k_scale is for all interfaces",
@@ -72,7 +72,7 @@ def _allowed_rows(definition: CurveParameter) -> str:
 def _allowed_numbers(definition: Any) -> str:
     """Words on the range of a number."""
     low, high = definition.bounds
-    unit = about(definition).unit
+    unit = properties_of(definition).unit
     minimum = f"{plain(low)} {unit}".strip()
     maximum = f"{plain(high)} {unit}".strip()
     if isinstance(definition, param.Integer):
@@ -86,13 +86,15 @@ def _allowed_numbers(definition: Any) -> str:
     return f"any number from 0 on (to {maximum})"
 
 
-def unknown(
+def unknown_setting(
     name: str, value: object, scene: str, known: Mapping[str, Parameter]
 ) -> SettingError:
     """Refusal of an unknown name, with settings of similar names and their meaning."""
     can = f"a setting of {scene}"
-    if name in GONE:
-        return SettingError(name, value, can, f"it is gone: {GONE[name]}; leave it out")
+    if name in REMOVED:
+        return SettingError(
+            name, value, can, f"it is gone: {REMOVED[name]}; leave it out"
+        )
     likeness = {other: _likeness(name, other, known[other]) for other in known}
     near = [other for other in likeness if likeness[other] >= ALIKE]
     near.sort(key=lambda other: -likeness[other])

@@ -16,7 +16,7 @@ from solver.latin import Ending
 from solver.latin.end.status_step import states_of
 from solver.reference.rules import States
 from solver.refusal import RefusedError
-from solver.settings.definitions import about, is_logarithmic
+from solver.settings.definitions import is_logarithmic, properties_of
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.measured_loop import LoopComparison, MeasuredLoop, rms
@@ -62,7 +62,7 @@ def _why_not(settings: Settings, name: str) -> str:
         return "it counts, and has no values in between"
     if not settings.applies(name):
         return "it does nothing with the other settings as they are"
-    if about(definition).group in NOT_FITTED or name == "duration":
+    if properties_of(definition).group in NOT_FITTED or name == "duration":
         return "it does not change what a run finds"
     return ""
 

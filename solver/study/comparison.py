@@ -123,13 +123,13 @@ def results_in(table: Table, settings: Settings) -> OtherResults:
     table, names = _with_contacts(table)
     reading = in_si(table, used)
     x, t, values = reading.numbers
-    _check_places(x, reading.lines, settings.reach, table.refuse)
+    _check_places(x, reading.lines, settings.contact_length, table.refuse)
     _check_times(t, settings.duration, table.refuse)
     if names is not None:
         names = names[np.isin(table.lines, reading.lines)]
     return OtherResults(
         quantity=quantity,
-        positions=np.clip(x, 0.0, settings.reach),
+        positions=np.clip(x, 0.0, settings.contact_length),
         times=t,
         values=values,
         source=table.source,
@@ -248,7 +248,7 @@ class Comparison:
     def __init__(
         self, results: OtherResults, problem: Problem, interface: str = ""
     ) -> None:
-        names = list(problem.rubbing)
+        names = list(problem.contacts)
         self._problem = problem
         if interface in names:
             self.interface = interface
@@ -262,8 +262,8 @@ class Comparison:
         self._sizes = np.ones((1, 1))
         # Friction is per length of the points of one interface.
         if results.quantity == FRICTION:
-            law = problem.rubbing[self.interface]
-            self._places = problem.rubbing.forces[self.interface][-1]
+            law = problem.contacts[self.interface]
+            self._places = problem.contacts.forces[self.interface][-1]
             self._sizes = law.by_point(law.weights)[:, None]
             positions = law.positions
         self._order = np.argsort(positions, kind="stable")

@@ -10,12 +10,12 @@ their bounds; every run starts from the states of the run before. Then the valle
 followed along its weakest direction, both ways, and along each setting: where a run is
 nearer, the method goes on from there.
 
-The profile of a setting tells how well it is known (`solver.study.valley`): the values
-beyond which no run is as near, whatever the other settings are, by two standard errors
-of the noise. A setting is not determined if those values are farther away than a factor
-of 1.5. It stays as near to its start as the loop allows. A combination of such settings
-may still be known: a product of powers, across the direction of the valley, with the
-margin of its own profile.
+The profile likelihood of a setting shows how well the loop determines it
+(`solver.study.profile_likelihood`): beyond its two ends no run is as near, whatever the
+other settings are, by two standard errors of the noise. A setting is not determined if
+its ends are farther away than a factor of 1.5. It stays as near to its start as the
+loop allows. A combination of such settings may still be determined: a product of
+powers, across the direction of the valley, with the margin of its own profile.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from solver.settings.scene import Settings
 from solver.settings.values import SettingError
 from solver.study.compared_runs import ComparedRun, ComparedRuns, fittable
 from solver.study.measured_loop import MeasuredLoop
-from solver.study.valley import (
+from solver.study.profile_likelihood import (
     BROAD,
     LIMIT,
     SILENT,

@@ -12,7 +12,7 @@ import numpy as np
 from solver.files.disk import write
 from solver.files.saved import dump
 from solver.scenes.shared import listed
-from solver.settings.definitions import about
+from solver.settings.definitions import properties_of
 from solver.study.fit import Combination, Fit
 from solver.study.measured_loop import MeasuredLoop, csv_of
 from solver.study.page import (
@@ -24,8 +24,8 @@ from solver.study.page import (
     write_csv,
     write_page,
 )
+from solver.study.profile_likelihood import FACTOR
 from solver.study.quantities.finished import FinishedRun
-from solver.study.valley import FACTOR
 
 PARAMETERS = "parameters.csv"
 LOOP = "loop.csv"
@@ -125,7 +125,7 @@ def _bounds(fit: Fit) -> list[str]:
     """Sentences on settings of which one end alone is known."""
     sentences = []
     for name, lower, upper in zip(fit.names, fit.lower, fit.upper, strict=True):
-        unit = about(fit.settings.definitions()[name]).unit
+        unit = properties_of(fit.settings.definitions()[name]).unit
         if math.isfinite(lower) and math.isinf(upper):
             sentences.append(f"{name} is at least {lower:.3g} {unit}".rstrip() + ".")
         elif math.isfinite(upper) and math.isinf(lower):
@@ -194,7 +194,7 @@ def _end(value: float) -> str:
 
 def _entries(fit: Fit) -> list[list[Any]]:
     """Rows of setting, unit, start, value, standard error, ends and correlations."""
-    units = [about(fit.settings.definitions()[name]).unit for name in fit.names]
+    units = [properties_of(fit.settings.definitions()[name]).unit for name in fit.names]
     columns = (
         fit.names,
         units,

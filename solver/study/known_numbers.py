@@ -133,7 +133,7 @@ def _points(answer: SolvedCase, force: Array) -> tuple[Array, Array]:
 
     The force has shape (n_points,), and so have both results, m.
     """
-    law = answer.problem.rubbing["support"]
+    law = answer.problem.contacts["support"]
     middle = law.positions @ force / force.sum()
     return law.by_point(law.weights[:, None])[:, 0], law.positions - middle
 
@@ -221,7 +221,7 @@ def driven_by_fluid(answer: SolvedCase) -> Iterator[Number]:
     settings = answer.settings
     late = slice(settings.instants // 2, None)
     diffused = np.sqrt(4.0 * settings.diffusivity * settings.times()[late])
-    positions = answer.problem.rubbing["support"].positions
+    positions = answer.problem.contacts["support"].positions
     slip = np.abs(answer.slip[:, late])
     found = np.array([_front(positions, at_instant) for at_instant in slip.T])
     ratio = found @ diffused / (diffused @ diffused)
@@ -260,7 +260,7 @@ def growing_strength(answer: SolvedCase) -> Iterator[Number]:
     that sticks.
     """
     settings = answer.settings
-    positions = answer.problem.rubbing["support"].positions
+    positions = answer.problem.contacts["support"].positions
     half_length = settings.normal_profile[1][0]
     strength = settings.friction * settings.normal_stress
     excess = settings.shear_stress - strength
@@ -278,7 +278,7 @@ def joint(answer: SolvedCase) -> Iterator[Number]:
     Both bodies are in series with the joint, and their far sides do not move.
     """
     settings = answer.settings
-    law = answer.problem.rubbing["support"]
+    law = answer.problem.contacts["support"]
     modulus = 0.5 * settings.young / (1.0 + settings.poisson)
     stiffness = settings.tangential_stiffness
     alone = settings.shear_stress / stiffness
@@ -319,7 +319,7 @@ def weighed_wall(answer: SolvedCase) -> Iterator[Number]:
     """Force of a wall on the ground, under its weight and a pressure."""
     pressing, brick = _forces(answer)
     found = 0.0
-    for name in answer.problem.rubbing:
+    for name in answer.problem.contacts:
         force = answer.fields.contact(name).normal_force
         if name.startswith("support") and force is not None:
             found += float(force[:, -1].sum())
@@ -383,7 +383,7 @@ def pressed_wires(answer: SolvedCase) -> Iterator[Number]:
             forces[joint.name] = pressing[:, -1]
     name = max(forces, key=lambda name: float(forces[name].sum()))
     force = forces[name]
-    law = answer.problem.rubbing[name]
+    law = answer.problem.contacts[name]
     exact = settings.hertz(float(force.sum()))
     lengths = law.by_point(law.weights[:, None])[:, 0]
     yield "largest pressure", "Pa", exact.peak, float((force / lengths).max())
@@ -428,7 +428,7 @@ def pushed_block(answer: SolvedCase) -> Iterator[Number]:
     push = reaction(problem, "left", 0).of(fields)
     moment = reaction_moment(problem, "left").of(fields)
     # The foot is at the origin, at the left end of the support.
-    around_foot = float(moment[-1] + problem.rubbing["support"].positions @ pressing)
+    around_foot = float(moment[-1] + problem.contacts["support"].positions @ pressing)
     # The block slides, so its support carries all that friction can.
     held = settings.friction * load
     yield "force at the pushed side", "N/m", held, float(push[-1])

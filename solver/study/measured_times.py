@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
-from solver.kept import KEPT
+from solver.cache import CACHE
 from solver.latin import Ending, Solution, judged, solve
 from solver.latin.end.cost import run_cost
 from solver.reference.assembly import NoReferenceError
@@ -208,7 +208,7 @@ def _errors(settings: Settings, distance: Distance) -> Array:
 
 def _append_times(passes: list[list[float]], settings: Settings, number: int) -> None:
     """Append the times from the start to every iteration, with discretisation, s."""
-    KEPT.clear()
+    CACHE.clear()
     start = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - start
@@ -223,7 +223,7 @@ def seconds_of(
 
     Nothing is kept from what was done before.
     """
-    KEPT.clear()
+    CACHE.clear()
     return timeit(work, timer=clock, number=1)
 
 

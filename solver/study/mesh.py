@@ -52,7 +52,7 @@ class Refinement:
     own: int
 
     @property
-    def is_told(self) -> bool:
+    def has_values(self) -> bool:
         """Check whether the quantity has a value on all three meshes."""
         return all(math.isfinite(value) for value in self.values)
 
@@ -210,7 +210,7 @@ def size_of(settings: Settings) -> str:
 
 def answer(refinement: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
     """Two sentences on the limit of a quantity, and on the error of this run."""
-    if not refinement.is_told:
+    if not refinement.has_values:
         return (
             "One of the runs came to no certified solution, or has no such value: "
             "no answer."
@@ -244,7 +244,7 @@ def _limit_sentence(refinement: Refinement, unit: str, size: str) -> str:
 
 def which_to_refine(elements: Refinement, instants: Refinement) -> str:
     """Sentence on the errors that both leave; empty where one of them is not known."""
-    if not (elements.is_told and instants.is_told):
+    if not (elements.has_values and instants.has_values):
         return ""
     if elements.deviation == instants.deviation == 0.0:
         return "Neither more elements nor more instants change it."

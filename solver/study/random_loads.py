@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from solver.settings.definitions import about
+from solver.settings.definitions import properties_of
 
 SELDOM = 0.2
 """Share of the runs with a load that the scene does not have by default."""
@@ -78,7 +78,7 @@ def random_loads(
     friction, largest = _friction_and_largest_load(given)
     sizes: dict[str, Any] = {}
     for name, definition in definitions.items():
-        record = about(definition)
+        record = properties_of(definition)
         is_load = record.path or name in WITHOUT_PATH
         if not is_load or record.unit not in scales:
             continue
@@ -154,7 +154,7 @@ def _strengths(
     sizes = {}
     pressing = loads.get("pressure", loads.get("normal_stress"))
     for name in ("cohesion", "friction_cap"):
-        unit = about(kind.definitions()[name]).unit
+        unit = properties_of(kind.definitions()[name]).unit
         size = pressing or scales.get(unit)
         if name in values and size:
             share = given["friction"] * size

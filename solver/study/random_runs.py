@@ -21,8 +21,8 @@ from solver.scenes import CATALOGUE
 from solver.settings.definitions import (
     CurveParameter,
     TextParameter,
-    about,
     is_logarithmic,
+    properties_of,
 )
 from solver.settings.scene import Settings
 from solver.settings.values import SettingError
@@ -181,7 +181,9 @@ def _draw_alone(kind: Any, values: dict[str, Any], generator: Generator) -> None
     default = kind()
     for name, definition in kind.definitions().items():
         # Half of the runs have a method as it is, the others a mixture of its parts.
-        is_method = about(definition).group == "Method" and name != "linear_stage"
+        is_method = (
+            properties_of(definition).group == "Method" and name != "linear_stage"
+        )
         if name in values or name in KEPT or (is_method and not is_mixed):
             continue
         usual = CHANGED

@@ -22,7 +22,7 @@ from solver.latin.end.status_step import states_of, status_step
 from solver.reference.assembly import Interrupted, NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental_solver
-from solver.reference.laws_obeyed import LawResiduals, RowFields, law_residuals
+from solver.reference.law_residuals import LawResiduals, RowFields, law_residuals
 from solver.reference.solution import Reference
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE

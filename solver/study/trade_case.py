@@ -19,7 +19,7 @@ from solver.files.saved import (
     require,
     scene_settings,
 )
-from solver.settings.definitions import about
+from solver.settings.definitions import properties_of
 from solver.settings.scene import Icon, Settings
 from solver.settings.values import SettingError
 from solver.study.quantities import reading
@@ -94,7 +94,7 @@ class Case:
         # They change what is found, and not what is known.
         mesh = {*settings.MESH, "instants"}
         return all(
-            name in mesh or about(definitions[name]).group in ANSWERS_STAY
+            name in mesh or properties_of(definitions[name]).group in ANSWERS_STAY
             for name in settings.changed(self.settings)
         )
 

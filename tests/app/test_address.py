@@ -206,9 +206,9 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
     while runner.status is None:
         runner.advance()
     assert runner.iterate is not None
-    law = next(iter(runner.sampler.problem.rubbing.values()))
+    law = next(iter(runner.sampler.problem.contacts.values()))
     problem = runner.sampler.problem
-    force = runner.iterate.contact(next(iter(problem.rubbing))).tangential_force
+    force = runner.iterate.contact(next(iter(problem.contacts))).tangential_force
     density = force / law.by_point(law.weights)[:, None]
     points = product(law.positions.tolist(), problem.instants.tolist())
     rows = [

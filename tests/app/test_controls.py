@@ -242,10 +242,10 @@ def test_a_slider_ends_where_another_setting_has_it_end() -> None:
     state = of_scene("strand")
     control = SettingControl("broken", state)
     assert control.slider is not None
-    assert control.slider.end == state.settings.ends["broken"]
+    assert control.slider.end == state.settings.largest_counts["broken"]
     state.change(wires=7)
     control.update()
-    assert control.slider.end == state.settings.ends["broken"]
+    assert control.slider.end == state.settings.largest_counts["broken"]
 
 
 def test_controls_that_do_nothing_here_are_hidden() -> None:

@@ -17,7 +17,7 @@ def test_three_frames_of_a_wall_take_few_calls_a_joint() -> None:
     wall = CATALOGUE["wall"]
     settings = wall(bricks=12, courses=6, instants=11)
     problem = discretise(settings)
-    joints = len(problem.rubbing)
+    joints = len(problem.contacts)
     assert joints == 201
     iterates = list(islice(iterations(problem, method_of(settings)), 3))
     sampler = Sampler(problem, settings, 1)

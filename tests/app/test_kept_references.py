@@ -91,7 +91,7 @@ def test_reference_found_after_the_cuts_have_changed_is_that_of_the_problem(
         np.abs(kept.displacement - fresh.displacement).max()
         < 1e-9 * np.abs(fresh.displacement).max()
     )
-    name = next(iter(problem.rubbing))
+    name = next(iter(problem.contacts))
     assert kept.contact(name).tangential_force == pytest.approx(
         fresh.contact(name).tangential_force,
         abs=1e-6 * np.abs(fresh.contact_force).max(),

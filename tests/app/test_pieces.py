@@ -56,7 +56,7 @@ def taken_apart(
     """The first iterates, and their pieces."""
     problem = discretise(settings)
     cutter = Cutter(problem, settings, np.arange(problem.n_instants))
-    needs = Needs(interface=name or next(iter(problem.rubbing)))
+    needs = Needs(interface=name or next(iter(problem.contacts)))
     for iterate in iterations(problem, method_of(settings)):
         yield iterate, cutter.pieces(iterate, needs)
         if iterate.number == last:

@@ -130,7 +130,7 @@ def solved(scene: str, **changes: str) -> Traction:
     )
     friction = []
     bounds = []
-    for name, law in run.problem.rubbing.items():
+    for name, law in run.problem.contacts.items():
         shown = run.iterate.contact(name)
         assert shown.normal_force is not None
         root = np.sqrt(law.by_point(law.weights))[:, None]

@@ -84,8 +84,8 @@ def _parts_of(settings: Settings) -> list[Callable[[], object]]:
     local = LocalStage(problem, k, blocks)
     multi = LinearStage(problem, k, Full(), blocks, multiscale=True)
     mono = LinearStage(problem, k, Full(), blocks, multiscale=False)
-    multi.go_to(None)
-    mono.go_to(None)
+    multi.restore(None)
+    mono.restore(None)
     incoming = space_time(problem.n_rows, problem.n_instants)
     target = local(incoming)
     return [

@@ -161,7 +161,7 @@ def _marched(
 def _bound_of(problem: Problem) -> Array:
     """Largest friction of all degrees of freedom, (n_dofs, n_instants), scaled."""
     bound = np.zeros((problem.n_dofs, problem.n_instants))
-    for law in problem.rubbing.values():
+    for law in problem.contacts.values():
         np.add.at(bound, problem.row_dofs[law.tangent.above], law.tangential.bound)
     return bound
 

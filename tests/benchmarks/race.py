@@ -26,8 +26,8 @@ from sparse_newton import SparseNewton
 from whole_cost import resident
 
 from solver.arrays import Array, Flags
+from solver.cache import CACHE
 from solver.discrete.problem import Problem
-from solver.kept import KEPT
 from solver.latin import Ending, iterations, judged
 from solver.reference.assembly import NoReferenceError
 from solver.reference.distance import distance_to
@@ -36,7 +36,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.scene import Settings
 from solver.study.measured_times import seconds_of
-from solver.study.quantities.finished import settle
+from solver.study.quantities.finished import warm_up
 from solver.study.sweep.executors import ONE_THREAD, machine
 
 GOAL = 0.01
@@ -199,7 +199,7 @@ def ways_of(scene: str, ways: list[str]) -> Iterator[str]:
 
 def making_of(scene: str, size: int) -> Making:
     """Measure the making of a problem beside the first iterations."""
-    settle()
+    warm_up()
     made = list[Problem]()
     settings = settings_of(scene, size, {})
 
@@ -255,9 +255,9 @@ def iterated(scene: str, size: int, way: str, count: int) -> Sample:
 
 def measured(settings: Settings, work: Callable[[Problem], None]) -> Sample:
     """Measure some work on a fresh problem."""
-    settle()
+    warm_up()
     problem = discretise(settings)
-    KEPT.clear()
+    CACHE.clear()
     before = resident("VmRSS")
     began = time.perf_counter()
     seconds = seconds_of(lambda: work(problem))

@@ -181,9 +181,9 @@ def _stages(
     loose = [stage_of(size, 1.0) for size in sizes]
     tight = [stage_of(size, TIGHT) for size in sizes]
     for stage in (whole, *tight):
-        stage.go_to(start)
+        stage.restore(start)
     for stage, full_bases in zip(loose, tight, strict=True):
-        stage.go_to(replace(start, bases=full_bases.bases()))
+        stage.restore(replace(start, bases=full_bases.bases()))
     return [whole, *loose, *tight]
 
 

@@ -13,13 +13,13 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from solver.kept import KEPT
+from solver.cache import CACHE
 from solver.latin.end.cost import run_cost
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings.scene import Settings
-from solver.study.quantities.finished import finished_run, settle
+from solver.study.quantities.finished import finished_run, warm_up
 from solver.study.sweep.executors import ONE_THREAD, machine
 
 BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [(scene, {}) for scene in CATALOGUE]
@@ -34,7 +34,7 @@ SIZES = (
 
 def print_whole_cost() -> None:
     """Print CPU seconds and memory of runs without a reference, and its seconds."""
-    settle()
+    warm_up()
     print(machine())
     print("expected beside measured; the reference apart")
     print(f"{'run':<40} {'s':>13} {'MB':>13} {'reference, s':>13}")
@@ -59,11 +59,11 @@ def expected(settings: Settings) -> tuple[float, float, float]:
 
 def measured(settings: Settings) -> tuple[float, float, float]:
     """Measure the same."""
-    KEPT.clear()
+    CACHE.clear()
     began = time.process_time()
     finished_run(settings, errors=False)
     whole = time.process_time()
-    KEPT.clear()
+    CACHE.clear()
     reference_of(discretise(settings))
     return whole - began, memory_of(settings) / 1e6, time.process_time() - whole
 
@@ -80,7 +80,7 @@ def memory_of(settings: Settings) -> float:
 
 def growth(settings: Settings) -> float:
     """By how much this process grows at most in a run, B."""
-    settle()
+    warm_up()
     before = resident("VmRSS")
     finished_run(settings, errors=False, indicators=False)
     return resident("VmHWM") - before

@@ -18,7 +18,7 @@ from solver.commands.cli import main
 from solver.files.saved import settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.settings.definitions import CurveParameter, about, help_of
+from solver.settings.definitions import CurveParameter, help_of, properties_of
 from solver.settings.load_paths import DECAY, PRESETS, PULLS
 from solver.settings.values import SettingError, allowed
 
@@ -98,13 +98,13 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
         head = next(rest)
         text = next(rest)
         assert head.split()[0] == name
-        assert head.split()[1] == (about(definition).unit or "-")
+        assert head.split()[1] == (properties_of(definition).unit or "-")
         assert f"default {json.dumps(definition.default)}" in head
         differs = paper.get(name, definition.default) != definition.default
         assert (f"(method=paper: {json.dumps(paper.get(name))})" in head) == differs
         assert head.endswith(allowed(definition))
         assert text.strip() == definition.doc
-        for preset, line in about(definition).presets.items():
+        for preset, line in properties_of(definition).presets.items():
             assert next(rest).strip() == f"{preset or 'nothing'}: {line}"
     assert next(rest, None) is None
 
@@ -112,7 +112,7 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_every_preset_of_a_path_or_a_table_has_a_line_of_its_own(scene):
     for name, definition in CATALOGUE[scene].definitions().items():
-        lines = about(definition).presets
+        lines = properties_of(definition).presets
         if isinstance(definition, CurveParameter):
             assert list(lines) == list(definition.presets)
             assert len(set(lines.values())) == len(lines)

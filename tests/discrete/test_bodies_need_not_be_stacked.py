@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver import Latin, solve
-from solver.discrete import Given, Problem, Side, Stack, discretise
+from solver.discrete import Problem, Side, SideComponent, Stack, discretise
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.latin import Ending
 from solver.reference.incremental import reference_of
@@ -19,8 +19,8 @@ WEIGHT = 1e-4
 
 def lintel_on_two_piers() -> Problem:
     """Two piers that are held below, with a lintel from one to the other."""
-    still = Given(True, 0.0 * TIMES)
-    pressed = Given(False, -WEIGHT / (10 * SIZE) * TIMES)
+    still = SideComponent(True, 0.0 * TIMES)
+    pressed = SideComponent(False, -WEIGHT / (10 * SIZE) * TIMES)
     lintel = Stack(
         length=2 * SIZE,
         height=4 * SIZE,
@@ -33,7 +33,7 @@ def lintel_on_two_piers() -> Problem:
         friction=0.5,
         sides={
             "bottom": Side(still, still),
-            "top": Side(Given(False, 0.0 * TIMES), pressed),
+            "top": Side(SideComponent(False, 0.0 * TIMES), pressed),
         },
         instants=TIMES,
         duration=1.0,
@@ -43,11 +43,11 @@ def lintel_on_two_piers() -> Problem:
 
 def test_two_piers_carry_half_of_a_lintel_each() -> None:
     problem = lintel_on_two_piers()
-    assert list(problem.rubbing) == ["brick 1 and brick 3", "brick 2 and brick 3"]
+    assert list(problem.contacts) == ["brick 1 and brick 3", "brick 2 and brick 3"]
     run = solve(problem, Latin(), watch=False)
     assert run.status.ending is Ending.CONVERGED
     for found in (run.iterate, reference_of(problem)):
-        left, right = (found.contact(name) for name in problem.rubbing)
+        left, right = (found.contact(name) for name in problem.contacts)
         for side in (left, right):
             carried = side.normal_force.sum(axis=0)
             assert carried == pytest.approx(0.5 * WEIGHT * TIMES, rel=1e-2, abs=1e-9)

@@ -21,6 +21,7 @@ from shaped import (
 )
 
 from solver.arrays import Array, Indices
+from solver.cache import CACHE
 from solver.discrete import (
     Beam,
     Bodies,
@@ -34,7 +35,6 @@ from solver.discrete import (
     schur_complement,
 )
 from solver.discrete.probes import reaction
-from solver.kept import KEPT
 from solver.latin import Latin, solve
 from solver.reference.assembly import external_force
 from solver.reference.distance import distance_to
@@ -147,7 +147,7 @@ def test_rigid_motions_cost_no_force(name: str) -> None:
     size = np.abs(stiffness).max()
     assert np.abs(stiffness @ modes[part.dofs]).max() < 1e-9 * size
     assert problem.inside.rigid_motions(np.arange(0)) is not None
-    assert problem.motions is None
+    assert problem.rigid_motions is None
 
 
 def test_a_body_that_nothing_holds_is_refused() -> None:
@@ -321,7 +321,7 @@ def test_as_many_factors_are_made_as_there_are_parts_that_differ(
     monkeypatch.setattr(schur_complement, "sparse_factor", counted)
     for voussoirs in (9, 61):
         made.clear()
-        KEPT.clear()
+        CACHE.clear()
         discretise(arch(voussoirs))
         # Both abutments, and one voussoir for all.
         assert len(made) == 3

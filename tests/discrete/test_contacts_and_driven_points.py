@@ -13,7 +13,7 @@ from solver.arrays import Array
 from solver.discrete import discretise
 from solver.discrete.contacts import NO_SLIP, ContactGroup, Contacts
 from solver.discrete.driven_friction import DrivenFriction, driven_friction
-from solver.discrete.drives import Drive, beyond, loads_at
+from solver.discrete.drives import Drive, describe_limit, describe_loads
 from solver.laws import OPEN, Component, Contact, SlipFactor, Unilateral
 from solver.laws.play import play
 
@@ -87,15 +87,15 @@ def test_status_is_the_sign_of_slip_beyond_rounding_and_open_without_force() -> 
 def test_fields_of_a_contact_are_its_forces_jumps_and_gap_in_si() -> None:
     problem = discretise(block(elements=(6, 4), cuts=(2, 1), bodies=2))
     random = np.random.default_rng(6)
-    (name,) = [name for name in problem.rubbing if name != "support"]
-    law = problem.rubbing[name]
+    (name,) = [name for name in problem.contacts if name != "support"]
+    law = problem.contacts[name]
     # One displacement above and one below, all along.
     displacement = np.zeros((problem.n_rows, problem.n_instants))
     displacement[law.tangent.above] = 3e-3
     displacement[law.tangent.below] = 1e-3
     assert law.normal is not None
     displacement[law.normal.component.above] = 5e-3
-    contacts = problem.rubbing
+    contacts = problem.contacts
     force = random.normal(size=(contacts.n_forces, problem.n_instants))
     status = random.integers(-1, 3, size=(contacts.n_points, problem.n_instants))
     scale = problem.scales.displacement
@@ -104,7 +104,7 @@ def test_fields_of_a_contact_are_its_forces_jumps_and_gap_in_si() -> None:
     assert fields.slip == pytest.approx(np.full(shape, 2e-3 * scale))
     assert fields.opening == pytest.approx(np.full(shape, 5e-3 * scale))
     assert np.array_equal(fields.status, status[contacts.points[name]])
-    across, along = problem.rubbing.forces[name]
+    across, along = problem.contacts.forces[name]
     assert np.array_equal(fields.normal_force, force[across])
     assert np.array_equal(fields.tangential_force, force[along])
 
@@ -142,7 +142,7 @@ def test_driven_points_rub_against_their_slip_and_else_as_their_neighbour() -> N
     even = np.clip(0.5 * forces[1], -bound, bound)
     assert friction[~slips] == pytest.approx(even[~slips])
     assert np.count_nonzero(~slips) == 6
-    assert found.rubbing.tolist() == [0, 2]
+    assert found.contacts.tolist() == [0, 2]
 
 
 def test_driven_points_on_springs_lag_like_play_and_on_stiff_ones_not() -> None:
@@ -205,10 +205,10 @@ def test_a_load_is_told_with_its_share_of_the_largest_of_its_sign() -> None:
 
 def test_only_what_changes_is_told_and_what_falls_is_passed_downwards() -> None:
     falling = Drive("pressure", "Pa", np.array([8.0, 8.0, 8.0, 4.0, 4.0, 4.0]))
-    assert loads_at([PEAK, falling], 2) == ""
-    assert beyond([PEAK, falling], 2, 0.5) == ""
-    assert loads_at([PEAK, falling], 1) == PEAK.at(1)
-    both = beyond([PEAK, falling], 3, 0.5)
+    assert describe_loads([PEAK, falling], 2) == ""
+    assert describe_limit([PEAK, falling], 2, 0.5) == ""
+    assert describe_loads([PEAK, falling], 1) == PEAK.at(1)
+    both = describe_limit([PEAK, falling], 3, 0.5)
     assert both == f"beyond {PEAK.at(3, 0.5)} and below {falling.at(3, 0.5)}"
-    assert beyond([PEAK], 1, 0.0) == f"with {PEAK.at(1)}"
+    assert describe_limit([PEAK], 1, 0.0) == f"with {PEAK.at(1)}"
     assert PEAK.during(slice(2, 4)).values.tolist() == [2.0, -4.0]

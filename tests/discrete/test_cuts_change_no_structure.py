@@ -15,7 +15,7 @@ from solver.discrete import discretise
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.plane.rectangles.cut_rectangles import ends_along
 from solver.discrete.plane.rectangles.cut_stack import CutStack
-from solver.discrete.plane.rectangles.sides import Given, Side
+from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.rods.cut_rods import CutRods
@@ -78,8 +78,8 @@ def test_cut_or_not_rods_have_one_stiffness_and_load(kind: str, cuts: int) -> No
     assert close(assembled_stiffness(cut).toarray(), stiffness)
     assert close(external_force(cut), external_force(whole))
     assert np.array_equal(cut.positions, whole.positions)
-    for name, law in whole.rubbing.items():
-        other = cut.rubbing[name]
+    for name, law in whole.contacts.items():
+        other = cut.contacts[name]
         bounds = (one.by_point(one.tangential.bound) for one in (law, other))
         assert next(bounds) == pytest.approx(next(bounds), rel=1e-12)
         areas = (one.by_point(one.weights) for one in (law, other))
@@ -150,8 +150,8 @@ STACKS = {
     "pile": {"bodies": 2},
     "pulled aside": {
         "right": Side(
-            Given(False, 1e5 * np.linspace(0.0, 1.0, 17), 0.4),
-            Given(False, np.zeros(17)),
+            SideComponent(False, 1e5 * np.linspace(0.0, 1.0, 17), 0.4),
+            SideComponent(False, np.zeros(17)),
         )
     },
 }
@@ -201,7 +201,7 @@ def test_a_stiffness_turned_round_is_that_of_the_turned_directions() -> None:
     kept = np.array([1, 4, 5, 8])
     signs = np.ones(9)
     signs[[1, 5]] = -1.0
-    turned = SchurComplement(sparse.csc_array(whole), kept).turned_round(signs[kept])
+    turned = SchurComplement(sparse.csc_array(whole), kept).with_signs(signs[kept])
     wanted = SchurComplement(sparse.csc_array(signs[:, None] * whole * signs), kept)
     force = random.normal(size=(9, 3))
     moved = random.normal(size=(4, 3))
@@ -226,7 +226,7 @@ def test_tractions_and_weight_add_up_to_their_resultants() -> None:
 def test_a_side_is_loaded_where_bodies_reach_farthest_and_not_beside_them() -> None:
     pull = np.linspace(0.0, 1e5, 17)
     still = np.zeros(17)
-    left = Side(Given(False, pull), Given(False, still))
+    left = Side(SideComponent(False, pull), SideComponent(False, still))
     stack = replace(
         block(elements=(6, 4), bodies=2, left=left),
         bricks=[Brick(0, 0, 6, 4), Brick(3, 4, 3, 4)],

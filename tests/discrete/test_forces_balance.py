@@ -18,7 +18,7 @@ from small_scenes import SMALL
 
 from solver import discrete
 from solver.arrays import Array, Indices
-from solver.discrete import Given, Side, Stack, Support
+from solver.discrete import Side, SideComponent, Stack, Support
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.probes import LoopFields, reaction, reaction_moment
 from solver.discrete.problem import Problem
@@ -83,7 +83,7 @@ def on_supports(
     x = []
     y = []
     moments = []
-    for name, law in problem.rubbing.items():
+    for name, law in problem.contacts.items():
         if not law.is_on_support:
             continue
         contact = fields.contact(name)
@@ -143,7 +143,7 @@ def assert_bodies_balance(problem: Problem, fields: LoopFields) -> None:
 def turned_by_friction(problem: Problem, fields: LoopFields) -> Array:
     """Largest moment of friction forces across open gaps, (n_instants,), N m."""
     moment = np.zeros(problem.n_instants)
-    for name, law in problem.rubbing.items():
+    for name, law in problem.contacts.items():
         if law.normal is not None and not law.is_spring:
             gap = float(np.abs(law.normal.gap).max()) * problem.scales.displacement
             moment += gap * np.abs(fields.contact(name).tangential_force).sum(axis=0)
@@ -159,7 +159,7 @@ def assert_balance(settings: Settings, fields: LoopFields, problem: Problem) -> 
     else:
         friction = [
             fields.contact(name).tangential_force.sum(axis=0)
-            for name in problem.rubbing
+            for name in problem.contacts
         ]
         loads = external_force(problem).sum(axis=0) * problem.scales.force
         ends = [reaction(problem, end).of(fields) for end in ("support", "load")]
@@ -282,8 +282,8 @@ def test_a_block_balances_whatever_is_at_its_sides(
 def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> None:
     """The ends' last moves are alike: their difference is rounding, and no slip."""
     times = np.linspace(0.0, 1.0, 9)
-    free = Given(False, 0.0 * times)
-    turned = Given(
+    free = SideComponent(False, 0.0 * times)
+    turned = SideComponent(
         True, 1e-5 * np.sin(6.0 * times), 1e-5 * np.minimum(3.0 * times, 1.0)
     )
     stack = Stack(
@@ -300,7 +300,9 @@ def test_bodies_whose_ends_are_moved_and_turned_rub_there_as_the_law_says() -> N
         support=Support(gap=np.zeros(9), friction=0.2),
         sides={
             "left": Side(turned, free),
-            "top": Side(free, Given(False, -1e6 * np.minimum(4.0 * times, 1.0))),
+            "top": Side(
+                free, SideComponent(False, -1e6 * np.minimum(4.0 * times, 1.0))
+            ),
         },
     )
     problem = discrete.discretise(stack)
@@ -349,7 +351,7 @@ def test_what_presses_a_partly_covered_body_stands_on_its_support(
     assert_bodies_balance(problem, reference)
     on_support = [
         reference.contact(contact).normal_force.sum(axis=0)
-        for contact, law in problem.rubbing.items()
+        for contact, law in problem.contacts.items()
         if law.is_on_support
     ]
     element = stack.length / stack.elements[0]
@@ -361,8 +363,8 @@ def test_what_presses_a_partly_covered_body_stands_on_its_support(
 def test_a_press_moves_what_lies_farthest_up_however_bodies_are_cut() -> None:
     """A displacement of the top is that of a press, which touches no lower body."""
     stack = block(elements=(6, 4), cuts=(1, 1), bodies=2)
-    still = Given(True, 0.0 * stack.instants)
-    pushed = Given(True, -1e-4 * np.minimum(4.0 * stack.instants, 1.0))
+    still = SideComponent(True, 0.0 * stack.instants)
+    pushed = SideComponent(True, -1e-4 * np.minimum(4.0 * stack.instants, 1.0))
     bricks, _ = LYING["in the middle"]
     stack = replace(stack, bricks=bricks, sides={"top": Side(still, pushed)})
     forces = []

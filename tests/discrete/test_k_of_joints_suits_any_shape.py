@@ -40,7 +40,7 @@ def iterations_to_goal(problem: Problem, most: int) -> int:
 def test_k_along_a_belt_is_that_of_the_whole_belt_whatever_the_mesh() -> None:
     for nodes in (31, 121):
         problem = discretise(belt(np.pi, 0.3, 2.0, nodes=nodes))
-        law = problem.rubbing["drum"]
+        law = problem.contacts["drum"]
         scale = problem.scales.force / problem.scales.displacement
         k = automatic(problem)[law.tangent.above][1:-1] * scale
         # Of the mean of E A / l n and 2 E A / h (MATHEMATICS.md, 19).
@@ -129,10 +129,10 @@ def test_leaves_that_bend_together_converge(
 
 def test_lines_rest_on_each_other_where_no_mesh_is_between() -> None:
     """A strip on a block has the k of bodies, a leaf on the ground that of a belt."""
-    alone = discretise(leaf(20, friction=0.3)).rubbing["ground"]
-    stacked = discretise(leaf(20, friction=0.3, count=3)).rubbing["ground"]
+    alone = discretise(leaf(20, friction=0.3)).contacts["ground"]
+    stacked = discretise(leaf(20, friction=0.3, count=3)).contacts["ground"]
     path = np.minimum(3.0 * TIME, 1.0)
-    bed = discretise(strip_on_block(path, path)).rubbing["bed"]
+    bed = discretise(strip_on_block(path, path)).contacts["bed"]
     for law, count in ((alone, 0), (stacked, 3), (bed, 0)):
         beside = law.stiffness_beside
         assert isinstance(beside, NodalStiffness)

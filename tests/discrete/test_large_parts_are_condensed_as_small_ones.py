@@ -52,8 +52,8 @@ def test_both_ways_condense_and_recover_alike(
         assert close(large.recover(moved, force), small.recover(moved, force))
     assert close(large.recover(every, None), small.recover(every, None))
     signs = np.where(np.arange(len(kept)) % 3, 1.0, -1.0)
-    turned = large.turned_round(signs).recover(moved, forces[1])
-    assert close(turned, small.turned_round(signs).recover(moved, forces[1]))
+    turned = large.with_signs(signs).recover(moved, forces[1])
+    assert close(turned, small.with_signs(signs).recover(moved, forces[1]))
 
 
 @pytest.mark.parametrize("sides", SIDES)

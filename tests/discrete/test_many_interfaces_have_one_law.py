@@ -31,7 +31,7 @@ def apart(problem: Problem) -> Problem:
         for name, law in problem.interfaces.items()
         if not isinstance(law, Contact)
     }
-    return replace(problem, interfaces=dict(problem.rubbing) | laws)
+    return replace(problem, interfaces=dict(problem.contacts) | laws)
 
 
 @pytest.fixture(scope="module")
@@ -42,17 +42,17 @@ def wall() -> Problem:
 def test_a_wall_has_a_law_for_its_joints_and_one_for_its_supports(
     wall: Problem,
 ) -> None:
-    assert len(wall.rubbing.laws) == 2
-    assert len(wall.rubbing) > 10
+    assert len(wall.contacts.laws) == 2
+    assert len(wall.contacts) > 10
     each = apart(wall)
-    assert len(each.rubbing.laws) == len(wall.rubbing)
-    assert each.rubbing.names == wall.rubbing.names
+    assert len(each.contacts.laws) == len(wall.contacts)
+    assert each.contacts.names == wall.contacts.names
 
 
 def test_forces_points_and_jumps_are_stacked_alike(wall: Problem) -> None:
     each = apart(wall)
-    assert each.rubbing.points == wall.rubbing.points
-    assert each.rubbing.forces == wall.rubbing.forces
+    assert each.contacts.points == wall.contacts.points
+    assert each.contacts.forces == wall.contacts.forces
     for matrix in (lambda one: one.sum_of_contact, jumps, lambda one: one.macro[0]):
         found = matrix(wall)
         wanted = matrix(each)
@@ -80,7 +80,7 @@ def test_a_run_is_equal_to_the_bit_and_so_are_its_fields(scene: str) -> None:
     assert np.array_equal(found.outgoing, wanted.outgoing)
     assert np.array_equal(found.status, wanted.status)
     assert np.array_equal(found.friction_force, wanted.friction_force)
-    for name in problem.rubbing:
+    for name in problem.contacts:
         one = found.contact(name)
         other = wanted.contact(name)
         assert np.array_equal(one.tangential_force, other.tangential_force)
@@ -90,7 +90,7 @@ def test_a_run_is_equal_to_the_bit_and_so_are_its_fields(scene: str) -> None:
 
 
 def test_points_of_two_interfaces_may_not_be_mixed(wall: Problem) -> None:
-    law = next(law for law in wall.rubbing.laws.values() if len(law.names) > 2)
+    law = next(law for law in wall.contacts.laws.values() if len(law.names) > 2)
     assert law.interfaces is not None
     with pytest.raises(RefusedError, match="out of order"):
         replace(law, interfaces=law.interfaces[::-1].copy())
@@ -109,7 +109,7 @@ def test_the_order_may_be_another(wall: Problem) -> None:
     other = replace(wall, order=wall.order[::-1])
     found = solve(other, Latin(), watch=False).iterate
     wanted = solve(wall, Latin(), watch=False).iterate
-    for name in wall.rubbing:
+    for name in wall.contacts:
         one = found.contact(name).tangential_force
         size = np.abs(wanted.contact_force).max()
         assert one == pytest.approx(

@@ -181,7 +181,7 @@ def test_work_on_a_closed_cycle_is_stored_or_dissipated(scene):
             external += work(part.body_force, displacement[part.dofs], first)
     energy = stored(problem, displacement)
     dissipated = 0.0
-    for name in problem.rubbing:
+    for name in problem.contacts:
         fields = iterate.contact(name)
         dissipated -= work(fields.tangential_force, fields.slip, first)
     kept = (energy[-1] - energy[first]) * scale

@@ -10,8 +10,8 @@ from contact_problems import block
 from plane import lengths, reaction, solved, stress
 
 from solver import discrete
-from solver.discrete import Given, Side, Spring, Support
-from solver.discrete.loose import loose_bodies
+from solver.discrete import Side, SideComponent, Spring, Support
+from solver.discrete.loose_bodies import loose_bodies
 from solver.discrete.plane.rectangles.rigid_stack import rigid_rest
 from solver.latin import Ending, solve
 from solver.reference.incremental import reference_of
@@ -122,7 +122,7 @@ def test_pressure_under_a_tilting_block_balances_force_and_moment(elements):
         violation=1e-10,
     )
     fields = iterate.contact("support")
-    x = iterate.problem.rubbing["support"].positions
+    x = iterate.problem.contacts["support"].positions
     pressing = fields.normal_force[:, -1]
     # 1e5 N at the middle plus slope * length / 6, and 1e4 N along x at a height of 0.1
     # m.
@@ -207,7 +207,7 @@ def test_the_number_of_substructures_does_not_change_the_answer(scene):
             (inside.displacement(iterate.displacement, slice(None)), inside.nodes)
         )
         forces = [
-            iterate.contact(name).normal_force for name in iterate.problem.rubbing
+            iterate.contact(name).normal_force for name in iterate.problem.contacts
         ]
         found[-1] += (np.stack(forces),)
     (one, nodes, pressing), (other, same_nodes, same_pressing) = found
@@ -225,7 +225,7 @@ def test_a_contact_ends_before_a_side_that_holds_its_normal_displacement():
         ("clamped", "dragged", 1, 15),
     ):
         iterate = solved("block", left=left, right=right, violation=1e-4, **SMALL)
-        x = iterate.problem.rubbing["support"].positions / 0.1 * 16
+        x = iterate.problem.contacts["support"].positions / 0.1 * 16
         np.testing.assert_allclose(x, np.arange(first, last + 1), atol=1e-9)
 
 
@@ -261,7 +261,7 @@ def test_a_hinge_is_refused_where_its_load_turns_it_off_the_support(side):
     corner = pressed.length
     if side == "left":
         corner = 0.0
-    lever = np.abs(problem.rubbing["support"].positions - corner)
+    lever = np.abs(problem.contacts["support"].positions - corner)
     moment = lever @ found.contact("support").normal_force[:, -1]
     assert moment == pytest.approx(0.5 * 1e4 * pressed.length**2, rel=1e-9)
     with pytest.raises(SettingError, match="turns about the side that holds it up"):
@@ -278,8 +278,8 @@ def test_both_sides_that_hold_a_body_up_keep_it_from_turning():
     assert not found.contact("support").normal_force.any()
 
 
-STILL = Given(True, np.zeros(17))
-FREE = Given(False, np.zeros(17))
+STILL = SideComponent(True, np.zeros(17))
+FREE = SideComponent(False, np.zeros(17))
 KNOWN = Support(np.zeros(7), 0.3, strength=np.full((7, 17), 1e5))
 LOOSE = {
     "a hinge": (1, None, {"top": Side(STILL, FREE), "left": Side(FREE, STILL)}),

@@ -10,12 +10,12 @@ from solver.arrays import Array
 from solver.discrete import (
     Bodies,
     Body,
-    Given,
     Held,
     Joint,
     Load,
     Problem,
     Side,
+    SideComponent,
     Stack,
     Support,
     discretise,
@@ -37,7 +37,7 @@ def as_stack(bodies: int, fine: int) -> Problem:
     """Blocks on each other and on the ground; the top is pressed and moved along."""
     along = 4 * fine
     up = 2 * fine
-    top = Side(Given(True, MOVED), Given(False, -PRESSURE))
+    top = Side(SideComponent(True, MOVED), SideComponent(False, -PRESSURE))
     stack = Stack(
         length=LENGTH,
         height=HEIGHT,
@@ -99,8 +99,8 @@ def test_the_same_force_moves_the_top(bodies: int) -> None:
 def test_every_contact_carries_the_pressure(bodies: int) -> None:
     for problem in (as_stack(bodies, 2), as_meshes(bodies, 2)):
         solution = reference_of(problem)
-        assert len(problem.rubbing) == bodies
-        for name in problem.rubbing:
+        assert len(problem.contacts) == bodies
+        for name in problem.contacts:
             pressing = np.asarray(solution.contact(name).normal_force).sum(axis=0)
             assert pressing == pytest.approx(PRESSURE * LENGTH, rel=1e-9, abs=1e-6)
 

@@ -80,7 +80,7 @@ def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(element
     slips = found.status != 0
     assert found.converged.all()
     assert slips[:, 1:].mean() > 0.9
-    contact = problem.rubbing["support"]
+    contact = problem.contacts["support"]
     bound = settings.largest_friction(contact.positions) * contact.weights[:, None]
     friction = found.contact("support").tangential_force
     np.testing.assert_allclose(np.abs(friction)[slips], bound[slips], rtol=1e-9)
@@ -179,7 +179,7 @@ def test_stiffness_lies_between_the_limits_and_rises_with_friction():
 
 def test_the_inner_pressure_away_from_the_ends_is_that_on_the_faces():
     iterate = bent(3, 0.0, pressure=1e5)
-    for name, law in iterate.problem.rubbing.items():
+    for name, law in iterate.problem.contacts.items():
         middle = np.abs(law.positions / LENGTH - 0.5) < 0.3
         pressure = iterate.contact(name).normal_force / lengths(iterate, name)
         np.testing.assert_allclose(pressure[middle], 1e5, rtol=0.02)

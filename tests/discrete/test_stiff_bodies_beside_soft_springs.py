@@ -33,7 +33,7 @@ class Slope:
         ground = found.contact("support")
         spring = found.contact("spring")
         self.pressing = ground.normal_force
-        self.rubbing = ground.tangential_force
+        self.contacts = ground.tangential_force
         self.spring = spring.normal_force[0]
         self.status = ground.status
         self.down = values.weight * (np.sin(self.angle) - self.mu * np.cos(self.angle))
@@ -42,7 +42,7 @@ class Slope:
     def unbalanced(self, values):
         """Forces and the moment about the foot that are left over, over the weight."""
         along = (
-            self.rubbing.sum(axis=0) + self.spring - self.weight * np.sin(self.angle)
+            self.contacts.sum(axis=0) + self.spring - self.weight * np.sin(self.angle)
         )
         across = self.pressing.sum(axis=0) - self.weight * np.cos(self.angle)
         lever = np.linspace(0.0, values.length, len(self.pressing))
@@ -78,9 +78,9 @@ def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
     assert forces.unbalanced(values) < 1e-12
     assert min(forces.pressing.min(), forces.spring.min()) >= -noise
     most = values.friction * forces.pressing
-    assert np.all(np.abs(forces.rubbing) <= most + noise)
+    assert np.all(np.abs(forces.contacts) <= most + noise)
     slips = (forces.status != OPEN) & (forces.status != 0)
-    against = forces.rubbing + forces.status * most
+    against = forces.contacts + forces.status * most
     assert np.abs(against[slips]).max(initial=0.0) < noise
     assert np.all(forces.spring >= forces.down - noise)
     assert np.all(forces.spring <= np.maximum(forces.up, 0.0) + noise)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from solver import discrete, solve
-from solver.discrete import Given, Problem, Side, Stack, Support
+from solver.discrete import Problem, Side, SideComponent, Stack, Support
 from solver.discrete.elements import von_mises
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.probes import reaction, side_mean
@@ -105,8 +105,8 @@ def test_equivalent_stress_of_pure_shear_and_of_even_pressure() -> None:
 
 
 T = np.linspace(0.0, 1.0, 9)
-DOWN = Given(prescribed=True, mean=-1e-6 * np.minimum(4.0 * T, 1.0))
-ALONG = Given(prescribed=True, mean=1e-6 * np.sin(2.0 * np.pi * T))
+DOWN = SideComponent(prescribed=True, mean=-1e-6 * np.minimum(4.0 * T, 1.0))
+ALONG = SideComponent(prescribed=True, mean=1e-6 * np.sin(2.0 * np.pi * T))
 BODY = Stack(
     length=0.2,
     height=0.1,
@@ -124,14 +124,16 @@ BEAMS = replace(
     bricks=[Brick(0, 4 * body, 8, 4) for body in range(3)],
     support=None,
     sides={
-        "left": Side(Given(True, 0.0 * T), Given(True, 0.0 * T)),
-        "right": Side(Given(False, 0.0 * T, 6e5 * T), Given(False, 0.0 * T)),
+        "left": Side(SideComponent(True, 0.0 * T), SideComponent(True, 0.0 * T)),
+        "right": Side(
+            SideComponent(False, 0.0 * T, 6e5 * T), SideComponent(False, 0.0 * T)
+        ),
     },
 )
 
 
 def test_a_side_that_is_not_named_is_free() -> None:
-    free = Side(Given(False, 0.0 * T), Given(False, 0.0 * T))
+    free = Side(SideComponent(False, 0.0 * T), SideComponent(False, 0.0 * T))
     named = replace(
         BODY, sides=dict.fromkeys(("left", "right", "bottom"), free) | BODY.sides
     )
@@ -176,13 +178,16 @@ def test_the_moment_of_a_loop_is_that_of_the_traction() -> None:
 
 def test_two_sides_that_move_a_pile_carry_the_friction_of_its_ground() -> None:
     """Sides that share a corner share its force, and balance friction together."""
-    moved = Given(True, 1e-6 * T)
-    pressed = Given(False, -1e5 * np.minimum(4.0 * T, 1.0))
+    moved = SideComponent(True, 1e-6 * T)
+    pressed = SideComponent(False, -1e5 * np.minimum(4.0 * T, 1.0))
     pile = replace(
         BODY,
         bricks=[Brick(0, 4 * body, 8, 4) for body in range(2)],
         friction=0.4,
-        sides={"top": Side(moved, pressed), "left": Side(moved, Given(False, 0.0 * T))},
+        sides={
+            "top": Side(moved, pressed),
+            "left": Side(moved, SideComponent(False, 0.0 * T)),
+        },
     )
     problem = discrete.discretise(pile)
     run = solve(problem, watch=False)

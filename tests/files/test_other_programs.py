@@ -58,9 +58,9 @@ def table(quantity: str, x: Any, t: Any, values: Any) -> str:
 def own_friction(scene: str) -> tuple[Any, Any, Any]:
     """Determinate friction per length or area, with its points and instants."""
     _, problem, reference = solved(scene)
-    (name, *_) = problem.rubbing
-    law = next(iter(problem.rubbing.values()))
-    places = problem.rubbing.forces[name][-1]
+    (name, *_) = problem.contacts
+    law = next(iter(problem.contacts.values()))
+    places = problem.contacts.forces[name][-1]
     sizes = law.by_point(law.weights)[:, None]
     known = determinate_forces(problem)[places].all(axis=1)
     force = reference.contact_force[places] / sizes

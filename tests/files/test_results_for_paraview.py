@@ -49,9 +49,9 @@ def test_files_of_every_scene_in_the_plane_have_its_fields(
     known = inside.stress(moved)
     stress = np.concatenate(bodies.cell_data["stress"])
     assert stress == pytest.approx(known, abs=1e-6 * np.abs(known).max())
-    assert len(contacts.points) == problem.rubbing.n_points
+    assert len(contacts.points) == problem.contacts.n_points
     if problem.opens:
-        pressing = [iterate.contact(name).normal_force for name in problem.rubbing]
+        pressing = [iterate.contact(name).normal_force for name in problem.contacts]
         total = sum(force[:, -1].sum() for force in pressing if force is not None)
         assert contacts.point_data["normal_force"].sum() == pytest.approx(total)
 
@@ -94,7 +94,7 @@ def test_any_interface_of_a_series_is_compared(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     kind = CATALOGUE["wall"]
-    *_, last = discretise(kind.checked(kind.SMALL)).rubbing
+    *_, last = discretise(kind.checked(kind.SMALL)).contacts
     small = [f"--set={name}={value}" for name, value in kind.SMALL.items()]
     command = ["wall", *small]
     path = tmp_path / "run.pvd"

@@ -3,7 +3,7 @@
 import numpy as np
 
 from solver.discrete.plane.rectangles.bricks import Brick
-from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.discrete.scales import Scales
@@ -205,7 +205,7 @@ def block(
         * pressure
         * np.where(time > 0.25, np.sin(np.pi * (time - 0.25) / 0.75), 0.0)
     )
-    top = Side(Given(False, swing), Given(False, pressure, tilt))
+    top = Side(SideComponent(False, swing), SideComponent(False, pressure, tilt))
     return Stack(
         length=1.0,
         height=given.pop("height", 0.6),

@@ -123,10 +123,10 @@ class HalfContact(Contact):
 class HalfFriction(Friction):
     """Friction that says of itself that it is half as large."""
 
-    def without_slip(
+    def bound_before_slip(
         self, pressing: Array | None, opening: Array | None = None
     ) -> Array:
-        return 0.5 * super().without_slip(pressing, opening)
+        return 0.5 * super().bound_before_slip(pressing, opening)
 
 
 class SameContact(Contact):

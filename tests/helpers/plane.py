@@ -28,7 +28,7 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
 
 def lengths(iterate, name="support"):
     """Tributary length of every point of a contact, shape (n_points, 1), m."""
-    law = iterate.problem.rubbing[name]
+    law = iterate.problem.contacts[name]
     return law.by_point(law.weights[:, None])
 
 

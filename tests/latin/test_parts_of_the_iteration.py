@@ -28,10 +28,10 @@ from solver.latin import (
 )
 from solver.latin.anderson import AndersonState
 from solver.latin.end.certified import (
+    answer_of_iterate,
     balance_of_rows,
     certified_answer,
     known_forces,
-    own_answer,
     row_forces,
 )
 from solver.latin.end.status_step import Certificate, states_of, status_step
@@ -87,7 +87,7 @@ class Mixed:
         blocks = Blocks(of.n_rows, of.n_instants)
         k = np.random.default_rng(seed + 1).uniform(0.5, 2.0, of.n_rows)
         stage = LinearStage(of, k, Full(), blocks, multiscale=False)
-        stage.go_to(None)
+        stage.restore(None)
         (self.group,) = stage.groups
         self.shape = self.group.state.shape
         self.state = AndersonState(of, stage, motion, blocks)
@@ -199,7 +199,7 @@ def test_bases_of_full_rank_are_the_full_linear_stage(make, relaxation: float) -
     shape = of.n_rows, of.n_instants
     start = Checkpoint(0, 0.0, random.normal(size=shape))
     for stage in (full, separated):
-        stage.go_to(start)
+        stage.restore(start)
     for _ in range(3):
         target = np.asfortranarray(random.normal(size=shape))
         for stage in (full, separated):
@@ -215,7 +215,7 @@ def test_from_nothing_modes_are_added_until_the_target_is_met() -> None:
     random = np.random.default_rng(2)
     target = np.asfortranarray(random.normal(size=(of.n_rows, of.n_instants)))
     for stage in (full, separated):
-        stage.go_to(None)
+        stage.restore(None)
         stage.read(target)
         stage.advance(1.0)
     assert all(shared.basis.n_modes > 1 for shared in separated.bases())
@@ -229,7 +229,7 @@ def test_bases_keep_no_more_modes_than_allowed_and_only_those_of_the_target(
     of = strands()
     _, separated, k = stages(of, PGD(modes=modes, tolerance=0.0, pairs=4))
     random = np.random.default_rng(3)
-    separated.go_to(None)
+    separated.restore(None)
     target = np.asfortranarray(random.normal(size=(of.n_rows, of.n_instants)))
     separated.read(target)
     separated.advance(1.0)
@@ -389,7 +389,7 @@ def test_an_answer_goes_on_in_full_fields_and_counts_unless_it_stands_beside(
 
 def test_an_iterate_that_is_a_solution_keeps_its_fields_as_the_answer() -> None:
     last = iterate_of(scene_problem("block"))
-    answer = own_answer(last, 1e-12, is_beside=False)
+    answer = answer_of_iterate(last, 1e-12, is_beside=False)
     assert answer.number == last.number + 1
     assert answer.residual == 1e-12
     assert np.array_equal(answer.boundary_force, last.boundary_force)

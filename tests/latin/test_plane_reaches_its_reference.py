@@ -11,7 +11,7 @@ from plane import whole_force_error
 from runs import errors, sample, settings_of
 
 from solver.discrete import discretise
-from solver.discrete.plane.rectangles.sides import Given, Side
+from solver.discrete.plane.rectangles.sides import Side, SideComponent
 from solver.latin import iterations
 from solver.laws import OPEN
 from solver.reference.distance import determinate_forces, distance_to
@@ -71,7 +71,8 @@ def test_iterations_to_one_percent_hardly_grow_from_four_to_sixty_four_substruct
 
 HERE = np.linspace(0.0, 1.0, 17)
 LEANING = Side(
-    Given(True, 1e-4 * HERE, 0.0 * HERE), Given(False, 0.0 * HERE, 0.0 * HERE)
+    SideComponent(True, 1e-4 * HERE, 0.0 * HERE),
+    SideComponent(False, 0.0 * HERE, 0.0 * HERE),
 )
 """A side whose horizontal displacement is prescribed: it rubs on the support as it
 moves."""
@@ -100,7 +101,7 @@ def test_converged_latin_is_the_reference_and_shows_the_same_at_every_interface(
     assert distance.of_displacement(iterate) < 1e-6
     assert distance.of_friction_force(iterate) < 1e-6
     size = np.abs(reference.displacement).max()
-    for name in problem.rubbing:
+    for name in problem.contacts:
         ours = iterate.contact(name)
         theirs = reference.contact(name)
         np.testing.assert_allclose(ours.opening, theirs.opening, atol=1e-5 * size)
@@ -117,10 +118,11 @@ def test_the_tilted_block_lifts_off_and_comes_back():
 
 def test_only_forces_that_a_support_does_not_share_are_compared():
     wall = Side(
-        Given(True, 0.0 * HERE, 0.0 * HERE), Given(True, -1e-4 * HERE, 0.0 * HERE)
+        SideComponent(True, 0.0 * HERE, 0.0 * HERE),
+        SideComponent(True, -1e-4 * HERE, 0.0 * HERE),
     )
     for side, points in ((LEANING, 13), (wall, 12)):
         problem = discretise(block(left=side))
-        assert len(problem.rubbing["support"].positions) == points
-        places = problem.rubbing.forces["support"]
+        assert len(problem.contacts["support"].positions) == points
+        places = problem.contacts.forces["support"]
         assert all(determinate_forces(problem)[place][:, 1:].all() for place in places)

@@ -48,7 +48,7 @@ def test_only_the_four_forces_at_an_inner_break_balance_each_other(wires):
         np.isclose(law.positions, SMALL["break_position"])
         if name in ("contact 1-2", "contact 2-3")
         else np.zeros(len(law.positions), dtype=bool)
-        for name, law in problem.rubbing.items()
+        for name, law in problem.contacts.items()
     ]
     np.testing.assert_array_equal(left_out[:, 0], np.concatenate(at_the_break))
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from own_laws import (
+from user_laws import (
     EXACT,
     PULL,
     STEP,

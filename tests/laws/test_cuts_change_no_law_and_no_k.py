@@ -130,12 +130,12 @@ def test_bodies_that_stick_are_never_softer_and_as_stiff_as_their_depth() -> Non
     before = np.zeros(12)
     stiffness_beside.choose(law, before, 1.0)
     after = before.copy()
-    stiffness_beside.stick(law, after)
+    stiffness_beside.choose_sticking(law, after)
     assert np.all(after >= before)
     assert after == pytest.approx(np.tile(2.0 * law.weights / 1e-3, 4))
     thick = BodyStiffness(2.0, 3.0, depth=1e3)
     same = before.copy()
-    thick.stick(law, same)
+    thick.choose_sticking(law, same)
     assert np.array_equal(same, before)
 
 

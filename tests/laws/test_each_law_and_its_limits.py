@@ -189,7 +189,7 @@ def test_a_local_stage_obeys_coulombs_law_and_action_is_reaction(
         assert np.abs(pressing * opening).max() <= 1e-12
         assert (pressing > 0.1).any()
         assert (opening > 0.1).any()
-    bound = tangential.allowed(pressing, slip)
+    bound = tangential.bound_after_slip(pressing, slip)
     assert np.all(np.abs(friction) <= bound + 1e-12)
     if tangential.cap is not None:
         assert np.all(np.abs(friction) <= tangential.cap[:, None] + 1e-12)
@@ -349,10 +349,10 @@ def test_friction_of_a_law_has_no_units_but_those_of_its_scales() -> None:
     )
     pressing = np.full((4, 2), 5e2)
     slip = np.array([[0.0, 1e-3]]).repeat(4, axis=0)
-    found = along.allowed(pressing / force, slip / length) * force
+    found = along.bound_after_slip(pressing / force, slip / length) * force
     before = np.minimum(3e3 * weights[:, None] + 0.3 * pressing, 4e3 * weights[:, None])
     assert found == pytest.approx(before * FALLING(np.cumsum(slip, axis=1)))
-    assert law.without_slip(0.3 * 5e2, weights[0]) == pytest.approx(before[0, 0])
+    assert law.bound_before_slip(0.3 * 5e2, weights[0]) == pytest.approx(before[0, 0])
     spring = compliance_of(law.stiffness, weights, (length, force))
     assert spring is not None
     assert spring * length / force == pytest.approx(1.0 / (2e9 * weights))
@@ -369,7 +369,7 @@ def test_friction_of_a_kind_is_a_value_that_begins_as_it_was_made() -> None:
     assert falls.softens
     assert not changing.softens
     assert falls.steepest_fall == pytest.approx([0.3 * 0.8, 0.6 * 0.8])
-    assert replace(changing, slip_factor=RISING).highest == pytest.approx(
+    assert replace(changing, slip_factor=RISING).largest_bound == pytest.approx(
         1.5 * changing.bound
     )
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 from contact_problems import friction_of, on_a_support, problem, stiffness, substructure
-from own_laws import (
+from small_scenes import SMALL
+from user_laws import (
     EXACT,
     PULL,
     DampedLoad,
@@ -25,11 +26,10 @@ from own_laws import (
     is_honest,
     with_law,
 )
-from small_scenes import SMALL
 
 from solver import Latin, Problem, solve
 from solver.arrays import Indices
-from solver.discrete.problem import nothing_acts
+from solver.discrete.problem import is_unloaded
 from solver.latin import Ending, Stop
 from solver.latin.end.cost import run_cost
 from solver.latin.stages.sliding_body import slide_of
@@ -59,7 +59,7 @@ def own_friction() -> Problem:
 def two_slip_factors() -> Problem:
     of = CATALOGUE["strand"].checked({"elements": 8, "instants": 5, "wires": 3})
     made = discretise(of)
-    name, law = next(iter(made.rubbing.items()))
+    name, law = next(iter(made.contacts.items()))
     along = replace(law.tangential, slip_factor=SlipFactor((0.0, 1.0), (1.0, 0.5)))
     return with_law(made, name, replace(law, tangential=along))
 
@@ -149,10 +149,10 @@ def test_a_residual_of_fields_is_not_claimed_where_a_law_is_not_read() -> None:
 
 def test_something_may_act_where_a_law_is_not_known() -> None:
     still = bar(force=0.0 * T)
-    assert nothing_acts(still)
+    assert is_unloaded(still)
     load: Any = still.interfaces["load"]
     law = Dashpot(load.rows, np.ones(1), load.values)
-    assert not nothing_acts(with_law(still, "load", law))
+    assert not is_unloaded(with_law(still, "load", law))
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)

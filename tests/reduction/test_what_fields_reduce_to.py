@@ -105,7 +105,7 @@ def solved(**changes) -> Clips:
     """Fit clips to the discrete solution of a bar."""
     settings = BarSettings.checked(changes)
     problem = discretise(settings)
-    law = problem.rubbing["friction"]
+    law = problem.contacts["friction"]
     lengths = law.by_point(law.weights)
     friction = reference_of(problem).contact("friction").tangential_force
     load = settings.structure().load

@@ -15,8 +15,8 @@ from contact_problems import (
     two_bodies,
 )
 
+from solver.cache import CACHE
 from solver.discrete import discretise
-from solver.kept import KEPT
 from solver.reference.assembly import (
     Interrupted,
     NoReferenceError,
@@ -32,7 +32,7 @@ SMALL = 1e-10
 def components(of, found):
     """Opening or None, slip, normal force or bound, friction of every interface."""
     displacement = found.displacement
-    for name, law in of.rubbing.items():
+    for name, law in of.contacts.items():
         fields = found.contact(name)
         slip = np.diff(fields.slip, axis=1, prepend=0.0)
         if law.opens:
@@ -61,7 +61,7 @@ def assert_laws(of, found, slack=SMALL):
         np.testing.assert_allclose(friction * slip, -bound * np.abs(slip), atol=slack)
     free = np.setdiff1d(np.arange(of.n_dofs), of.prescribed[0])
     total = external_force(of) - assembled_stiffness(of) @ found.displacement
-    for name, law in of.rubbing.items():
+    for name, law in of.contacts.items():
         fields = found.contact(name)
         force = [fields.normal_force, fields.tangential_force][-len(law.components) :]
         for one, component in zip(force, law.components, strict=True):
@@ -73,7 +73,7 @@ def assert_laws(of, found, slack=SMALL):
 def system_in(of, states, before, instant):
     """System for displacements and contact forces of a body in given states."""
     load = external_force(of)[:, instant]
-    law = of.rubbing["support"]
+    law = of.contacts["support"]
     size = of.n_dofs
     system = np.zeros((2 * size, 2 * size))
     right = np.concatenate([load, np.zeros(size)])
@@ -102,7 +102,7 @@ def all_solutions(of, before, instant):
     """Enumerate the states of a body on a support;
     give the displacements that obey every law.
     """
-    law = of.rubbing["support"]
+    law = of.contacts["support"]
     found = []
     for states in product(("open", "stick", 1.0, -1.0), repeat=of.n_dofs // 2):
         system, right = system_in(of, states, before, instant)
@@ -218,7 +218,7 @@ def test_a_stop_is_asked_before_every_system_and_interrupts_at_any():
     assert steps > 2 * of.n_instants
     assert len(asked) >= steps
     for last in range(len(asked)):
-        KEPT.clear()  # a condensation that is kept asks no more
+        CACHE.clear()  # a condensation that is kept asks no more
         answers = iter([False] * last + [True])
         with pytest.raises(Interrupted):
             reference_of(of, stop=lambda answers=answers: next(answers))

@@ -42,7 +42,7 @@ class Contact:
         self.weights = lengths(iterate)[:, 0]
         self.pressure = self.fields.normal_force[:, -1] / self.weights
         self.total = self.fields.normal_force[:, -1].sum()
-        x = iterate.problem.rubbing["support"].positions
+        x = iterate.problem.contacts["support"].positions
         self.x = x - x @ self.fields.normal_force[:, -1] / self.total
         stiffness = 210e9 / (1.0 - poisson**2)
         self.exact = HalfPlane(self.total, RADIUS, stiffness)

@@ -13,7 +13,7 @@ from solver.laws import Neumann, Perfect
 from solver.reference.assembly import jumps
 from solver.reference.distance import HIDDEN, kkt_residual
 from solver.reference.incremental import reference_of
-from solver.reference.laws_obeyed import RowFields, law_residuals
+from solver.reference.law_residuals import RowFields, law_residuals
 from solver.reference.rules import rules_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -121,7 +121,7 @@ def test_rounding_of_how_far_a_slender_body_has_moved_is_no_force():
     assert law_residuals(found, problem).largest < AT_ROUNDING
     # A body that has moved as a whole is seen where it touches others.
     further = found.displacement.copy()
-    further[:, -1] += found.displacement.max() * problem.motions[:, 0]
+    further[:, -1] += found.displacement.max() * problem.rigid_motions[:, 0]
     assert law_residuals(spoiled(found, displacement=further), problem).largest > SEEN
 
 
@@ -199,8 +199,8 @@ def test_an_instant_that_is_left_out_breaks_a_law(solved):
 def test_overlap_and_tension_and_force_at_a_distance_break_the_law_across(scene):
     problem = problem_of(scene, SMALL[scene])
     found = reference_of(problem)
-    (name, law) = list(problem.rubbing.items())[-1]
-    place = problem.rubbing.forces[name][0]
+    (name, law) = list(problem.contacts.items())[-1]
+    place = problem.contacts.forces[name][0]
     last = problem.n_instants - 1
     point = int(np.argmax(found.contact_force[place, last]))
     assert found.contact_force[place.start + point, last] > 0.0
@@ -337,7 +337,7 @@ def test_a_body_that_flies_away_hides_no_force_that_is_missing():
     problem = problem_of("block", values)
     found = reference_of(problem)
     assert law_residuals(found, problem).largest < ROUNDED
-    upward = problem.motions[:, [1]] * np.ones(problem.n_instants)
+    upward = problem.rigid_motions[:, [1]] * np.ones(problem.n_instants)
     flown = spoiled(found, displacement=1e12 * upward, force=0.0 * found.contact_force)
     assert law_residuals(flown, problem).balance > SEEN
     assert kkt_residual(flown, problem, HIDDEN) > SEEN

@@ -11,7 +11,7 @@ import pytest
 from solver.discrete.problem import Problem
 from solver.latin import solve
 from solver.reference.incremental import reference_of
-from solver.reference.laws_obeyed import law_residuals
+from solver.reference.law_residuals import law_residuals
 from solver.reference.other_positions import other_positions
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise

@@ -150,7 +150,7 @@ def problems(draw: st.DrawFn) -> Problem:
 
 def bounds(of: Problem) -> np.ndarray:
     law = of.friction
-    most = law.tangential.highest.max(axis=1)
+    most = law.tangential.largest_bound.max(axis=1)
     return np.bincount(law.points, weights=most)[:, None] * of.scales.force
 
 
@@ -173,7 +173,7 @@ def assert_equilibrium(of: Problem, found: Reference) -> None:
         stiffness[np.ix_(part.dofs, part.dofs)] += part.elasticity.stiffness.toarray()
         if part.body_force is not None:
             load[part.dofs] += part.body_force
-    for given_force in of.given_forces:
+    for given_force in of.prescribed_forces:
         load[of.row_dofs[given_force.rows]] += given_force.values
     displacement = found.displacement / of.scales.displacement
     inner = stiffness @ displacement

@@ -20,7 +20,7 @@ from solver.reference.shakedown import (
 )
 from solver.scenes import CATALOGUE, discretise
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.quantities.cycles import ends_of
+from solver.study.quantities.cycles import cycle_ends
 from solver.study.quantities.finished import FinishedRun, finished_run
 
 N_CYCLES = 4
@@ -60,7 +60,7 @@ def ran(
 
 
 def last(run: FinishedRun) -> slice:
-    ends = ends_of(run.settings)
+    ends = cycle_ends(run.settings)
     return slice(ends[-2], ends[-1] + 1)
 
 
@@ -128,7 +128,7 @@ def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> N
 
 
 def last_of(settings: Any) -> slice:
-    ends = ends_of(settings)
+    ends = cycle_ends(settings)
     return slice(ends[-2], ends[-1] + 1)
 
 

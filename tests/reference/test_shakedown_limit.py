@@ -10,7 +10,7 @@ import pytest
 from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.scenes import CATALOGUE, discretise
-from solver.study.quantities.cycles import cycles_of, ends_of
+from solver.study.quantities.cycles import cycle_ends, cycles_of
 from solver.study.quantities.finished import finished_run
 
 BOUND = 1500.0
@@ -21,7 +21,7 @@ GIVES_WAY = {"friction_law": "compliant", "contact_stiffness": 100.0}
 
 def limit(scene: str, **changes: Any) -> float:
     settings = CATALOGUE[scene].checked(changes)
-    ends = ends_of(settings)
+    ends = cycle_ends(settings)
     return shakedown_limit(discretise(settings), slice(ends[0], ends[-1] + 1))
 
 
@@ -110,7 +110,7 @@ def test_where_slip_presses_nothing_the_program_of_the_plane_gives_it_too(
     scene: str, changes: dict[str, Any]
 ) -> None:
     rods = CATALOGUE[scene].checked(SMALL | changes)
-    ends = ends_of(rods)
+    ends = cycle_ends(rods)
     some = slice(ends[-2], ends[-1] + 1)
     theorem = shakedown_limit(discretise(rods), some)
     assert largest_swing(slip_space(discretise(rods)), some)[0] == pytest.approx(

@@ -39,7 +39,7 @@ def test_what_sticks_carries_no_more_than_the_cap_and_is_found_to(share):
     found = reference_of(problem)
     assert found.converged.all()
     assert kkt_residual(found, problem) < 1e-10
-    for name, law in problem.rubbing.items():
+    for name, law in problem.contacts.items():
         carried = np.abs(found.contact(name).tangential_force)
         cap = share * 1e7 * law.by_point(law.weights)
         assert np.all(carried <= cap[:, None] * (1.0 + 1e-9))

@@ -34,7 +34,7 @@ from solver.reference.glued import base_of, from_jumps, self_stresses
 from solver.reference.instants import Instants
 from solver.reference.linear_system import LinearSystem
 from solver.reference.newton import Newton
-from solver.reference.rules import HELD, Increment, InstantSolution, Sides, States
+from solver.reference.rules import HELD, Increment, InstantSolution, RightSides, States
 from solver.reference.soft_system import SoftSystem
 from solver.scenes import discretise
 from solver.scenes.incline import InclineSettings
@@ -107,11 +107,11 @@ def test_what_has_something_in_series_follows_from_a_base_of_the_others(
 # The linear system of known states
 
 
-def sides_of(condensed: Condensation, random: np.random.Generator) -> Sides:
+def sides_of(condensed: Condensation, random: np.random.Generator) -> RightSides:
     rules = condensed.rules
     bound = np.where(rules.normal, 0.0, random.uniform(0.0, 0.5, len(rules.gap)))
     held = 0.1 * random.normal(size=len(rules.gap))
-    return Sides(random.normal(size=len(condensed.base)), bound, held)
+    return RightSides(random.normal(size=len(condensed.base)), bound, held)
 
 
 def random_states(rules, random: np.random.Generator) -> States:
@@ -121,7 +121,7 @@ def random_states(rules, random: np.random.Generator) -> States:
 
 
 def laws_missed(
-    condensed: Condensation, states: States, sides: Sides, step: Increment
+    condensed: Condensation, states: States, sides: RightSides, step: Increment
 ) -> float:
     """Largest error of a step in the laws of its states."""
     rules = condensed.rules
@@ -268,13 +268,13 @@ def begin(condensed: Condensation, states: States) -> InstantSolution:
     return InstantSolution(states, Increment(still, still, base, still[:0]), still)
 
 
-def known_sides(condensed: Condensation, random: np.random.Generator) -> Sides:
+def known_sides(condensed: Condensation, random: np.random.Generator) -> RightSides:
     load = 2.0 * random.normal(size=len(condensed.base))
     size = len(condensed.rules.gap)
-    return Sides(load, random.uniform(0.1, 1.0, size), np.zeros(size))
+    return RightSides(load, random.uniform(0.1, 1.0, size), np.zeros(size))
 
 
-def enumerated(matrix: Array, sides: Sides) -> list[tuple[States, Array]]:
+def enumerated(matrix: Array, sides: RightSides) -> list[tuple[States, Array]]:
     """All states, and jumps, (n,) each, that obey Coulomb's law of known bound."""
     found = []
     for choice in product((-1, 0, 1), repeat=len(matrix)):
@@ -292,7 +292,7 @@ def enumerated(matrix: Array, sides: Sides) -> list[tuple[States, Array]]:
 
 def of_two_strands(
     seed: int,
-) -> tuple[np.random.Generator, Condensation, Newton, Sides]:
+) -> tuple[np.random.Generator, Condensation, Newton, RightSides]:
     """Random numbers, and an instant of two strands whose bound is known."""
     random = np.random.default_rng(seed)
     condensed = Condensation(rubbing_strands(random, 2, 5))
@@ -327,7 +327,7 @@ def test_a_solution_is_found_again_from_itself_in_one_step(seed: int) -> None:
     found = newton.follow(at, sides, [at, *newton.approach(at, sides)])
     assert found is not None
     before = newton.system.solutions
-    again = newton.near(found, sides)
+    again = newton.seek_from(found, sides)
     assert again is not None
     assert newton.system.solutions == before + 1
     assert np.array_equal(again.step.jump, found.step.jump)

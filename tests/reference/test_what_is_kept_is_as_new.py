@@ -12,8 +12,8 @@ import pytest
 from small_scenes import SMALL
 
 from solver.arrays import Array
+from solver.cache import CACHE, Cache, content_of
 from solver.discrete.schur_complement import SchurComplement
-from solver.kept import KEPT, Kept, content_of
 from solver.reference.condensation import Condensation
 from solver.reference.incremental import reference_of
 from solver.reference.solution import Reference
@@ -63,7 +63,7 @@ def is_same(first: Reference, second: Reference) -> bool:
 
 @pytest.fixture(autouse=True)
 def _nothing_kept() -> None:
-    KEPT.clear()
+    CACHE.clear()
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -73,7 +73,7 @@ def test_more_friction_leaves_the_stiffness_as_it_is(scene: str) -> None:
     after = Condensation(discretise(with_more_friction(settings)))
     assert after.stiffness is before.stiffness
     assert after.motions is before.motions
-    KEPT.clear()
+    CACHE.clear()
     alone = Condensation(discretise(with_more_friction(settings)))
     assert alone.stiffness is not before.stiffness
     assert alone.stiffness.tobytes() == after.stiffness.tobytes()
@@ -85,7 +85,7 @@ def test_a_run_after_another_is_as_the_first(scene: str) -> None:
     settings = small(scene)
     moved = with_more_friction(settings)
     first = solved(moved)
-    KEPT.clear()
+    CACHE.clear()
     solved(settings)
     assert is_same(solved(moved), first)
 
@@ -95,7 +95,7 @@ def test_a_load_changes_the_load_alone(scene: str) -> None:
     settings = small(scene)
     moved = small(scene, **LOADS[scene])
     first = solved(moved)
-    KEPT.clear()
+    CACHE.clear()
     assert not is_same(solved(settings), first)
     assert is_same(solved(moved), first)
 
@@ -108,7 +108,7 @@ def test_another_structure_has_another_stiffness(changes: dict[str, Any]) -> Non
     before = Condensation(discretise(small("layers")))
     after = Condensation(discretise(small("layers", **changes)))
     assert after.stiffness is not before.stiffness
-    KEPT.clear()
+    CACHE.clear()
     alone = Condensation(discretise(small("layers", **changes)))
     assert after.stiffness.tobytes() == alone.stiffness.tobytes()
 
@@ -130,7 +130,7 @@ def test_the_next_run_condenses_no_substructure(
     with monkeypatch.context() as patched:
         patched.setattr(SchurComplement, "__init__", None)
         discretise(with_more_friction(settings))
-    KEPT.clear()
+    CACHE.clear()
     monkeypatch.setattr(SchurComplement, "__init__", None)
     with pytest.raises(TypeError):
         discretise(settings)
@@ -143,7 +143,7 @@ def test_the_next_run_condenses_no_substructure(
 def test_another_arch_has_the_operators_of_a_first_one(changes: dict[str, Any]) -> None:
     discretise(small("arch"))
     after = discretise(small("arch", **changes)).substructures
-    KEPT.clear()
+    CACHE.clear()
     alone = discretise(small("arch", **changes)).substructures
     for first, second in zip(after, alone, strict=True):
         assert first.elasticity is not second.elasticity
@@ -186,7 +186,7 @@ def test_rods_that_differ_in_one_setting_have_the_pieces_of_first_ones(
         drawn = [*without_one(draw(scene, SEED, row))]
         after = [pieces_of(settings) for settings in drawn]
         for settings, pieces in zip(drawn, after, strict=True):
-            KEPT.clear()
+            CACHE.clear()
             assert pieces == pieces_of(settings), settings
 
 
@@ -208,7 +208,7 @@ class Block:
 
 
 def test_the_oldest_goes_where_memory_ends() -> None:
-    kept = Kept(100)
+    kept = Cache(100)
     first = kept.of("first", lambda: Block(40))
     kept.of("second", lambda: Block(40))
     assert kept.of("first", lambda: Block(40)) is first
@@ -220,7 +220,7 @@ def test_the_oldest_goes_where_memory_ends() -> None:
 
 
 def test_what_is_too_large_is_not_kept_and_drops_nothing() -> None:
-    kept = Kept(100)
+    kept = Cache(100)
     small_one = kept.of("small", lambda: Block(60))
     kept.of("large", lambda: Block(101))
     assert kept.nbytes == 60
@@ -228,7 +228,7 @@ def test_what_is_too_large_is_not_kept_and_drops_nothing() -> None:
 
 
 def test_what_fails_is_not_kept() -> None:
-    kept = Kept(100)
+    kept = Cache(100)
 
     def fail() -> Block:
         raise InterruptedError

@@ -13,7 +13,7 @@ from scipy.special import erfc
 
 from solver import discrete
 from solver.arrays import Array
-from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.problem import Problem
 from solver.files.saved import dump, read_settings, settings_from_command
@@ -44,7 +44,7 @@ def solved(**changes: Any) -> tuple[FaultSettings, Problem, Reference]:
 def reached(problem: Problem, found: Reference) -> Array:
     """Farthest place that slips at every instant, (n_instants,), m."""
     slips = found.contact("support").status == 1
-    return np.where(slips, problem.rubbing["support"].positions[:, None], 0.0).max(
+    return np.where(slips, problem.contacts["support"].positions[:, None], 0.0).max(
         axis=0
     )
 
@@ -105,7 +105,7 @@ def test_the_front_does_not_depend_on_the_elastic_constants(
     _, problem, usual = solved()
     _, _, other = solved(**changes)
     apart = np.abs(reached(problem, usual) - reached(problem, other))
-    assert apart.max() <= 1.001 * problem.rubbing["support"].positions[1]
+    assert apart.max() <= 1.001 * problem.contacts["support"].positions[1]
     assert reached(problem, usual)[-1] > 100.0
 
 
@@ -114,7 +114,7 @@ def test_the_front_does_not_depend_on_the_size_of_the_body() -> None:
     larger = {"length": 1200.0, "height": 1200.0, "elements": 96, "elements_up": 48}
     _, other, found = solved(**larger)
     apart = np.abs(reached(problem, usual) - reached(other, found))
-    assert apart.max() <= 1.001 * problem.rubbing["support"].positions[1]
+    assert apart.max() <= 1.001 * problem.contacts["support"].positions[1]
 
 
 def test_slip_goes_on_after_the_fluid_is_stopped() -> None:
@@ -194,7 +194,7 @@ JOINT = {
 def test_a_joint_slips_by_shear_over_stiffness_between_both_of_its_sides() -> None:
     """Some 6.5 mm between its sides, of which the body that is solved moves half."""
     settings, problem, found = solved(**JOINT)
-    law = problem.rubbing["support"]
+    law = problem.contacts["support"]
     contact = found.contact("support")
     shear = -contact.tangential_force / law.by_point(law.weights)[:, None]
     assert shear == pytest.approx(5e8 * contact.slip, rel=1e-9)
@@ -237,7 +237,7 @@ def test_friction_of_a_fault_has_its_last_value_after_the_slip_length_between_it
     }
     _, problem, found = solved(**{**changes, "elements_up": 4})
     contact = found.contact("support")
-    where = problem.rubbing["support"]
+    where = problem.contacts["support"]
     factor = (
         np.abs(contact.tangential_force) / where.by_point(where.weights)[:, None] / 6e6
     )
@@ -320,9 +320,9 @@ def loosened(substructures):
     x = np.linspace(0.0, 1.0, 21)
     time = np.linspace(0.0, 1.0, 9)
     strength = 1e6 - 8e5 * np.sin(np.pi * time) * np.exp(-8.0 * x[:, None])
-    none = Given(False, 0.0 * time)
-    shear = Given(False, np.full_like(time, 6e5))
-    level = Given(True, 0.0 * time)
+    none = SideComponent(False, 0.0 * time)
+    shear = SideComponent(False, np.full_like(time, 6e5))
+    level = SideComponent(True, 0.0 * time)
     return Stack(
         length=1.0,
         height=0.5,
@@ -349,7 +349,7 @@ def test_a_known_bound_in_the_plane_is_obeyed_and_presses_nothing(substructures)
     solution = solve(problem, method, watch=False)
     assert reference.converged.all()
     assert solution.status.ending is Ending.CONVERGED
-    law = problem.rubbing["support"]
+    law = problem.contacts["support"]
     there = reference.contact("support")
     found = solution.iterate.contact("support")
     bound = law.by_point(law.tangential.bound) * problem.scales.force

@@ -21,7 +21,7 @@ from solver.scenes.mesh_files import (
     named,
     read_example,
 )
-from solver.scenes.named_sides import deeds_of
+from solver.scenes.named_sides import conditions_of
 from solver.settings.values import SettingError
 from solver.study.quantities import QUANTITIES
 from solver.study.quantities.finished import finished_run
@@ -291,7 +291,7 @@ def test_a_file_is_read_where_a_command_names_it(tmp_path: Path) -> None:
 
 def test_sides_do_as_their_names_say_or_as_they_are_told() -> None:
     lines = ["left held", "right pulled", "top", "rim", "foot held x and held y"]
-    assert dict(deeds_of(lines, "rim pressed, Right moved x and held y")) == {
+    assert dict(conditions_of(lines, "rim pressed, Right moved x and held y")) == {
         "left held": ("held",),
         "right pulled": ("moved x", "held y"),
         "top": ("moved y",),
@@ -299,9 +299,9 @@ def test_sides_do_as_their_names_say_or_as_they_are_told() -> None:
         "foot held x and held y": ("held x", "held y"),
     }
     with pytest.raises(RefusedError, match="there is no side 'roof'"):
-        deeds_of(lines, "roof held")
+        conditions_of(lines, "roof held")
     with pytest.raises(RefusedError, match="rim fixed"):
-        deeds_of(lines, "rim fixed")
+        conditions_of(lines, "rim fixed")
 
 
 def test_a_run_says_that_nothing_presses_what_lies_between_bodies() -> None:
@@ -359,7 +359,7 @@ def test_a_dovetail_rubs_one_way_when_pulled_and_the_other_when_let_go() -> None
     )
     problem = discretise(settings)
     solution = reference_of(problem)
-    for name in problem.rubbing:
+    for name in problem.contacts:
         fields = solution.contact(name)
         assert fields.normal_force is not None
         normal = fields.normal_force.sum(axis=0)

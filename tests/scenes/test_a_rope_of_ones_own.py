@@ -69,7 +69,7 @@ def test_latin_certifies_it_near_a_clamp() -> None:
     settings = settings_of(construction=OWN, tension=3e4, **clamped)
     solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.is_certified
-    assert len(solution.iterate.problem.rubbing) == 17
+    assert len(solution.iterate.problem.contacts) == 17
 
 
 def test_it_comes_from_a_file_with_units_in_its_head_and_what_was_understood_is_said(
@@ -130,6 +130,6 @@ def test_as_many_wires_fit_as_have_room_beside_each_other() -> None:
     text = refusal(lambda: RopeSettings.checked({"construction": equal}))
     assert "do not fit" in text
     section = settings_of(construction=[[1, 5.4e-3, 0.0, 2e11], *equal[1:]]).section
-    assert section.least_radius(0) <= section.radii[0]
+    assert section.smallest_radius(0) <= section.radii[0]
     straight = settings_of(construction=[equal[0], [6, 5e-3, 0.2, 2e11]]).section
-    assert straight.least_radius(0) == pytest.approx(straight.radii[0], rel=1e-4)
+    assert straight.smallest_radius(0) == pytest.approx(straight.radii[0], rel=1e-4)

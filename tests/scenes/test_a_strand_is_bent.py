@@ -153,7 +153,7 @@ def test_many_supports_of_known_bound_are_solved_as_rods_with_every_wire() -> No
     shape = (settings.elements - 1, settings.instants)
     for wire in settings.structure().wires:
         assert arrays[f"interface/{wire.name}/slip"].shape == shape
-    assert arrays["status"].shape == (len(problem.rubbing) * shape[0], shape[1])
+    assert arrays["status"].shape == (len(problem.contacts) * shape[0], shape[1])
 
 
 def test_what_is_no_strand_is_refused() -> None:

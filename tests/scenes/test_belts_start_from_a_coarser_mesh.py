@@ -111,7 +111,7 @@ def test_a_band_that_slides_far_stays_on_its_guide_on_the_finer_mesh():
     solution = reference_of(next(settings.coarser()))
     k = np.full(fine.n_rows, 1e300)
     carried = prolong(solution, fine, k) * fine.scales.displacement
-    law = fine.rubbing["guide"]
+    law = fine.contacts["guide"]
     along = carried[law.tangent.above]
     across = carried[law.normal.component.above]
     assert np.abs(along).max() == pytest.approx(0.05, rel=0.05)
@@ -127,8 +127,8 @@ def test_the_ends_of_a_contact_start_where_the_coarser_mesh_has_them(wrap):
     k = fine.direction
     carried = prolong(solution, fine, k)
     moved = prolong(solution, fine, np.full(fine.n_rows, 1e300))
-    law = fine.rubbing["guide"]
-    coarse = solution.problem.rubbing["guide"]
+    law = fine.contacts["guide"]
+    coarse = solution.problem.contacts["guide"]
     known = solution.contact("guide")
     rows = law.tangent.above[[0, -1]]
     slip = moved[rows] * fine.scales.displacement
@@ -148,7 +148,7 @@ def test_the_start_comes_to_the_truth_as_meshes_are_refined():
         k = np.full(fine.n_rows, 1e300)
         carried = prolong(reference_of(next(settings.coarser())), fine, k)
         known = reference_of(fine).displacement / fine.scales.displacement
-        along = fine.rubbing["guide"].tangent.above
+        along = fine.contacts["guide"].tangent.above
         difference = carried[along] - known[fine.row_dofs[along]]
         errors.append(np.linalg.norm(difference) / np.linalg.norm(known))
     slope = np.polyfit(np.log([20, 40, 80, 160]), np.log(errors), 1)[0]
@@ -182,8 +182,8 @@ def test_short_waves_raise_k_on_a_support_alone():
     problem = discretise(leaf(40, friction=0.3, count=2))
     plain = automatic(problem)
     short = automatic(problem, waves=0.1)
-    ground = problem.rubbing["ground"].rows
-    between = problem.rubbing["joint 1"].rows
+    ground = problem.contacts["ground"].rows
+    between = problem.contacts["joint 1"].rows
     assert short[ground] == pytest.approx(10.0 * plain[ground])
     assert np.array_equal(short[between], plain[between])
     assert np.array_equal(automatic(problem, waves=2.0), plain)

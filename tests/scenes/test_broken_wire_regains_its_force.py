@@ -154,9 +154,9 @@ def work_of_the_grip(iterate):
 def dissipation(iterate):
     """Bound times the slip of each step, shape (n_instants,), J."""
     found = np.zeros(iterate.problem.n_instants)
-    for name, law in iterate.problem.rubbing.items():
+    for name, law in iterate.problem.contacts.items():
         bound = (
-            law.by_point(law.tangential.highest.max(axis=1))
+            law.by_point(law.tangential.largest_bound.max(axis=1))
             * iterate.problem.scales.force
         )
         found += bound @ np.abs(

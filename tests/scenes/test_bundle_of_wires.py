@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from solver.arrays import sparse_factor
+from solver.cache import CACHE
 from solver.discrete.plane.bodies_problem import problem_of
 from solver.discrete.plane.makers.wires import DOWN, UP, Packing
-from solver.kept import KEPT
 from solver.latin import Latin, iterations
 from solver.reference.distance import distance_to
 from solver.reference.incremental import reference_of
@@ -83,7 +83,7 @@ def test_wires_of_one_shape_are_condensed_once(monkeypatch):
         return sparse_factor(matrix, **how)
 
     monkeypatch.setattr("solver.discrete.schur_complement.sparse_factor", factor)
-    KEPT.clear()
+    CACHE.clear()
     problem_of(structure)
     # Above one wire and below another the same wire has its directions turned round.
     assert len(condensed) == len({id(body.shape) for body in structure.bodies})
@@ -102,7 +102,7 @@ def test_wires_press_on_each_other_as_hertz_says(elements, error):
     assert len(between) == 12
     assert not any(name.startswith("ground") for name in names)
     for curve in curves:
-        law = problem.rubbing[curve.interface]
+        law = problem.contacts[curve.interface]
         force = reference.contact(curve.interface).normal_force
         found = force[:, -1] / law.by_point(law.weights[:, None])[:, 0]
         known = curve.up[:, -1]
@@ -147,7 +147,7 @@ def test_on_the_ground_logs_need_a_third_of_the_friction_between_them():
 def test_a_strip_of_a_log_on_the_ground_is_seven_tenths_of_a_millimetre_wide():
     settings = settings_of(**LOGS, friction=0.4)
     problem = discretise(settings)
-    law = problem.rubbing["ground 1"]
+    law = problem.contacts["ground 1"]
     force = reference_of(problem).contact("ground 1").normal_force[:, -1]
     distances = law.positions - law.positions @ force / force.sum()
     width = 4.0 * np.sqrt(force @ distances**2 / force.sum())

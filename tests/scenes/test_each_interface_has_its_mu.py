@@ -65,7 +65,7 @@ def test_a_broken_wire_regains_its_force_over_the_friction_of_both_its_sides() -
     runs = [reference_of(discretise(one)) for one in (kind.checked(changes), uneven)]
     for run, factors in zip(runs, ((1.0, 1.0), (0.6, 1.4)), strict=True):
         for name, factor in zip(("contact 1-2", "contact 2-3"), factors, strict=True):
-            law = run.problem.rubbing[name]
+            law = run.problem.contacts[name]
             contact = run.contact(name)
             slips = contact.status[:, -1] != 0
             bound = law.by_point(law.weights) * factor * 0.3 * 5000.0

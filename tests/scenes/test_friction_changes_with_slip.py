@@ -13,7 +13,7 @@ from runs import solved
 
 from solver import Stack, discrete
 from solver.arrays import Array
-from solver.discrete import Given, Side, Support
+from solver.discrete import Side, SideComponent, Support
 from solver.discrete.rods.rods import End, Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Contact, FrictionLaw, SlipFactor
@@ -354,7 +354,8 @@ def pressed_block(law, *, lifted=False):
     along = np.interp(WHOLE, [0.0, 0.2, 0.5, 0.7, 1.0], [0.0, 0.0, 3e-5, 3e-5, 6e-5])
     sides = {
         "top": Side(
-            x=Given(prescribed=True, mean=along), y=Given(prescribed=True, mean=down)
+            x=SideComponent(prescribed=True, mean=along),
+            y=SideComponent(prescribed=True, mean=down),
         )
     }
     return discrete.discretise(

@@ -49,7 +49,7 @@ def carried(problem, answer, names="support and"):
     """Pressing force on the ground, (n_instants,), N."""
     forces = [
         answer.contact(name).normal_force.sum(axis=0)
-        for name in problem.rubbing
+        for name in problem.contacts
         if names in name
     ]
     return np.sum(forces, axis=0)
@@ -59,7 +59,7 @@ def friction_of_ground(problem, answer):
     """Friction force of the ground, (n_instants,), N."""
     forces = [
         answer.contact(name).tangential_force.sum(axis=0)
-        for name in problem.rubbing
+        for name in problem.contacts
         if "support" in name
     ]
     return np.sum(forces, axis=0)
@@ -96,7 +96,7 @@ def test_ground_that_settles_as_a_whole_moves_the_wall_and_changes_no_force():
     whole = SETTLES | {"settled_from": 0.0, "settled_length": 1.25}
     _, problem, answer = made(**whole)
     settings, _, deeper = made(**(whole | {"settlement": 1e-3}))
-    for name in problem.rubbing:
+    for name in problem.contacts:
         np.testing.assert_allclose(
             deeper.contact(name).normal_force,
             answer.contact(name).normal_force,
@@ -135,7 +135,7 @@ def test_each_kind_of_joint_has_its_friction():
     factors = {"friction": 0.5, "head_friction": 0.5, "ground_friction": 2.0}
     for values in (SMALL, SETTLES):
         settings = CATALOGUE["wall"].checked(values | factors)
-        rubbing = discretise(settings).rubbing
+        rubbing = discretise(settings).contacts
         heads = rubbing["brick 1 and brick 2"].tangential.friction
         beds = rubbing["brick 1 and brick 6"].tangential.friction
         ground = rubbing["support and brick 1"].tangential.friction
@@ -200,7 +200,7 @@ def test_the_settlement_is_drawn_below_what_settles():
     np.testing.assert_allclose(act.points, [[0.5, 0.0]])
     assert act.towards == (0.0, -1.0)
     np.testing.assert_allclose(act.values, settings.path("settlement_load"))
-    assert settings.behind()["bottom y"] == "settlement"
+    assert settings.load_settings()["bottom y"] == "settlement"
 
 
 def test_what_the_case_says_to_change_first_is_so():

@@ -165,7 +165,7 @@ def test_leaves_touch_as_far_as_the_shorter_one_goes_and_are_cut_where_it_ends()
     settings = settings_of(layers=3, elements=20, substructures=3, layer_lengths=table)
     problem = discretise(settings)
     ends = [
-        problem.rubbing[name].positions[-1] for name in ("contact 1-2", "contact 2-3")
+        problem.contacts[name].positions[-1] for name in ("contact 1-2", "contact 2-3")
     ]
     assert ends == pytest.approx([0.25, 0.15])
     assert len(problem.substructures) == settings.n_substructures == 3 + 5 + 1
@@ -193,7 +193,7 @@ def test_pressure_on_all_that_lies_open_presses_leaves_and_bends_none() -> None:
     )
     problem = discretise(settings)
     found = reference_of(problem)
-    for name, law in problem.rubbing.items():
+    for name, law in problem.contacts.items():
         pressed = found.contact(name).normal_force[:, -1] / law.by_point(law.weights)
         np.testing.assert_allclose(pressed[3:-3], PRESSURE, rtol=0.02)
     squeezed = PRESSURE / YOUNG * 0.01

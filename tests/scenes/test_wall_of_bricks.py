@@ -10,7 +10,7 @@ import pytest
 
 from solver import discrete
 from solver.discrete.plane.rectangles.bricks import bonded, grouped, with_opening
-from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Support
 from solver.discrete.plane.rectangles.stack import Stack
 from solver.latin import Ending, Latin, iterations, solve
 from solver.latin.end.status import collapses
@@ -27,7 +27,7 @@ from solver.study.quantities.finished import known_reference
 
 TIMES = np.linspace(0.0, 1.0, 21)
 DOWN = np.minimum(TIMES / 0.25, 1.0)
-PRESSED = Given(False, -1e6 * DOWN)
+PRESSED = SideComponent(False, -1e6 * DOWN)
 PUSH = np.where(TIMES < 0.25, 0.0, np.sin(2.0 * np.pi * (TIMES - 0.25) / 0.75))
 
 
@@ -45,7 +45,7 @@ def wall(columns=4, courses=4, *, bond="running", size=(4, 2), moved=5e-5, **oth
         friction=0.6,
         support=Support(np.zeros(columns * size[0] + 1), 0.6),
         body_force=np.stack([0.0 * TIMES, -2e4 * DOWN]),
-        sides={"top": Side(Given(True, moved * PUSH), PRESSED)},
+        sides={"top": Side(SideComponent(True, moved * PUSH), PRESSED)},
         instants=TIMES,
         duration=1.0,
         macro_degree=2,
@@ -59,7 +59,7 @@ def forces(found, names, component):
 
 
 def on_ground(problem):
-    return [name for name in problem.rubbing if name.startswith("support")]
+    return [name for name in problem.contacts if name.startswith("support")]
 
 
 def door():
@@ -156,7 +156,7 @@ def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
         problem = discrete.discretise(made)
         run = solve(problem, Latin(), watch=False)
         assert run.is_certified
-        names = sorted(problem.rubbing)
+        names = sorted(problem.contacts)
         sums = [run.iterate.contact(name).normal_force.sum(axis=0) for name in names]
         found.append([made.loop(problem).force(run.iterate), *sums])
     np.testing.assert_allclose(*found, atol=1e-6 * np.abs(found[0]).max())
@@ -165,7 +165,7 @@ def test_bricks_that_are_cut_pass_on_the_same_forces(cuts):
 def column(shear, courses, *, friction, **law):
     """A pile of single bricks under a pressure, and a growing traction on top."""
     made = wall(1, courses, bond="stack", size=(8, 4), **law)
-    grown = Given(False, shear * np.clip((TIMES - 0.25) / 0.75, 0.0, 1.0))
+    grown = SideComponent(False, shear * np.clip((TIMES - 0.25) / 0.75, 0.0, 1.0))
     return replace(
         made,
         body_force=None,

@@ -17,15 +17,15 @@ from solver.checks import (
     INSTANTS,
     POSITIVE,
     ROWS,
+    AnyOf,
     Choice,
     Count,
-    Each,
-    Either,
+    InstanceOf,
     Kind,
-    Named,
+    MappingOf,
     Number,
     Numbers,
-    Part,
+    SequenceOf,
     check,
     check_value,
 )
@@ -78,15 +78,15 @@ KINDS: dict[str, tuple[Kind, list[Any], list[Any]]] = {
         [np.array([3.0]), np.array([-1.0, 0.0, 5.0])],
         [np.zeros(0), np.array([0.0, 0.0]), np.array([0.0, 2.0, 1.0]), [0.0, 1.0]],
     ),
-    "part": (Part(Rope, type(None)), [Rope(), None], [Rope, "Rope", 1]),
+    "part": (InstanceOf(Rope, type(None)), [Rope(), None], [Rope, "Rope", 1]),
     "choice": (Choice(("a", "b")), ["a", "b"], ["c", "", None, 1, ["a"]]),
     "flag": (FLAG, [True, np.bool_(False)], [0, 1, "True", None]),
     "function": (FUNCTION, [len, Rope], [1, None, "len"]),
-    "either": (Either(COUNT, Choice(("all",))), [4, "all"], [0, "none", 1.5]),
-    "each": (Each(COUNT), [(1,), [1, 2]], [(), (1, 0), "12", 3, {1: 2}]),
-    "each of two": (Each(COUNT, 2), [(1, 2)], [(1,), (1, 2, 3)]),
+    "either": (AnyOf(COUNT, Choice(("all",))), [4, "all"], [0, "none", 1.5]),
+    "each": (SequenceOf(COUNT), [(1,), [1, 2]], [(), (1, 0), "12", 3, {1: 2}]),
+    "each of two": (SequenceOf(COUNT, 2), [(1, 2)], [(1,), (1, 2, 3)]),
     "named": (
-        Named(COUNT, ("a", "b")),
+        MappingOf(COUNT, ("a", "b")),
         [{}, {"a": 1}, {"a": 1, "b": 2}],
         [{"c": 1}, {"a": 0}, {1: 1}, [("a", 1)], None],
     ),
@@ -152,10 +152,10 @@ def test_of_an_array_the_first_number_that_is_refused_is_named() -> None:
 
 
 def test_of_a_sequence_and_a_mapping_the_place_of_the_flaw_is_named() -> None:
-    flaw = Each(COUNT).flaw((1, 2, 0))
+    flaw = SequenceOf(COUNT).flaw((1, 2, 0))
     assert flaw is not None
     assert flaw.remedy.startswith("number 2: ")
-    flaw = Named(COUNT).flaw({"a": 1, "b": 0})
+    flaw = MappingOf(COUNT).flaw({"a": 1, "b": 0})
     assert flaw is not None
     assert flaw.remedy.startswith('"b": ')
 

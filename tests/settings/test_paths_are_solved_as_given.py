@@ -207,7 +207,7 @@ def test_all_friction_of_the_bar_is_there_whatever_the_mesh(seed):
             {**changes, "elements": elements, "substructures": 1}
         )
         problem = discretise(settings)
-        (law,) = problem.rubbing.values()
+        (law,) = problem.contacts.values()
         total = settings.structure().strength @ law.weights
         assert total == pytest.approx(whole, rel=1e-4)
 
@@ -218,7 +218,7 @@ def test_all_strength_of_a_fault_is_there_whatever_the_mesh():
     for elements in (12, 48):
         values = {"normal_profile": table, "elements": elements}
         settings = CATALOGUE["fault"].checked({**values, "overpressure": 0.0})
-        (law,) = discretise(settings).rubbing.values()
+        (law,) = discretise(settings).contacts.values()
         nodal = settings.largest_friction(settings.places)[:, 0]
         assert nodal @ law.by_point(law.weights[:, None])[:, 0] == pytest.approx(
             whole, rel=1e-4

@@ -152,7 +152,7 @@ def test_a_run_from_the_command_line_writes_every_contact(scene, tmp_path, capsy
     instants = len(kept["t"])
     assert kept["displacement"].shape == (nodes, 2, instants)
     names = {name.split("/")[1] for name in kept if name.startswith("interface/")}
-    assert names == set(discretise(CATALOGUE[scene].checked(SMALL)).rubbing)
+    assert names == set(discretise(CATALOGUE[scene].checked(SMALL)).contacts)
     for name in names:
         points = len(kept[f"interface/{name}/points"])
         for field in ("normal_force", "tangential_force", "gap", "slip", "status"):

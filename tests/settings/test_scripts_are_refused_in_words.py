@@ -14,7 +14,7 @@ import pytest
 from scipy import sparse
 
 from solver import End, Latin, Problem, Rods, Stack, iterations
-from solver.discrete import Given, Rope, Side, Spring, Support, discretise
+from solver.discrete import Rope, Side, SideComponent, Spring, Support, discretise
 from solver.discrete.plane.rectangles.bricks import Brick
 from solver.discrete.scales import Scales
 from solver.discrete.substructure import Elasticity
@@ -61,10 +61,15 @@ BODY = Stack(
     instants=T,
     duration=1.0,
     support=Support(gap=0.0 * NODES, friction=0.3),
-    sides={"top": Side(Given(prescribed=False, mean=1e5 * T), Given(False, -1e6 * T))},
+    sides={
+        "top": Side(
+            SideComponent(prescribed=False, mean=1e5 * T),
+            SideComponent(False, -1e6 * T),
+        )
+    },
 )
 PILE = replace(BODY, bricks=[Brick(0, 0, 6, 3), Brick(0, 3, 6, 3)])
-UNEVEN = Given(True, 0.0 * T[1:])
+UNEVEN = SideComponent(True, 0.0 * T[1:])
 
 
 def rope() -> Rope:
@@ -195,9 +200,9 @@ STACKS: list[Case] = [
     (BODY.support, {"gap": spoilt(NODES, nan)}, "Support.gap"),
     (BODY.support, {"friction": -NODES}, "Support.friction"),
     (BODY.support, {"strength": NODES}, "Support.strength"),
-    (BODY.sides["top"].y, {"mean": -1e6}, "Given.mean"),
-    (BODY.sides["top"].y, {"slope": "steep"}, "Given.slope"),
-    (BODY.sides["top"].y, {"prescribed": "yes"}, "Given.prescribed"),
+    (BODY.sides["top"].y, {"mean": -1e6}, "SideComponent.mean"),
+    (BODY.sides["top"].y, {"slope": "steep"}, "SideComponent.slope"),
+    (BODY.sides["top"].y, {"prescribed": "yes"}, "SideComponent.prescribed"),
     (Spring(0.0, 1e5), {"stiffness": 0.0}, "Spring.stiffness"),
     (Spring(0.0, 1e5), {"slack": nan}, "Spring.slack"),
 ]

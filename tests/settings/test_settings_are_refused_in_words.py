@@ -14,7 +14,7 @@ from app.state import default_settings
 from solver.files.saved import settings_from_command, settings_from_toml
 from solver.scenes.bar import BarSettings
 from solver.settings.definitions import CurveParameter
-from solver.settings.values import GONE, allowed
+from solver.settings.values import REMOVED, allowed
 
 DEFINITIONS = BarSettings.definitions()
 BAD_TABLES = [
@@ -125,10 +125,10 @@ def test_unknown_names_are_refused_with_the_nearest_ones_and_their_meaning(
     assert len(text) < 400
 
 
-@pytest.mark.parametrize("name", GONE)
+@pytest.mark.parametrize("name", REMOVED)
 def test_settings_that_are_gone_are_called_gone(name):
     text = refusal(lambda: BarSettings.checked({name: 1.0}))
-    assert f"it is gone: {GONE[name]}; leave it out" in text
+    assert f"it is gone: {REMOVED[name]}; leave it out" in text
 
 
 def test_names_that_are_no_settings_are_refused():

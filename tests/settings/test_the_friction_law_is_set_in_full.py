@@ -15,7 +15,7 @@ from solver.reference.distance import distance_to, kkt_residual
 from solver.reference.incremental import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.settings.definitions import about
+from solver.settings.definitions import properties_of
 from solver.study.quantities.cycle_measures import has_a_limit
 
 GENERAL = {"friction_law": "general"}
@@ -229,10 +229,10 @@ def test_units_are_those_of_a_rod_or_of_an_area_and_what_does_nothing_does_not_s
     else:
         stiffness = "N/m^2"
         pressure = "N/m"
-    assert about(definitions["tangential_stiffness"]).unit == stiffness
-    assert {about(definitions[name]).unit for name in ("cohesion", "friction_cap")} == {
-        pressure
-    }
+    assert properties_of(definitions["tangential_stiffness"]).unit == stiffness
+    assert {
+        properties_of(definitions[name]).unit for name in ("cohesion", "friction_cap")
+    } == {pressure}
     assert unit_of(definitions["cohesion"]).name == ("MPa" if is_plane else "kN/m")
     assert unit_of(definitions["tangential_stiffness"]).name == (
         "GN/m³" if is_plane else "MN/m²"

@@ -207,7 +207,7 @@ def test_what_a_lesson_claims_is_measured(name: str, number: int) -> None:
 def test_what_a_lesson_shows_is_there_and_moves_only_after_the_choice(
     lesson: Lesson,
 ) -> None:
-    assert {lesson.interface} <= {"", *discretise(lesson.settings).rubbing}
+    assert {lesson.interface} <= {"", *discretise(lesson.settings).contacts}
     kinds = chain.from_iterable(CARDS)
     shown = {kind.name for kind in kinds if kind.applies(lesson.settings)}
     assert set(lesson.views) <= shown

@@ -24,8 +24,8 @@ from solver.study.measured_loop import (
     branches,
     loop_in,
 )
+from solver.study.profile_likelihood import ProfileSide
 from solver.study.quantities.finished import FinishedRun, finished_run
-from solver.study.valley import ProfileSide
 
 BAR = {**SMALL, "load": "cycle", "peak": 900.0}
 SPRUNG = {**BAR, "friction_law": "compliant"}

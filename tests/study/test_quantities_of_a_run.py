@@ -18,7 +18,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.lessons import lesson_from_file
 from solver.study.quantities import QUANTITIES, reading
-from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, fate_of
+from solver.study.quantities.cycles import LoadCycles, cycles_of, fate_of, n_cycles_of
 from solver.study.quantities.finished import FinishedRun, finished_run
 
 STIFFNESS = 210e9 * 3.14e-6
@@ -449,7 +449,9 @@ def test_every_scene_has_as_many_cycles_as_it_is_asked_for(scene: str) -> None:
     """A preset with one cycle more has as many cycles more of the load."""
     settings = CATALOGUE[scene]
     values = {"instants": 401, **COMES_BACK.get(scene, {})}
-    counted = [cycles_in(settings.checked({**values, "cycles": n})) for n in (2, 3, 9)]
+    counted = [
+        n_cycles_of(settings.checked({**values, "cycles": n})) for n in (2, 3, 9)
+    ]
     more = counted[1] - counted[0]
     assert more >= 1
     assert counted[2] == counted[0] + 7 * more

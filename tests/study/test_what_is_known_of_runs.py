@@ -135,7 +135,7 @@ def assert_near(of, exact, ours):
 
 def assert_front(curve, problem, found):
     """Check that the last point that slips is at the known front, within an element."""
-    places = problem.rubbing["support"].positions
+    places = problem.contacts["support"].positions
     slips = found.contact("support").status != 0
     last = np.where(slips, places[:, None], 0.0).max(axis=0)
     assert curve.up == pytest.approx(problem.instants)
@@ -144,7 +144,7 @@ def assert_front(curve, problem, found):
 
 def assert_traction(curve, settings, problem, found):
     """Check a pressure or friction; under a pressure that is found, its sums."""
-    (name, law), *_ = problem.rubbing.items()
+    (name, law), *_ = problem.contacts.items()
     contact = found.contact(name)
     weights = law.by_point(law.weights)[:, None]
     if curve.of == "pressure":

@@ -10,9 +10,9 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
+from solver.cache import content_of
 from solver.checks import POSITIVE, Numbers, check
 from solver.discrete.plane.meshes import on_nodes
-from solver.kept import content_of
 
 HALVES = np.array([0.5, 0.5])
 """Shares of a uniform force on a beam, at its ends."""

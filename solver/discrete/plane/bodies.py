@@ -15,8 +15,8 @@ from solver.checks import (
     POSITIVE,
     Choice,
     Count,
-    Each,
-    Part,
+    InstanceOf,
+    SequenceOf,
     check,
     check_value,
 )
@@ -82,17 +82,19 @@ class Bodies:
     def __post_init__(self) -> None:
         check(
             self,
-            bodies=Each(Part(Body)),
+            bodies=SequenceOf(InstanceOf(Body)),
             instants=INSTANTS,
             duration=POSITIVE,
             state=Choice(("strain", "stress")),
-            friction_law=Part(FrictionLaw),
+            friction_law=InstanceOf(FrictionLaw),
             macro_degree=Count(0),
         )
         # Bodies need not be joined, held or loaded: empty sequences are right.
         for name, kind in (("joints", Joint), ("held", Held), ("loads", Load)):
             if getattr(self, name):
-                check_value(f"Bodies.{name}", getattr(self, name), Each(Part(kind)))
+                check_value(
+                    f"Bodies.{name}", getattr(self, name), SequenceOf(InstanceOf(kind))
+                )
         check_names(self.bodies)
         # Joints and holds are interfaces of one problem.
         check_names([*self.joints, *self.held, *self.loads])

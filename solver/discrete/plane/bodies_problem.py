@@ -14,7 +14,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.elements import legendre_basis
 from solver.discrete.inside import Inside
-from solver.discrete.loose import loose_bodies
+from solver.discrete.loose_bodies import loose_bodies
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.cut_bodies import CutBodies
 from solver.discrete.plane.cut_shapes import Seam

@@ -14,15 +14,15 @@ from solver.checks import (
     NON_NEGATIVE,
     POSITIVE,
     ROWS,
+    AnyOf,
     Count,
-    Either,
+    InstanceOf,
     Kind,
     Number,
     Numbers,
-    Part,
-    alike,
     check,
     check_value,
+    checked_copies,
 )
 from solver.discrete.elements import MOST_POISSON
 from solver.discrete.plane.beams import Beam
@@ -30,7 +30,7 @@ from solver.discrete.plane.meshes import Mesh
 from solver.refusal import RefusedError, Words
 
 Shape = Mesh | Beam
-SHAPE = Part(Mesh, Beam)
+SHAPE = InstanceOf(Mesh, Beam)
 POISSON = Number(-1.0, MOST_POISSON, above=True)
 POINT = Numbers(((2,),))
 
@@ -112,7 +112,7 @@ class Body:
         count = len(names)
         check_value("Body.origin", origins, Numbers(((count, 2),)))
         check_value("Body.angle", angles, Numbers(((count,),)))
-        return alike(
+        return checked_copies(
             self, count, name=names, origin=list(origins), angle=angles.tolist()
         )
 
@@ -140,8 +140,8 @@ def _kinds_of_joint(size: int) -> dict[str, Kind]:
         # Which nodes there are is known to the bodies.
         "nodes": Numbers(((size,),), whole=True),
         "normals": Numbers(((size, 2),)),
-        "gap": Either(ANY_NUMBER, Numbers(((size,),))),
-        "friction": Either(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
+        "gap": AnyOf(ANY_NUMBER, Numbers(((size,),))),
+        "friction": AnyOf(NON_NEGATIVE, Numbers(((size,),), low=0.0)),
     }
 
 
@@ -200,7 +200,7 @@ class Joint:
         count = len(names)
         shape = count, len(self.nodes), 2
         check_value("Joint.normals", normals, Numbers((shape,)))
-        return alike(
+        return checked_copies(
             self, count, name=names, above=above, below=below, normals=list(normals)
         )
 

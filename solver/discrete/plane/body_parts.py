@@ -14,6 +14,7 @@ import skfem
 from scipy import sparse
 
 from solver.arrays import Array, Flags, Indices
+from solver.cache import CACHE, content_of
 from solver.discrete.condensed_part import PartForce
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.plane.beams import Beam
@@ -25,7 +26,6 @@ from solver.discrete.plane.mesh_elasticity import (
     quadratic_basis,
 )
 from solver.discrete.plane.meshes import Mesh
-from solver.kept import KEPT, content_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,21 +84,21 @@ class ShapePart:
         return float(shape.lengths[self.chosen].sum())
 
     @cached_property
-    def density(self) -> float:
+    def direction_per_length(self) -> float:
         """Search direction E / l_sub of a length, scaled, 1/m."""
         body = self.body
         if isinstance(body.shape, Mesh):
             return body.young / self.young / self.size
-        return self.at_a_point / self.size
+        return self.direction_at_point / self.size
 
     @cached_property
-    def at_a_point(self) -> float:
+    def direction_at_point(self) -> float:
         """Search direction E A / l_sub at a node of beams, scaled."""
         assert isinstance(self.body.shape, Beam)
         return self.body.young * self.body.shape.area / self.young / self.size
 
     @cached_property
-    def of_turn(self) -> float:
+    def direction_of_turn(self) -> float:
         """Search direction E I / l_sub of the turn of a node of beams, scaled."""
         shape = self.body.shape
         assert isinstance(shape, Beam)
@@ -132,7 +132,7 @@ class ShapePart:
         shape = self.body.shape
         if isinstance(shape, Mesh):
             key = "volumes", shape.content, content_of(self.chosen)
-            return KEPT.of(key, lambda: mesh_volumes(self._basis)[self.nodes])
+            return CACHE.get(key, lambda: mesh_volumes(self._basis)[self.nodes])
         return shape.volumes(self.chosen)[self.nodes]
 
     def forces(

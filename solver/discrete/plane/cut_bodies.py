@@ -193,7 +193,7 @@ class CutBodies:
                 key = id(own), kinds[piece.joint], name, id(piece.weights)
                 if key not in known:
                     dofs = self._dofs(owner, nodes[piece.places], np.arange(2))
-                    k = own.density * piece.weights
+                    k = own.direction_per_length * piece.weights
                     direction = np.repeat(k[:, None], 2, axis=1)
                     known[key] = Trace(dofs, direction, joint.below is not None)
                 self._traces[owner][name, number] = known[key]
@@ -207,9 +207,19 @@ class CutBodies:
                     own = self.shape_parts[owner]
                     dofs = self._dofs(owner, seam.nodes, np.arange(own.n_axes))
                     if own.n_axes == 2:
-                        k = np.repeat(own.density * seam.weights[:, None], 2, axis=1)
+                        k = np.repeat(
+                            own.direction_per_length * seam.weights[:, None], 2, axis=1
+                        )
                     else:
-                        k = np.array([[own.at_a_point, own.at_a_point, own.of_turn]])
+                        k = np.array(
+                            [
+                                [
+                                    own.direction_at_point,
+                                    own.direction_at_point,
+                                    own.direction_of_turn,
+                                ]
+                            ]
+                        )
                     self._traces[owner][name, body, number] = Trace(dofs, k, True)
 
     def _trace_held(self) -> None:
@@ -225,9 +235,9 @@ class CutBodies:
                 nodes = held.nodes[is_own]
                 axes, _ = self.axes_held(held, nodes)
                 dofs = self._dofs(owner, nodes, axes[:, None])
-                k = own.density * weights[is_own, None]
+                k = own.direction_per_length * weights[is_own, None]
                 if held.axis == 2:
-                    k = np.full_like(k, own.of_turn)
+                    k = np.full_like(k, own.direction_of_turn)
                 self._traces[owner]["held", number] = Trace(dofs, k, False)
 
     def axes_held(self, held: Held, nodes: Indices) -> tuple[Indices, Array]:

@@ -16,8 +16,8 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices
+from solver.cache import content_of
 from solver.checks import Numbers, check
-from solver.kept import content_of
 from solver.refusal import RefusedError, Words
 
 if TYPE_CHECKING:

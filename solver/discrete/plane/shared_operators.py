@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.cache import CACHE, content_of
 from solver.discrete.condensed_part import (
     Operator,
     PartForce,
@@ -16,7 +17,6 @@ from solver.discrete.condensed_part import (
 )
 from solver.discrete.plane.body_parts import ShapePart
 from solver.discrete.schur_complement import SchurComplement
-from solver.kept import KEPT, content_of
 
 DIGITS = 9
 """Decimal digits to which parts agree that share an operator."""
@@ -115,10 +115,10 @@ class SharedOperators:
         if alike not in self._stiffnesses:
             # No load and no friction changes the stiffness of the first of them.
             key = "part", part.content, content_of(towards, kept)
-            self._stiffnesses[alike] = KEPT.of(
+            self._stiffnesses[alike] = CACHE.get(
                 key, lambda: SchurComplement(part.stiffness_in(towards), kept)
             )
-        return self._stiffnesses[alike].turned_round(signs)
+        return self._stiffnesses[alike].with_signs(signs)
 
 
 def _rounded(values: Array) -> Array:

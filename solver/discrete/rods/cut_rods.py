@@ -11,6 +11,7 @@ from scipy import sparse
 from scipy.linalg import block_diag
 
 from solver.arrays import Array, Indices
+from solver.cache import CACHE
 from solver.discrete.problem import Problem
 from solver.discrete.rods.pieces import (
     Piece,
@@ -25,7 +26,6 @@ from solver.discrete.substructure import (
     Substructure,
     tributary,
 )
-from solver.kept import KEPT
 from solver.laws import (
     Component,
     Contact,
@@ -147,7 +147,7 @@ class CutRods:
         positions = []
         for of_rod, dofs in zip(self._positions, self._dofs_at, strict=True):
             positions.append(np.repeat(of_rod, dofs))
-        parts = KEPT.of(self._content(), self._parts)
+        parts = CACHE.get(self._content(), self._parts)
         return Problem(
             substructures=parts.substructures,
             interfaces=dict(self._interfaces()),
@@ -195,7 +195,7 @@ class CutRods:
             key = self._key(rods, piece, stiffness, springs, is_row)
             if key not in shared:
                 make = partial(self._operator, rods, piece, stiffness, springs, is_row)
-                shared[key] = KEPT.of(key, make)
+                shared[key] = CACHE.get(key, make)
             pushing = None
             if free_force is not None:
                 pushing = free_force[piece.elements]
@@ -300,7 +300,7 @@ class CutRods:
         springs: Mapping[int, End],
         is_row: NDArray[np.bool_],
     ) -> Elasticity:
-        """Operator of a piece, which is kept between runs (`solver.kept`).
+        """Operator of a piece, which is kept between runs (`solver.cache`).
 
         `stiffness` is ES of the elements of the rod, (n_elements,), scaled; `springs`
         hold nodes of the piece; `is_row` says which boundary rows there are, (n,), of

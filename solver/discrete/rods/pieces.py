@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.cache import content_of
 from solver.discrete.rods.rods import End, Rods
 from solver.discrete.substructure import Substructure, substructure_sizes
-from solver.kept import content_of
 
 OF_FRICTION = {"strength", "factors", "pressure", "friction_law"}
 """Fields of rods on which their substructures do not depend."""

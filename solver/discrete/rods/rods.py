@@ -14,12 +14,12 @@ from solver.checks import (
     INSTANTS,
     NON_NEGATIVE,
     POSITIVE,
+    AnyOf,
     Count,
-    Each,
-    Either,
+    InstanceOf,
     Number,
     Numbers,
-    Part,
+    SequenceOf,
     check,
     check_value,
 )
@@ -176,9 +176,9 @@ class Rods:
             wires=COUNT,
             instants=INSTANTS,
             duration=POSITIVE,
-            left=Part(End),
-            right=Part(End),
-            friction_law=Part(FrictionLaw),
+            left=InstanceOf(End),
+            right=InstanceOf(End),
+            friction_law=InstanceOf(FrictionLaw),
         )
         self._check_fields()
         if self.wires > 1 and self.settlement is not None:
@@ -202,10 +202,10 @@ class Rods:
             body_force=Numbers(((instants,), (nodes, instants))),
             strain=Numbers(((self.elements, instants),)),
             settlement=Numbers(((nodes, instants),)),
-            factors=Either(NON_NEGATIVE, Numbers(((contacts,),), low=0.0)),
+            factors=AnyOf(NON_NEGATIVE, Numbers(((contacts,),), low=0.0)),
             section=Numbers(((self.elements,),), low=0.0, above=True),
             pressure=over_time,
-            broken=Each(COUNT, 2),
+            broken=SequenceOf(COUNT, 2),
         )
         for side, end in self.ends.items():
             if end.force is not None:

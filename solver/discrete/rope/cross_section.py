@@ -106,7 +106,7 @@ class CrossSection:
                     "than 90°"
                 )
         for layer, (count, diameter, lay, _) in enumerate(self.rows[1:]):
-            needed = self.least_radius(layer)
+            needed = self.smallest_radius(layer)
             radius = self.radii[layer]
             if needed > TIGHT * radius:
                 return (
@@ -128,7 +128,7 @@ class CrossSection:
             outer += layer.diameter
         return tuple(radii)
 
-    def least_radius(self, layer: int) -> float:
+    def smallest_radius(self, layer: int) -> float:
         """Radius of the helix on which the wires of a layer would touch each other, m.
 
         Cut across the strand a wire is an ellipse, wider by 1 / cos(alpha) (Costello,

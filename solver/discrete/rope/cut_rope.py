@@ -30,7 +30,7 @@ def _copies(rope: Rope, wire: RopeWire) -> float:
     if rope.is_clamped:
         return 1.0
     # The drawn strand has several half turns of each wire, which all count.
-    return wire.stands_for * rope.seen_length / float(wire.along[-1])
+    return wire.stands_for * rope.drawn_length / float(wire.along[-1])
 
 
 def _rod(rope: Rope, wire: RopeWire) -> Rods:

@@ -30,11 +30,11 @@ from solver.checks import (
     INSTANTS,
     NON_NEGATIVE,
     POSITIVE,
+    AnyOf,
     Count,
-    Each,
-    Either,
+    InstanceOf,
     Numbers,
-    Part,
+    SequenceOf,
     check,
     check_value,
 )
@@ -94,11 +94,11 @@ class RopeWire:
             self,
             layer=Count(0),
             number=Count(0),
-            layer_data=Part(WireLayer),
+            layer_data=InstanceOf(WireLayer),
             radius=POSITIVE,
             start=ANY_NUMBER,
             length=POSITIVE,
-            strength=Either(NON_NEGATIVE, Numbers(over_time.shapes, low=0.0)),
+            strength=AnyOf(NON_NEGATIVE, Numbers(over_time.shapes, low=0.0)),
             curvature=Numbers(((None, None),)),
             tension=over_time,
             stands_for=COUNT,
@@ -212,19 +212,19 @@ class Rope:
     def __post_init__(self) -> None:
         check(
             self,
-            wires=Each(Part(RopeWire)),
+            wires=SequenceOf(InstanceOf(RopeWire)),
             is_clamped=FLAG,
-            section=Part(CrossSection),
+            section=InstanceOf(CrossSection),
             instants=INSTANTS,
             duration=POSITIVE,
-            friction_law=Part(FrictionLaw),
+            friction_law=InstanceOf(FrictionLaw),
         )
         instants = len(self.instants)
         over_time = Numbers(((instants,),))
         elements = Count(1, self.elements)
         check(self, substructures=elements, tension=over_time, curvature=over_time)
         along = Numbers(((self.elements + 1, instants),))
-        strength = Either(NON_NEGATIVE, over_time)
+        strength = AnyOf(NON_NEGATIVE, over_time)
         for number, wire in enumerate(self.wires):
             name = f"Rope.wires[{number}]"
             check_value(f"{name}.curvature", wire.curvature, along)
@@ -237,7 +237,7 @@ class Rope:
         return len(self.wires[0].curvature) - 1
 
     @property
-    def seen_length(self) -> float:
+    def drawn_length(self) -> float:
         """Length of the strand that is drawn, m: of its wires, or of a turn."""
         longest = max(float(wire.along[-1]) for wire in self.wires)
         if self.is_clamped:
@@ -289,7 +289,7 @@ class Rope:
         clamp = Hold("clamp", "left", moved=np.zeros(len(self.instants)))
         return Description(
             bodies=1,
-            length=self.seen_length,
+            length=self.drawn_length,
             height=self.section.diameter,
             instants=self.instants,
             acts=acts,

@@ -110,7 +110,7 @@ class Auto(SearchDirection):
         if waves < math.inf:
             k = self.scale * automatic(problem, waves=waves)
             return UpdateProgress("returned", read_only(k))
-        laws = problem.rubbing.laws.values()
+        laws = problem.contacts.laws.values()
         has_bodies = any(law.opens and not law.is_on_support for law in laws)
         if start is None and has_bodies:
             return UpdateProgress("first", self.of(problem))
@@ -136,7 +136,7 @@ def _slips_between_bodies(iterate: Iterate) -> bool:
     """Check whether bodies slip on each other anywhere, by the local stage."""
     moved = iterate.local_displacement
     force = iterate.boundary_local_force
-    for group in iterate.problem.rubbing.groups:
+    for group in iterate.problem.contacts.groups:
         if not group.law.is_on_support:
             status = group.status(moved, force)
             if np.any(np.abs(status) == 1):
@@ -170,7 +170,7 @@ def automatic(
     -------
     k, shape (n_rows,), scaled.
     """
-    laws = list(problem.rubbing.laws.values())
+    laws = list(problem.contacts.laws.values())
     if not laws:
         return problem.direction
     stiffness_beside = laws[0].stiffness_beside
@@ -182,9 +182,9 @@ def automatic(
     for law in laws:
         law.stiffness_beside.choose(law, k, parts)
         if sticks and not isinstance(law.stiffness_beside, RodStiffness):
-            law.stiffness_beside.stick(law, k)
+            law.stiffness_beside.choose_sticking(law, k)
         if isinstance(law.stiffness_beside, NodalStiffness):
-            law.stiffness_beside.shorten(law, k, waves)
+            law.stiffness_beside.choose_for_short_waves(law, k, waves)
         # The spring in series comes last, as it softens any k of the bodies.
         _raise_above_slope(law, k)
         _soften_by_contact(law, k)
@@ -193,13 +193,13 @@ def automatic(
 
 def _sliding_parts(problem: Problem) -> float:
     """Number of interfaces that slide, over the share of one of them that slides."""
-    laws = problem.rubbing.laws.values()
+    laws = problem.contacts.laws.values()
     # Rods on supports of their own slide all alike; of those beside each other one
     # slides far.
     if all(law.is_on_support for law in laws):
         several = 1
     else:
-        several = len(problem.rubbing)
+        several = len(problem.contacts)
     return several / sliding_share(problem)
 
 
@@ -232,17 +232,17 @@ def sliding_share(problem: Problem) -> float:
     makes of a rod, whose scaled stiffness is 1. Bodies on supports of their own count
     as sliding everywhere.
     """
-    laws = problem.rubbing.laws.values()
-    if len(problem.rubbing) > 1 and all(law.is_on_support for law in laws):
+    laws = problem.contacts.laws.values()
+    if len(problem.contacts) > 1 and all(law.is_on_support for law in laws):
         return 1.0
-    first = next(iter(problem.rubbing.values()))
+    first = next(iter(problem.contacts.values()))
     # Interfaces are alike, so the first one stands for all.
     capacity = first.tangential.bound.sum(axis=0)
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)
-    for pulled in problem.given_forces:
+    for pulled in problem.prescribed_forces:
         load += pulled.values.mean(axis=0)
-    for moved in problem.given_displacements:
+    for moved in problem.prescribed_displacements:
         if moved.values.any():
             if first.is_on_support:
                 return 1.0

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, read_only
-from solver.checks import Part, check
+from solver.checks import InstanceOf, check
 from solver.discrete.problem import Problem
 from solver.latin.direction.directions import Auto, SearchDirection, automatic
 from solver.latin.indicators import violation_of
@@ -54,7 +54,7 @@ class FromStatus:
     first: SearchDirection = Auto()
 
     def __post_init__(self) -> None:
-        check(self, first=Part(SearchDirection))
+        check(self, first=InstanceOf(SearchDirection))
 
     @property
     def scale(self) -> float:
@@ -69,7 +69,7 @@ class FromStatus:
         self, problem: Problem, start: Checkpoint | None, waves: float = math.inf
     ) -> UpdateProgress:
         """State of the k update at the start; without contact k stays."""
-        if problem.rubbing:
+        if problem.contacts:
             return UpdateProgress("first", self.of(problem))
         return UpdateProgress("returned", self.of(problem))
 
@@ -123,14 +123,14 @@ def _crept(iterate: Iterate) -> NDArray[np.int8]:
 
     Shape (n_points, n_instants). A point that creeps has not settled.
     """
-    groups = iterate.problem.rubbing.groups
+    groups = iterate.problem.contacts.groups
     moved = iterate.local_displacement
     force = None
     if any(group.law.tangential.compliance is not None for group in groups):
         # A point that gives way moves while it sticks: its force tells whether it
         # slips.
         force = iterate.boundary_local_force
-    n_points = iterate.problem.rubbing.n_points
+    n_points = iterate.problem.contacts.n_points
     status = np.empty((n_points, moved.shape[1]), dtype=np.int8)
     for group in groups:
         status[group.points] = group.status(moved, force)
@@ -145,7 +145,7 @@ def _profile(problem: Problem, status: NDArray[np.int8]) -> Array:
     # Stick is 0, so nonzero statuses are slip, or open contact.
     share = np.count_nonzero(status, axis=1) / status.shape[1]
     k = automatic(problem)
-    for law, _, points, _ in problem.rubbing.stacks:
+    for law, _, points, _ in problem.contacts.stacks:
         for rows in law.tangent.sides:
             k[rows] *= SLIDING ** share[points][law.points]
     return read_only(k)

@@ -118,7 +118,7 @@ def certified_answer(
     )
 
 
-def own_answer(iterate: Iterate, residual: float, *, is_beside: bool) -> Answer:
+def answer_of_iterate(iterate: Iterate, residual: float, *, is_beside: bool) -> Answer:
     """Answer of a run whose iterate is a solution by itself, by its KKT residual."""
     return Answer(
         number=iterate.number + 1,
@@ -206,10 +206,10 @@ def known_forces(
     """
     force = np.zeros((problem.n_rows, problem.n_instants))
     is_known = np.zeros(problem.n_rows, dtype=bool)
-    for loaded in problem.given_forces:
+    for loaded in problem.prescribed_forces:
         force[loaded.rows] = loaded.values
         is_known[loaded.rows] = True
-    for law, _, _, forces in problem.rubbing.stacks:
+    for law, _, _, forces in problem.contacts.stacks:
         for numbers, component in zip(forces, law.components, strict=True):
             carried = law.shares[:, None] * contact_force[numbers][law.points]
             for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):

@@ -222,9 +222,9 @@ def _expected_share(problem: Problem) -> float:
     """Share of the jumps that may move at an instant, before any iterate shows it."""
     if problem.opens:
         return MOVING
-    if not problem.rubbing:
+    if not problem.contacts:
         return 0.0
-    return min(MOVING, NEXT * sliding_share(problem) / len(problem.rubbing))
+    return min(MOVING, NEXT * sliding_share(problem) / len(problem.contacts))
 
 
 @dataclass(frozen=True)
@@ -302,7 +302,7 @@ def _expected_iterations(problem: Problem, costs: Costs) -> float:
     # there are.
     coupled = 0
     if problem.cuts and not rubs_on_supports(problem):
-        coupled = len(problem.rubbing) - 1
+        coupled = len(problem.contacts) - 1
     return ITERATIONS + MORE * coupled
 
 

@@ -214,7 +214,7 @@ class _Past(NamedTuple):
     number
         Number of the iterate.
     force
-        Forces on `Problem.sought_rows`, shape (n_instants, n_rows), scaled.
+        Forces on `Problem.unknown_rows`, shape (n_instants, n_rows), scaled.
     worst
         Change of the forces up to that iterate, as `ForceChanges.worst`.
     """
@@ -281,8 +281,8 @@ class ForceChanges:
 
 
 def _force_of(iterate: Iterate) -> Array:
-    """Contact forces on `Problem.sought_rows`, shape (n_instants, n_rows), scaled."""
-    rows, _ = iterate.problem.sought_rows
+    """Contact forces on `Problem.unknown_rows`, shape (n_instants, n_rows), scaled."""
+    rows, _ = iterate.problem.unknown_rows
     outgoing = iterate.outgoing.T[:, rows]
     incoming = iterate.incoming.T[:, rows]
     force = np.ascontiguousarray(outgoing - incoming)
@@ -315,12 +315,12 @@ def _change(
     problem
         The problem of the iterates.
     change, force
-        Change of the forces, and the forces, on `Problem.sought_rows`, shape
+        Change of the forces, and the forces, on `Problem.unknown_rows`, shape
         (n_instants, n_rows), scaled.
     smallest_size
         Norm of forces that counts as none, scaled.
     """
-    _, kinds = problem.sought_rows
+    _, kinds = problem.unknown_rows
     changes = np.einsum("ij,ij->j", change, change)
     squares = np.einsum("ij,ij->j", force, force)
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from solver.discrete.drives import beyond, loads_at
+from solver.discrete.drives import describe_limit, describe_loads
 from solver.discrete.problem import Problem
 from solver.latin.end.certified import Answer
 from solver.latin.end.status_step import Certificate
@@ -174,7 +174,7 @@ def collapses(problem: Problem, collapse: Collapse) -> Status:
 
 def limit_of(problem: Problem, collapse: Collapse) -> str:
     """Words on the last equilibrium: the loads that are carried, and the time."""
-    loads = beyond(problem.drives, collapse.instant, collapse.share)
+    loads = describe_limit(problem.drives, collapse.instant, collapse.share)
     time = f"from {collapse.time:.4g} s on"
     if loads:
         return f"{loads}, {time}"
@@ -183,7 +183,7 @@ def limit_of(problem: Problem, collapse: Collapse) -> str:
 
 def jump_of(problem: Problem, instant: int) -> str:
     """Words on an instant, as after a jump: its time, and the loads there."""
-    loads = loads_at(problem.drives, instant)
+    loads = describe_loads(problem.drives, instant)
     time = f"{problem.instants[instant]:.4g} s"
     if loads:
         return f"{time}, with {loads},"

@@ -132,7 +132,7 @@ def states_of(iterate: Iterate) -> States:
     components of open ones.
     """
     problem = iterate.problem
-    sizes = problem.rubbing.sizes
+    sizes = problem.contacts.sizes
     status = contact_status(iterate, np.minimum(STILL, FRONT / sizes**2))
     return _of_components(problem, status)
 
@@ -147,7 +147,7 @@ def _of_components(problem: Problem, status: States) -> States:
 
     The status has the shape (n_points, n_instants), the states (n_forces, n_instants).
     """
-    contacts = problem.rubbing
+    contacts = problem.contacts
     states = np.empty((contacts.n_forces, problem.n_instants), dtype=np.int8)
     for law, _, points, forces in contacts.stacks:
         tangential = status[points]

@@ -16,7 +16,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.checks import Number, check
-from solver.latin.end.certified import certified_answer, own_answer
+from solver.latin.end.certified import answer_of_iterate, certified_answer
 from solver.latin.end.estimate import AGAIN, OBEYED, SAFETY, ErrorEstimate
 from solver.latin.end.status import (
     ABOVE,
@@ -202,7 +202,7 @@ class StopState:
             status = obeyed(residual)
         decision = Decision(self._billed(iterate, began), error, status, certificate)
         if is_solution and self._may_finish:
-            answer = own_answer(iterate, residual, is_beside=self._searches)
+            answer = answer_of_iterate(iterate, residual, is_beside=self._searches)
             last = replace(decision, estimated_error=residual)
             return replace(decision, status=None, finished=(answer, last))
         # A search goes on though its answer is known, until it comes to its own end.
@@ -240,7 +240,7 @@ class StopState:
         That iterate may be one where both stages agree up to rounding.
         """
         problem = iterate.problem
-        has_rules = not (problem.no_reference or problem.goes_on)
+        has_rules = not (problem.no_reference or problem.has_start)
         if _is_failure(status) and has_rules and not self.estimate.is_proven:
             return kkt_residual(iterate, problem, HIDDEN)
         return math.nan

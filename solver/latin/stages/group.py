@@ -79,7 +79,7 @@ class Group:
         flat = values.T.reshape(self._n_instants, -1)
         field.T[instants, self._order] = flat[instants]
 
-    def go_to(self, checkpoint: Checkpoint | None) -> None:
+    def restore(self, checkpoint: Checkpoint | None) -> None:
         """Take on the state of a checkpoint, or a zero field without one."""
         self.state = self.field()
         if checkpoint is not None:

@@ -65,15 +65,15 @@ class LinearStage:
         else:
             self._blocks = Blocks(1, problem.n_instants)
         self._coarse = None
-        has_macro = any(law.macro is not None for law in problem.rubbing.laws.values())
+        has_macro = any(law.macro is not None for law in problem.contacts.laws.values())
         if multiscale and (problem.cuts or has_macro):
             self._coarse = CoarseProblem(problem, self.groups, self._blocks)
         self._shape = (problem.n_rows, problem.n_instants)
 
-    def go_to(self, checkpoint: Checkpoint | None) -> None:
+    def restore(self, checkpoint: Checkpoint | None) -> None:
         """Take on the state of a checkpoint, or zero fields without one."""
         for group in self.groups:
-            group.go_to(checkpoint)
+            group.restore(checkpoint)
 
     def bases(self) -> tuple[SharedBasis, ...]:
         """Separated bases of the state, one per substructure; empty for full fields."""

@@ -80,7 +80,7 @@ class PGDGroup(Group):
         self._positions = {number: position for position, number in enumerate(numbers)}
         self.iterations = 0
 
-    def go_to(self, checkpoint: Checkpoint | None) -> None:
+    def restore(self, checkpoint: Checkpoint | None) -> None:
         """Take on the bases of a checkpoint or of its fields; zero without one."""
         self.iterations = 0
         field = self.field()

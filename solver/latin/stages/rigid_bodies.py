@@ -43,14 +43,14 @@ def moves_rigidly(problem: Problem) -> bool:
     which touch more than two others, seldom find a balance as rigid bodies where
     friction alone holds them, and take minutes to seek it (measured).
     """
-    if problem.own_laws or not problem.rubbing or not _moves_far(problem):
+    if problem.user_laws or not problem.contacts or not _moves_far(problem):
         return False
     inside = problem.inside
-    if inside is None or problem.motions is None:
+    if inside is None or problem.rigid_motions is None:
         return False
-    if len(problem.rubbing) >= len(np.unique(inside.body_of_dofs)):
+    if len(problem.contacts) >= len(np.unique(inside.body_of_dofs)):
         return False
-    return all(_is_plain(law) for law in problem.rubbing.laws.values())
+    return all(_is_plain(law) for law in problem.contacts.laws.values())
 
 
 def _moves_far(problem: Problem) -> bool:
@@ -64,7 +64,7 @@ def _moves_far(problem: Problem) -> bool:
 def _load_sizes(problem: Problem) -> Array:
     """Sums of the sizes of the forces of each load, (n_loads, n_instants), scaled."""
     sizes = [np.zeros(problem.n_instants)]
-    for given in problem.given_forces:
+    for given in problem.prescribed_forces:
         sizes.append(np.abs(given.values).sum(axis=0))
     for part in problem.substructures:
         if part.body_force is not None:
@@ -107,7 +107,7 @@ class RigidBodies:
         laws = [law for law in problem.laws if isinstance(law, Contact)]
         self._jumps = _jumps(laws, problem.n_rows)
         self._sliders = np.concatenate([_start(law) for law in laws])
-        body_load += self._modes.T @ _given_forces(problem)
+        body_load += self._modes.T @ _prescribed_forces(problem)
         extension, stiffness, load = _springs(problem, k)
         stretched = sparse.csr_array(extension @ self._modes)
         pulled = stretched.T @ sparse.diags_array(stiffness)
@@ -330,7 +330,7 @@ def _springs(problem: Problem, k: Array) -> tuple[sparse.csr_array, Array, Array
     extensions = [sparse.csr_array((0, problem.n_rows))]
     stiffnesses = [np.zeros(0)]
     load = np.zeros((problem.n_rows, problem.n_instants))
-    for held in problem.given_displacements:
+    for held in problem.prescribed_displacements:
         stiffness = k[held.rows]
         load[held.rows] = stiffness[:, None] * held.values
         extensions.append(_difference(Component(held.rows), problem.n_rows))
@@ -343,9 +343,9 @@ def _springs(problem: Problem, k: Array) -> tuple[sparse.csr_array, Array, Array
     return springs, np.concatenate(stiffnesses), load
 
 
-def _given_forces(problem: Problem) -> Array:
+def _prescribed_forces(problem: Problem) -> Array:
     """Forces that are prescribed at rows, shape (n_rows, n_instants), scaled."""
     force = np.zeros((problem.n_rows, problem.n_instants))
-    for given in problem.given_forces:
+    for given in problem.prescribed_forces:
         force[given.rows] = given.values
     return force

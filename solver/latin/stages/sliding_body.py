@@ -31,11 +31,11 @@ def slide_of(problem: Problem, k: Array) -> Slide | None:
     None where there is no such body, or something else holds it. `k` is the search
     direction of the rows, shape (n_rows,), scaled.
     """
-    if problem.own_laws or problem.given_forces or problem.motions is None:
+    if problem.user_laws or problem.prescribed_forces or problem.rigid_motions is None:
         return None
-    if len(problem.rubbing) != 2:
+    if len(problem.contacts) != 2:
         return None
-    laws = problem.rubbing.values()
+    laws = problem.contacts.values()
     springs = [law.normal for law in laws if _is_spring(law)]
     ground = [law for law in laws if not _is_spring(law)]
     if len(ground) != 1 or len(springs) != 1:
@@ -63,13 +63,13 @@ def _motion_along(problem: Problem, along: Indices, across: Indices) -> Array | 
 
     `along` and `across` are the rows of the body's contact points.
     """
-    assert problem.motions is not None
+    assert problem.rigid_motions is not None
     wanted = np.concatenate([np.ones(len(along)), np.zeros(len(across))])
-    moved = problem.motions[problem.row_dofs[np.concatenate([along, across])]]
+    moved = problem.rigid_motions[problem.row_dofs[np.concatenate([along, across])]]
     shares = np.linalg.lstsq(moved, wanted, rcond=None)[0]
     if np.abs(moved @ shares - wanted).max() > SAME:
         return None
-    return np.asarray(problem.motions @ shares)
+    return np.asarray(problem.rigid_motions @ shares)
 
 
 class Slide:

@@ -90,7 +90,7 @@ def hinges(run: FinishedRun, at: float | None) -> float:
     """
     instant = _instant(run, at)
     count = 0
-    for law, _, points, _ in run.problem.rubbing.stacks:
+    for law, _, points, _ in run.problem.contacts.stacks:
         touches = run.iterate.status[points, instant, None] != OPEN
         count += int(np.count_nonzero(are_hinges(law, touches)))
     return float(count)

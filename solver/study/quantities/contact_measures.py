@@ -18,7 +18,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
 from solver.laws import OPEN, Contact
 from solver.settings.scene import Settings
-from solver.study.quantities.cycles import instants_of
+from solver.study.quantities.cycles import instants_of_cycle
 from solver.study.quantities.finished import (
     FinishedRun,
     figures_of,
@@ -58,7 +58,7 @@ def peak_displacement(run: FinishedRun) -> float:
         return float(np.abs(absolute).max())
     vectors = inside.displacement(absolute, slice(None))
     # On its image a body shows half of the slip.
-    ratio = max(law.slip_ratio for law in run.problem.rubbing.laws.values())
+    ratio = max(law.slip_ratio for law in run.problem.contacts.laws.values())
     if ratio > 1.0:
         return ratio * float(np.abs(vectors[:, 0]).max())
     return float(np.linalg.norm(vectors, axis=1).max())
@@ -192,7 +192,7 @@ bottom_force = _force_at("bottom")
 @quantity("Largest slip", "m")
 def peak_slip(run: FinishedRun) -> float:
     """Largest slip of any point in contact, at any instant, m."""
-    contacts = [run.iterate.contact(name) for name in run.problem.rubbing.surfaces]
+    contacts = [run.iterate.contact(name) for name in run.problem.contacts.surfaces]
     slips = [np.abs(each.slip * (each.status != OPEN)).max() for each in contacts]
     # What sticks moves by rounding of the bodies' displacements.
     return float(without_residue(max(slips), np.abs(run.iterate.displacement)))
@@ -201,7 +201,7 @@ def peak_slip(run: FinishedRun) -> float:
 @quantity("Largest friction, all points", "N")
 def peak_friction(run: FinishedRun) -> float:
     """Largest sum over all points of the size of the friction force, N."""
-    contacts = run.problem.rubbing
+    contacts = run.problem.contacts
     sums = np.empty((len(contacts), run.problem.n_instants))
     for law, numbers, places, forces in contacts.stacks:
         is_open = run.iterate.status[places] == OPEN
@@ -226,7 +226,9 @@ def _pressing(run: FinishedRun, name: str) -> Array:
 def peak_pressing(run: FinishedRun) -> float:
     """Largest sum over all points of the pressing force, N."""
     # Instant by instant over all interfaces: their peaks may come at other times.
-    forces = [_pressing(run, name).sum(axis=0) for name in run.problem.rubbing.surfaces]
+    forces = [
+        _pressing(run, name).sum(axis=0) for name in run.problem.contacts.surfaces
+    ]
     return float(np.sum(forces, axis=0).max())
 
 
@@ -253,7 +255,7 @@ def contact_width(run: FinishedRun) -> float:
 
 def _lengths(run: FinishedRun) -> dict[str, Array]:
     """Tributary lengths of the points of each surface by name, shape (n_points,), m."""
-    contacts = run.problem.rubbing
+    contacts = run.problem.contacts
     laws = contacts.laws.values()
     lengths = contacts.of_points([law.by_point(law.weights) for law in laws])
     return {name: lengths[contacts.points[name]] for name in contacts.surfaces}
@@ -328,7 +330,7 @@ def dissipation(run: FinishedRun, at: float | None) -> float:
 
     NaN where the load has fewer cycles.
     """
-    instants = instants_of(run.settings, at)
+    instants = instants_of_cycle(run.settings, at)
     if instants is None:
         return math.nan
     return float(run.dissipated[instants].sum())
@@ -352,7 +354,7 @@ def stuck_share(run: FinishedRun, instant: int) -> float:
     """
     # Clamped points would count as sticking.
     length, statuses = _touching(run)
-    still = _stand_still(run)[run.problem.rubbing.on_surfaces]
+    still = _stand_still(run)[run.problem.contacts.on_surfaces]
     length = length * ~still
     status = statuses[:, instant]
     touching = length[status != OPEN].sum()
@@ -370,7 +372,7 @@ def _slipped_shares(run: FinishedRun) -> Array:
     # A point counts from its first slip on.
     slipped = np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
     still = _stand_still(run)
-    counted = slipped[problem.rubbing.on_surfaces & ~still]
+    counted = slipped[problem.contacts.on_surfaces & ~still]
     if not len(counted):
         return np.zeros(slipped.shape[1])
     return np.asarray(counted.mean(axis=0))
@@ -378,7 +380,7 @@ def _slipped_shares(run: FinishedRun) -> Array:
 
 def _stand_still(run: FinishedRun) -> Flags:
     """Mask of points that are held and never slip, shape (n_points,)."""
-    contacts = run.problem.rubbing
+    contacts = run.problem.contacts
     is_held = []
     for law in contacts.laws.values():
         is_free = ~are_clamped(run.problem, law)

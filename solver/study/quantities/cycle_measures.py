@@ -15,7 +15,12 @@ from solver.reference.assembly import NoReferenceError
 from solver.reference.shakedown import largest_swing, shakedown_limit, slip_space
 from solver.settings.scene import Settings
 from solver.study.quantities.contact_measures import are_clamped
-from solver.study.quantities.cycles import cycles_in, ends_of, instants_of, slips_of
+from solver.study.quantities.cycles import (
+    cycle_ends,
+    instants_of_cycle,
+    n_cycles_of,
+    slips_of,
+)
 from solver.study.quantities.finished import FinishedRun, first_largest
 from solver.study.quantities.quantity import CYCLE, quantity
 
@@ -30,7 +35,7 @@ again would blur the length."""
 
 def has_cycles(settings: Settings) -> bool:
     """Check whether the load has a cycle."""
-    return cycles_in(settings) > 0
+    return n_cycles_of(settings) > 0
 
 
 def has_a_limit(settings: Settings) -> bool:
@@ -53,7 +58,7 @@ def has_a_limit(settings: Settings) -> bool:
 
 @quantity(
     "Energy of the last cycle over the second",
-    applies=lambda settings: cycles_in(settings) > 1,
+    applies=lambda settings: n_cycles_of(settings) > 1,
 )
 def cycle_energy_ratio(run: FinishedRun) -> float:
     """Energy of the last cycle over that of the second; NaN if the second is zero."""
@@ -85,9 +90,9 @@ def sliding_share(run: FinishedRun) -> float:
     left out.
     """
     length = _free_lengths(run)[:, None]
-    status = run.iterate.status[run.problem.rubbing.on_surfaces]
+    status = run.iterate.status[run.problem.contacts.on_surfaces]
     # Points that are open carry nothing, and are no part of the contact then.
-    status = status[:, instants_of(run.settings, cycles_in(run.settings))]
+    status = status[:, instants_of_cycle(run.settings, n_cycles_of(run.settings))]
     touching = (length * (status != OPEN)).sum(axis=0)
     slipping = (length * (np.abs(status) == 1)).sum(axis=0)
     # At an instant without contact nothing slips.
@@ -97,7 +102,7 @@ def sliding_share(run: FinishedRun) -> float:
 
 def _free_lengths(run: FinishedRun) -> Array:
     """Tributary lengths of points of surfaces, (n_points,), m; 0 of clamped ones."""
-    contacts = run.problem.rubbing
+    contacts = run.problem.contacts
     lengths = []
     for law in contacts.laws.values():
         is_free = ~are_clamped(run.problem, law)
@@ -134,7 +139,7 @@ def _rope(settings: Settings) -> Rope:
 
 def _last(run: FinishedRun) -> slice:
     """Instants of the last cycle with its first one; all instants without a cycle."""
-    ends = ends_of(run.settings)
+    ends = cycle_ends(run.settings)
     if len(ends) > 1:
         return slice(ends[-2], ends[-1] + 1)
     return slice(0, None)
@@ -177,10 +182,10 @@ def energy_per_metre(run: FinishedRun, at: float | None) -> float:
 
     NaN near a clamp, and where the load has fewer cycles.
     """
-    instants = instants_of(run.settings, at)
+    instants = instants_of_cycle(run.settings, at)
     if instants is None:
         return math.nan
-    return float(run.dissipated[instants].sum()) / _rope(run.settings).seen_length
+    return float(run.dissipated[instants].sum()) / _rope(run.settings).drawn_length
 
 
 @quantity("Largest stress range of a wire in the last cycle", "Pa", applies=is_rope)
@@ -204,7 +209,7 @@ def wire_work(run: FinishedRun) -> float:
 
     Fretting is worst at that point, which near a clamp is beside the clamp.
     """
-    last = instants_of(run.settings, cycles_in(run.settings) or None)
+    last = instants_of_cycle(run.settings, n_cycles_of(run.settings) or None)
     largest = []
     for stacked, _, work in slips_of(run.iterate):
         law = stacked.law

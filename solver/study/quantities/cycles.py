@@ -54,7 +54,7 @@ def slips_of(iterate: Iterate) -> Iterator[tuple[Stacked, Array, Array]]:
     displacement = iterate.local_displacement
     force = iterate.boundary_local_force
     least_force = RESIDUE * float(np.abs(force).max(initial=0.0))
-    for stacked in iterate.problem.rubbing.stacks:
+    for stacked in iterate.problem.contacts.stacks:
         law = stacked.law
         if law.is_spring:
             continue
@@ -114,8 +114,8 @@ class LoadCycles:
 
 def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     """Cycles of an iterate; the points are those of one interface after another."""
-    ends = ends_of(settings)
-    contacts = iterate.problem.rubbing
+    ends = cycle_ends(settings)
+    contacts = iterate.problem.contacts
     slip = np.zeros((contacts.n_points, iterate.problem.n_instants))
     work = np.zeros_like(slip)
     for stacked, increments, works in slips_of(iterate):
@@ -141,7 +141,7 @@ def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
     )
 
 
-def ends_of(settings: Settings) -> list[int]:
+def cycle_ends(settings: Settings) -> list[int]:
     """Instants at which the cycles of a load begin, and at which the last one ends.
 
     Of several loads the one with the most turning points counts, the first of equals.
@@ -151,19 +151,19 @@ def ends_of(settings: Settings) -> list[int]:
     return max(turns, key=len, default=[])[::2]
 
 
-def cycles_in(settings: Settings) -> int:
+def n_cycles_of(settings: Settings) -> int:
     """Number of cycles of a load."""
-    return max(len(ends_of(settings)) - 1, 0)
+    return max(len(cycle_ends(settings)) - 1, 0)
 
 
-def instants_of(settings: Settings, number: float | None = None) -> slice | None:
+def instants_of_cycle(settings: Settings, number: float | None = None) -> slice | None:
     """Instants of a cycle without its first one; all instants without a number.
 
     Cycles are counted from 1. None where the load has fewer cycles.
     """
     if number is None:
         return slice(None)
-    ends = ends_of(settings)
+    ends = cycle_ends(settings)
     last = int(number)
     if last < len(ends):
         return slice(ends[last - 1] + 1, ends[last] + 1)

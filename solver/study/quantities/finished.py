@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
+from solver.cache import CACHE
 from solver.discrete.elements import von_mises
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Loop
-from solver.kept import KEPT
 from solver.latin import Answer, Decision, Iterate, Solution, record, solve
 from solver.latin.end.certified import certified_answer
 from solver.latin.end.cost import costs_of
@@ -137,7 +137,7 @@ class FinishedRun:
     @cached_property
     def dissipated(self) -> Array:
         """Energy dissipated since the instant before, shape (n_instants,), J."""
-        energy = np.zeros((len(self.problem.rubbing), self.problem.n_instants))
+        energy = np.zeros((len(self.problem.contacts), self.problem.n_instants))
         for stacked, _, work in slips_of(self.iterate):
             law = stacked.law
             energy[stacked.numbers] = law.copies * law.sums(work)
@@ -253,7 +253,7 @@ def slipping_shares(status: NDArray[np.int8]) -> Array:
 
 
 @cache
-def settle() -> None:
+def warm_up() -> None:
     """Make the tiny runs, once in a process, so that later runs import no code."""
     for scene, tiny in TINY.items():
         finished_run(CATALOGUE[scene].checked(tiny))
@@ -290,7 +290,7 @@ def finished_run(
     if errors:
         known = known_reference(problem, cancelled)
     else:
-        known = Known()
+        known = KnownReference()
     distance = None
     if known.reference is not None:
         distance = distance_to(known.reference, problem)
@@ -314,7 +314,7 @@ def finished_run(
     return FinishedRun(settings, solution, known_loss=known.lost_from)
 
 
-class Known(NamedTuple):
+class KnownReference(NamedTuple):
     """Reference of a problem, and what is known of its existence and uniqueness.
 
     Attributes
@@ -332,7 +332,9 @@ class Known(NamedTuple):
     lost_from: int | None = None
 
 
-def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) -> Known:
+def known_reference(
+    problem: Problem, stop: Callable[[], bool] | None = None
+) -> KnownReference:
     """Find the reference without a run; `stop` is asked again and again to give up.
 
     Nothing that it prepares is kept: a run afterwards prepares its own in its time.
@@ -340,24 +342,26 @@ def known_reference(problem: Problem, stop: Callable[[], bool] | None = None) ->
     try:
         reference = reference_of(problem, stop)
     except Interrupted:
-        return Known(doubt="the reference takes longer")
+        return KnownReference(doubt="the reference takes longer")
     except NoReferenceError as refusal:
-        return Known(doubt=str(refusal))
+        return KnownReference(doubt=str(refusal))
     finally:
-        KEPT.clear()
+        CACHE.clear()
     if not reference.converged.all():
         return _without_solution(problem, reference)
     # A reference past a jump is one of several equilibria.
     if reference.jumps_at is not None:
         where = jump_of(problem, reference.jumps_at)
-        return Known(reference, f"at {where} it jumps to another equilibrium")
+        return KnownReference(reference, f"at {where} it jumps to another equilibrium")
     several = np.count_nonzero(reference.ambiguous)
     if several:
-        return Known(reference, f"there are several solutions at {several} instants")
-    return Known(reference)
+        return KnownReference(
+            reference, f"there are several solutions at {several} instants"
+        )
+    return KnownReference(reference)
 
 
-def _without_solution(problem: Problem, reference: Reference) -> Known:
+def _without_solution(problem: Problem, reference: Reference) -> KnownReference:
     """Doubt about a problem whose reference has no solution at some instants."""
     lost = np.count_nonzero(~reference.converged)
     lost_from = None
@@ -370,7 +374,7 @@ def _without_solution(problem: Problem, reference: Reference) -> Known:
     elif reference.jumps_at is not None:
         # A jump of the reference is no proof: a run may converge at that instant.
         message += ": friction softens until the structure jumps"
-    return Known(None, message, lost_from)
+    return KnownReference(None, message, lost_from)
 
 
 def neighbour(
@@ -429,7 +433,7 @@ def _may_have_others(problem: Problem) -> bool:
 
     Which of them a run finds depends on its start.
     """
-    for law in problem.rubbing.laws.values():
+    for law in problem.contacts.laws.values():
         friction = law.tangential
         has_bonds = law.opens and bool(friction.bound.any())
         if friction.softens or has_bonds:

@@ -99,8 +99,8 @@ def _holds(run: FinishedRun) -> list[_Hold]:
     # A point that a clamp holds, too, never slips: it counts as free.
     determinate = determinate_forces(run.problem)
     holds = []
-    for name in run.problem.rubbing.surfaces:
-        *_, tangential = run.problem.rubbing.forces[name]
+    for name in run.problem.contacts.surfaces:
+        *_, tangential = run.problem.contacts.forces[name]
         holds.append(_hold(run, name, determinate[tangential]))
     return holds
 
@@ -129,7 +129,7 @@ def _pressing_by_friction(run: FinishedRun, name: str) -> Array:
 
     Where the pressure is given, it follows from the friction bound.
     """
-    law = run.problem.rubbing[name]
+    law = run.problem.contacts[name]
     contact = run.iterate.contact(name)
     friction = run.settings.friction
     if contact.normal_force is None:

@@ -36,8 +36,8 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
     """
     problem = iterate.problem
     # Per length, so that a finer mesh has the same field.
-    laws = problem.rubbing.laws.values()
-    lengths = problem.rubbing.of_points([law.by_point(law.weights) for law in laws])
+    laws = problem.contacts.laws.values()
+    lengths = problem.contacts.of_points([law.by_point(law.weights) for law in laws])
     return clips_of(
         iterate.friction_force / lengths[:, None],
         _friction_bounds(problem) / lengths[:, None],
@@ -50,9 +50,9 @@ def clips_in(settings: Settings, iterate: Iterate) -> Clips:
 def _friction_bounds(problem: Problem) -> Array:
     """Friction bounds of all points, (n_points, n_instants) or (n_points, 1), N."""
     bounds = []
-    for law in problem.rubbing.laws.values():
-        bounds.append(law.by_point(law.tangential.highest) * problem.scales.force)
-    return problem.rubbing.of_points(bounds)
+    for law in problem.contacts.laws.values():
+        bounds.append(law.by_point(law.tangential.largest_bound) * problem.scales.force)
+    return problem.contacts.of_points(bounds)
 
 
 def _driving_load(settings: Settings, iterate: Iterate) -> Array:

@@ -14,9 +14,15 @@ import param
 
 from solver.arrays import Array
 from solver.latin import Ending
-from solver.settings.definitions import Parameter, about, title_of
+from solver.settings.definitions import Parameter, properties_of, title_of
 from solver.settings.scene import Settings
-from solver.settings.values import SettingError, allowed, checked_value, parse, unknown
+from solver.settings.values import (
+    SettingError,
+    allowed,
+    checked_value,
+    parse,
+    unknown_setting,
+)
 from solver.study.quantities import reading
 from solver.study.quantities.quantity import Quantity
 
@@ -218,7 +224,7 @@ def axis_of(settings: Settings, text: str) -> Varied:
     if not equals or not values:
         raise SettingError("--vary", text, FORM, "name a setting and its values")
     if name not in definitions:
-        raise unknown(name, values, settings.scene, definitions)
+        raise unknown_setting(name, values, settings.scene, definitions)
     definition = definitions[name]
     logarithmic = False
     if ":" in values:
@@ -232,7 +238,7 @@ def axis_of(settings: Settings, text: str) -> Varied:
     ordered = list(dict.fromkeys(checked))
     if isinstance(definition, param.Number):
         ordered.sort()
-    unit = about(definition).unit
+    unit = properties_of(definition).unit
     return Varied(name, title_of(definition), unit, tuple(ordered), logarithmic)
 
 

@@ -33,7 +33,7 @@ from solver.study.quantities.finished import (
     REFUSED,
     FinishedRun,
     finished_run,
-    settle,
+    warm_up,
 )
 from solver.study.sweep.plan import LOST, STUCK, Plan, Row
 
@@ -78,7 +78,7 @@ def run(
     if asked_by != versions():
         raise SettingError(WORKER, versions(), asked_by, "install these on all workers")
     if any(reading.reads for reading in plan.readings):
-        settle()
+        warm_up()
     began = time.perf_counter()
     nothing = (math.nan,) * len(plan.of)
     # The status of a run says that it diverges: NumPy need not warn of it.
@@ -141,7 +141,7 @@ def _from_nearest(
     return finished
 
 
-def patience(limit: float) -> float:
+def longest_wait(limit: float) -> float:
     """Seconds after which a process is ended whose run has not ended by itself."""
     return 1.5 * limit + 10.0
 

@@ -197,7 +197,7 @@ class Band(Bodies):
         outwards, along = self.guide.outwards
         tension = outwards @ by_name[TAIL]
         moved = along @ [held[f"{PULL} {name}"] for _, name in _AXES]
-        friction = np.max(self.joints[0].friction) * self.friction_law.strongest
+        friction = np.max(self.joints[0].friction) * self.friction_law.largest_factor
         exponent = min(float(friction) * self.guide.angle, MOST_EXPONENT)
         return _with_play(
             moved - tension * self._elongation(exponent),

@@ -9,6 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.cache import CACHE
 from solver.discrete.plane.body import Body, Held, Joint, Load
 from solver.discrete.plane.makers.wires import (
     DOWN,
@@ -20,7 +21,6 @@ from solver.discrete.plane.makers.wires import (
     Plate,
     Zone,
 )
-from solver.kept import KEPT
 
 PLATE = "plate"
 THICKNESS = 0.8
@@ -55,7 +55,7 @@ class Wires:
     @property
     def under_plate(self) -> Zone:
         """Zone of contact of a wire and the plate."""
-        return Zone(WIDER * self.zone.reach, self.zone.elements)
+        return Zone(WIDER * self.zone.half_width, self.zone.elements)
 
     @cached_property
     def centres(self) -> Array:
@@ -81,7 +81,7 @@ class Wires:
         """Shape of a wire with zones by their direction, one for all such wires."""
         # To mesh it takes as long as a few iterations, and loads leave it alone.
         key = Disc, self.radius, pattern
-        return KEPT.of(key, lambda: Disc.of(self.radius, dict(pattern)))
+        return CACHE.get(key, lambda: Disc.of(self.radius, dict(pattern)))
 
     def _contacts(self, wire: int) -> dict[int, Zone]:
         """Zones of a wire by their direction."""
@@ -95,7 +95,7 @@ class Wires:
     def plate(self) -> Plate:
         """The plate on the highest wires."""
         key = Plate, self.packing, self.radius, self.under_plate
-        return KEPT.of(key, self._make_plate)
+        return CACHE.get(key, self._make_plate)
 
     def _make_plate(self) -> Plate:
         """A new plate."""

@@ -10,13 +10,13 @@ from itertools import groupby
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.cache import CACHE, content_of
 from solver.discrete.plane.bodies import Bodies
 from solver.discrete.plane.body import Body, Held, Joint, Load
 from solver.discrete.plane.meshes import SIMPSON, Mesh, on_nodes
 from solver.discrete.probes import mean_held, reaction
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Act, Axes, Loop
-from solver.kept import KEPT, content_of
 
 HAUNCH = 0.2
 """Share of the ring from a springing to its haunch: near there a semicircle under its
@@ -326,7 +326,7 @@ def _mapped(corners: Array) -> Mesh:
     # What is found from a mesh takes as long as an iteration on 100 voussoirs, and
     # loads leave it alone.
     key = "voussoir", content_of(corners)
-    return KEPT.of(key, lambda: Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4)))
+    return CACHE.get(key, lambda: Mesh(corners.reshape(-1, 2), elements.reshape(-1, 4)))
 
 
 @dataclass(frozen=True, eq=False)

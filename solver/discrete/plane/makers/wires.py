@@ -37,13 +37,13 @@ UP = 3
 class Zone:
     """Half of a zone of contact, m, and the number of elements along all of it."""
 
-    reach: float
+    half_width: float
     elements: int
 
     @cached_property
     def offsets(self) -> Array:
         """Positions of the corners along the zone, (elements + 1,), m."""
-        return np.linspace(-self.reach, self.reach, self.elements + 1)
+        return np.linspace(-self.half_width, self.half_width, self.elements + 1)
 
     def rings(self, radius: float) -> tuple[Array, Array]:
         """Positions about a contact: on the surface, and below it.
@@ -51,14 +51,14 @@ class Zone:
         Confocal ellipses about the zone, which become circles. Those on the surface
         ascend, (n,); below it there are positions along it and depths, (n, 2), m.
         """
-        angles = np.arccos(self.offsets / self.reach)[1:-1]
+        angles = np.arccos(self.offsets / self.half_width)[1:-1]
         step = GROWTH * 2.0 / self.elements
-        last = np.arccosh(max(GRADED * radius / self.reach, 1.0))
+        last = np.arccosh(max(GRADED * radius / self.half_width, 1.0))
         # Steps grow as ellipses become circles, on which half of the nodes will do.
         near = step * np.arange(1.0, FINE + 1.0)
         count = int(np.ceil((last - near[-1]) / (2.0 * step)))
         growing = np.append(near, np.linspace(near[-1], last, count + 1)[1:])
-        surface = self.reach * np.cosh(growing)
+        surface = self.half_width * np.cosh(growing)
         below = []
         for number, ring in enumerate(growing.tolist()):
             every = angles
@@ -66,7 +66,7 @@ class Zone:
                 every = angles[::2]
             along = np.cosh(ring) * np.cos(every)
             depth = np.sinh(ring) * np.sin(every)
-            below.append(self.reach * np.stack([along, depth], axis=1))
+            below.append(self.half_width * np.stack([along, depth], axis=1))
         return (
             np.concatenate([-surface[::-1], self.offsets, surface]),
             np.concatenate(below),

@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.plane.rectangles.bricks import Brick
-from solver.discrete.plane.rectangles.sides import Given, Side, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Support
 from solver.discrete.plane.rectangles.stack import Stack
 
 CAP_STIFFNESS = 1e5
@@ -28,7 +28,7 @@ def with_cap(stack: Stack, rows: int, *, is_guided: bool) -> Stack:
     out = 0
     if is_guided:
         out = 1
-        free = Given(False, np.zeros_like(stack.instants))
+        free = SideComponent(False, np.zeros_like(stack.instants))
         sides["left"] = Side(sides["top"].x, free)
         sides["right"] = sides["left"]
     bricks = [brick._replace(x=brick.x + out) for brick in stack.rectangles]
@@ -66,8 +66,8 @@ def on_strips(
     strips = strips_below(stack.rectangles, (first, last))
     middles = np.array([strip.x + 0.5 * strip.columns for strip in strips])
     is_settled = (middles > first) & (middles < last)
-    moved = Given(True, -np.outer(is_settled, settlement))
-    still = Given(True, np.zeros_like(stack.instants))
+    moved = SideComponent(True, -np.outer(is_settled, settlement))
+    still = SideComponent(True, np.zeros_like(stack.instants))
     above = [brick._replace(y=brick.y + 1) for brick in stack.rectangles]
     stiffness = stack.stiffness
     if stiffness is not None:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.cache import CACHE
 from solver.discrete.condensed_part import (
     CondensedPart,
     Operator,
@@ -32,7 +33,6 @@ from solver.discrete.plane.rectangles.stack import Stack
 from solver.discrete.plane.rectangles.stack_loads import StackLoads
 from solver.discrete.scales import Scales
 from solver.discrete.schur_complement import SchurComplement
-from solver.kept import KEPT
 
 
 class _SideTrace(NamedTuple):
@@ -186,7 +186,7 @@ class CutStack:
         key = "operator", shape, material, traces, has_force
         of_mesh = [self._trace(trace, mesh, modulus) for trace in traces]
         # The operator is kept between runs, as no load and no friction changes it.
-        return KEPT.of(
+        return CACHE.get(
             key,
             lambda: Operator(SchurComplement(mesh.outline, kept_by(of_mesh)), of_mesh),
         )

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Indices
-from solver.discrete.plane.rectangles.sides import Given, Spring
+from solver.discrete.plane.rectangles.sides import SideComponent, Spring
 from solver.discrete.plane.rectangles.stack import Stack
 
 SLACK = 1e-9
@@ -58,7 +58,7 @@ def wrench(stack: Stack) -> tuple[Array, Array, Array]:
     return force[0], force[1], moment
 
 
-def _resultant(given: Given, size: float) -> tuple[Array, Array]:
+def _resultant(given: SideComponent, size: float) -> tuple[Array, Array]:
     """Resultant of a traction, N, and its moment about the first end of the side, N m.
 
     Shape (n_instants,) both; `size` is the length of the side, m. A prescribed
@@ -103,7 +103,7 @@ def loss_of_equilibrium(stack: Stack) -> tuple[float, str] | None:
     # A side that holds the body up may press it with any force.
     held_y = is_held_up(stack)
     pressing = np.where(held_y, np.inf, np.maximum(-y, 0.0))
-    friction = _without_slip(stack, pressing) * stack.friction_law.strongest
+    friction = _bound_before_slip(stack, pressing) * stack.friction_law.largest_factor
     # In the order in which losses at the same instant count.
     losses = list[tuple[NDArray[np.bool_], str]]()
     if not held_y:
@@ -174,7 +174,7 @@ def _turning(stack: Stack, friction: Array) -> Array:
     return np.asarray(stack.length * y - moment - answered)
 
 
-def _without_slip(stack: Stack, pressing: Array) -> Array:
+def _bound_before_slip(stack: Stack, pressing: Array) -> Array:
     """Largest friction force on the body before slip, N, by the pressing force, N.
 
     Both have the shape (n_instants,).
@@ -186,7 +186,7 @@ def _without_slip(stack: Stack, pressing: Array) -> Array:
         rubbed = mu * pressing
     else:
         rubbed = np.zeros_like(pressing)
-    return stack.friction_law.without_slip(rubbed, stack.length)
+    return stack.friction_law.bound_before_slip(rubbed, stack.length)
 
 
 def rigid_rest(stack: Stack) -> Array | None:
@@ -240,7 +240,7 @@ def rigid_slide(stack: Stack, spring: Spring) -> Array:
     """
     assert stack.support is not None
     pushed, pressed, _ = wrench(stack)
-    bounds = _without_slip(stack, np.maximum(-pressed, 0.0))
+    bounds = _bound_before_slip(stack, np.maximum(-pressed, 0.0))
     slid = np.zeros_like(pushed)
     position = 0.0
     for instant, (load, bound) in enumerate(zip(pushed, bounds, strict=True)):

@@ -13,8 +13,8 @@ from solver.checks import (
     FLAG,
     NON_NEGATIVE,
     POSITIVE,
+    AnyOf,
     Count,
-    Either,
     Numbers,
     check,
 )
@@ -25,7 +25,7 @@ SETTLED = "settled support"
 
 
 @dataclass(frozen=True, eq=False)
-class Given:
+class SideComponent:
     """Displacement or traction along a side, in one component.
 
     At the distance s from its lower or left end it is mean + slope (2 s / length - 1).
@@ -55,7 +55,7 @@ class Given:
             self,
             prescribed=FLAG,
             mean=mean,
-            slope=Either(ANY_NUMBER, over_time),
+            slope=AnyOf(ANY_NUMBER, over_time),
             is_pressure=FLAG,
         )
 
@@ -68,8 +68,8 @@ class Given:
 class Side(NamedTuple):
     """Displacements or tractions along a side of the stack, along x and along y."""
 
-    x: Given
-    y: Given
+    x: SideComponent
+    y: SideComponent
 
     @property
     def is_zero(self) -> bool:
@@ -109,7 +109,7 @@ class Support:
 
     def __post_init__(self) -> None:
         along = Numbers(((None,),))
-        friction = Either(NON_NEGATIVE, Numbers(along.shapes, low=0.0))
+        friction = AnyOf(NON_NEGATIVE, Numbers(along.shapes, low=0.0))
         check(
             self,
             gap=along,

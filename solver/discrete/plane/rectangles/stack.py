@@ -13,20 +13,20 @@ from solver.checks import (
     INSTANTS,
     NON_NEGATIVE,
     POSITIVE,
+    AnyOf,
     Choice,
     Count,
-    Each,
-    Either,
-    Named,
+    InstanceOf,
+    MappingOf,
     Number,
     Numbers,
-    Part,
+    SequenceOf,
     check,
     check_value,
 )
 from solver.discrete.elements import MOST_POISSON
 from solver.discrete.plane.rectangles.bricks import Brick, grid_of
-from solver.discrete.plane.rectangles.sides import Given, Side, Spring, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, Support
 from solver.discrete.plane.rectangles.stack_drawn import (
     act_of_ground,
     act_of_weight,
@@ -138,23 +138,23 @@ class Stack:
             self,
             length=POSITIVE,
             height=POSITIVE,
-            elements=Each(Count(1), 2),
-            substructures=Each(Count(1), 2),
+            elements=SequenceOf(Count(1), 2),
+            substructures=SequenceOf(Count(1), 2),
             young=POSITIVE,
             state=Choice(("strain", "stress")),
             poisson=Number(-1.0, MOST_POISSON, above=True),
             macro_degree=Count(0),
             instants=INSTANTS,
             duration=POSITIVE,
-            support=Part(Support),
-            sides=Named(Part(Side), SIDES),
-            spring=Part(Spring),
-            friction_law=Part(FrictionLaw),
-            bricks=Each(Part(Brick)),
+            support=InstanceOf(Support),
+            sides=MappingOf(InstanceOf(Side), SIDES),
+            spring=InstanceOf(Spring),
+            friction_law=InstanceOf(FrictionLaw),
+            bricks=SequenceOf(InstanceOf(Brick)),
         )
         self._check_bodies()
         self._check_fields()
-        free = Given(False, np.zeros_like(self.instants))
+        free = SideComponent(False, np.zeros_like(self.instants))
         sides = dict(self.sides)
         for name in SIDES:
             sides.setdefault(name, Side(free, free))
@@ -175,7 +175,7 @@ class Stack:
         joints = (bodies - 1, 1), (bodies - 1, nodes)
         check(
             self,
-            friction=Either(NON_NEGATIVE, Numbers(((nodes,), *joints), low=0.0)),
+            friction=AnyOf(NON_NEGATIVE, Numbers(((nodes,), *joints), low=0.0)),
             head_friction=NON_NEGATIVE,
             stiffness=Numbers(((bodies,),), low=0.0, above=True),
             groups=Numbers(((bodies,),), whole=True),

@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.plane.rectangles.bricks import Brick, grid_of
-from solver.discrete.plane.rectangles.sides import Given, Side, Spring, Support
+from solver.discrete.plane.rectangles.sides import Side, SideComponent, Spring, Support
 from solver.discrete.structure import OUTWARD, Act, Hold, on_side
 
 
@@ -27,7 +27,7 @@ def acts_on_sides(
 
     A displacement that is one of several sides is drawn at the first of them.
     """
-    drawn: list[tuple[int, Given]] = []
+    drawn: list[tuple[int, SideComponent]] = []
     for name, side in _open_sides(sides, support).items():
         for component, given in enumerate(side):
             is_same = [
@@ -40,7 +40,7 @@ def acts_on_sides(
 
 
 def _act_on_side(
-    given: Given, side: str, component: int, rectangles: Sequence[Brick]
+    given: SideComponent, side: str, component: int, rectangles: Sequence[Brick]
 ) -> Act:
     """Load or displacement of a side: drawn at both ends if it is uneven."""
     is_normal = OUTWARD[side][component] != 0.0

@@ -11,11 +11,11 @@ from solver.arrays import Array, read_only
 from solver.discrete.condensed_part import PartForce
 from solver.discrete.elements import EDGE_MASS, Rectangle
 from solver.discrete.plane.rectangles.cut_rectangles import CutRectangles, Span
-from solver.discrete.plane.rectangles.sides import Given
+from solver.discrete.plane.rectangles.sides import SideComponent
 
 
 def values_along(
-    rectangles: CutRectangles, number: int, span: Span, given: Given
+    rectangles: CutRectangles, number: int, span: Span, given: SideComponent
 ) -> Array:
     """Given displacement or traction at the nodes of a span of an outer side.
 
@@ -69,7 +69,7 @@ class StackLoads:
             return PartForce.over_time(force)
         return None
 
-    def _tractions(self, number: int) -> Iterator[tuple[Span, int, Given]]:
+    def _tractions(self, number: int) -> Iterator[tuple[Span, int, SideComponent]]:
         """Yield tractions on outer sides of a rectangle, with their spans and axes."""
         for span in self._rectangles.outer[number]:
             for component, given in enumerate(self._stack.sides[span.side]):

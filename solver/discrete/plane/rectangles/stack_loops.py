@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from solver.arrays import Array, without_residue
-from solver.discrete.plane.rectangles.sides import SETTLED, Given, Side
+from solver.discrete.plane.rectangles.sides import SETTLED, Side, SideComponent
 from solver.discrete.probes import (
     LoopFields,
     constant,
@@ -42,7 +42,7 @@ class SettlementLoop:
     def of(self, problem: Problem) -> Loop:
         """Loop of the strip that settles most, and of all contacts with such strips."""
         most = np.abs(self.settlement).max(axis=1).argmax()
-        names = [name for name in problem.rubbing if name.startswith(SETTLED)]
+        names = [name for name in problem.contacts if name.startswith(SETTLED)]
         force = partial(_pressing_force, names)
         return Loop(*self.axes, constant(self.settlement[most]), force)
 
@@ -87,10 +87,10 @@ class DeflectionLoop:
     given
         What is given along y on the right side.
     length
-        Length of the right sides of the longest bodies together, m.
+        Length of the right-hand sides of the longest bodies together, m.
     """
 
-    given: Given
+    given: SideComponent
     length: float
 
     axes: ClassVar[Axes] = ("Deflection of the end", "m"), ("Transverse force", "N")
@@ -117,7 +117,7 @@ class ShearLoop:
     """
 
     side: str
-    given: Given | None
+    given: SideComponent | None
     length: float
 
     @property
@@ -128,7 +128,7 @@ class ShearLoop:
     def of(self, problem: Problem) -> Loop:
         """Loop of the side, whose displacement is the mean along x."""
         if self.given is None:
-            names = [name for name in problem.rubbing if "support" in name]
+            names = [name for name in problem.contacts if "support" in name]
             force: Callable[[LoopFields], Array] = partial(_rubbing_force, names)
         else:
             force = _force_on(problem, self.side, 0, self.given, self.length)
@@ -169,7 +169,7 @@ def loop_of_end(end: Side, count: int, height: float) -> MomentLoop | Deflection
 
 
 def _force_on(
-    problem: Problem, side: str, component: int, given: Given, length: float
+    problem: Problem, side: str, component: int, given: SideComponent, length: float
 ) -> Callable[[LoopFields], Array]:
     """Force on a side of a length, m: its reaction, or the resultant of a traction.
 

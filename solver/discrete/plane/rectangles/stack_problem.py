@@ -14,7 +14,7 @@ import numpy as np
 
 from solver.arrays import Array, Flags, Indices
 from solver.discrete.inside import Inside
-from solver.discrete.loose import loose_bodies
+from solver.discrete.loose_bodies import loose_bodies
 from solver.discrete.plane.joint_laws import (
     JointPairs,
     Surface,
@@ -128,7 +128,7 @@ def _glued(cut: CutStack, joint: BrickJoint) -> Perfect:
     return glued(below, above, cut.macro_basis_of_cut(joint))
 
 
-class _Beside(NamedTuple):
+class _Adjacent(NamedTuple):
     """Bodies beside pairs of nodes.
 
     Attributes
@@ -145,7 +145,7 @@ class _Beside(NamedTuple):
     is_upright: Flags
 
     @classmethod
-    def of(cls, cut: CutStack, pairs: JointPairs) -> _Beside:
+    def of(cls, cut: CutStack, pairs: JointPairs) -> _Adjacent:
         """Bodies beside the pairs of joints."""
         joints = [cut.rectangles.joints[number] for number in pairs.pieces]
         both = [cut.rectangles.bodies(joint) for joint in joints]
@@ -160,7 +160,7 @@ class _Beside(NamedTuple):
 def _contact(cut: CutStack, numbers: Sequence[int]) -> Contact:
     """Law of contacts by number: of bodies with the support, or with each other."""
     pairs = JointPairs.of(cut, numbers)
-    beside = _Beside.of(cut, pairs)
+    beside = _Adjacent.of(cut, pairs)
     return contact_of(
         pairs,
         _surface(cut, pairs, beside),
@@ -170,7 +170,7 @@ def _contact(cut: CutStack, numbers: Sequence[int]) -> Contact:
     )
 
 
-def _surface(cut: CutStack, pairs: JointPairs, beside: _Beside) -> Surface:
+def _surface(cut: CutStack, pairs: JointPairs, beside: _Adjacent) -> Surface:
     """Friction and opening of contacts."""
     stack = cut.stack
     support = None
@@ -200,7 +200,7 @@ def _surface(cut: CutStack, pairs: JointPairs, beside: _Beside) -> Surface:
 
 
 def _coefficients(
-    stack: Stack, support: Support | None, nodes: Indices, beside: _Beside
+    stack: Stack, support: Support | None, nodes: Indices, beside: _Adjacent
 ) -> Array:
     """Coefficient of friction of each pair, (n_pairs,).
 
@@ -227,7 +227,7 @@ def _coefficients(
     return of_pairs
 
 
-def _stiffness_beside(stack: Stack, beside: _Beside) -> BodyStiffness:
+def _stiffness_beside(stack: Stack, beside: _Adjacent) -> BodyStiffness:
     """Moduli and depth of the bodies at contacts, for their search direction."""
     moduli = np.array([stack.modulus(body) for body in range(len(stack.rectangles))])
     rows = np.array([rectangle.rows for rectangle in stack.rectangles])

@@ -16,11 +16,11 @@ def loose_bodies(problem: Problem) -> Indices:
 
     Shape (n,); empty along rods, and beside a user's law, which may hold what it likes.
     """
-    if problem.inside is None or problem.own_laws:
+    if problem.inside is None or problem.user_laws:
         return np.zeros(0, dtype=np.intp)
     tied = [np.zeros((2, 0), dtype=np.intp)]
     jumps = list[tuple[Indices, Indices]]()
-    for law in problem.rubbing.laws.values():
+    for law in problem.contacts.laws.values():
         # Two points in contact leave no motion of one body beside the other.
         is_wide = (law.sizes > 1)[law.interface_of_pairs] & law.opens
         for above, below in _pairs_that_hold(problem, law):

@@ -26,7 +26,7 @@ LARGEST = 120_000_000
 Result = TypeVar("Result")
 
 
-class Kept:
+class Cache:
     """Results by key, the last ones that fit into some memory.
 
     Parameters
@@ -47,7 +47,7 @@ class Kept:
         self._sizes: dict[Hashable, int] = {}
         self._lock = Lock()
 
-    def of(self, key: Hashable, make: Callable[[], Result]) -> Result:
+    def get(self, key: Hashable, make: Callable[[], Result]) -> Result:
         """Result of a key: the one that is kept, or else a new one.
 
         Parameters
@@ -92,7 +92,7 @@ def _size_of(result: object) -> int:
     return int(getattr(result, "nbytes", sys.getsizeof(result)))
 
 
-KEPT = Kept(LARGEST)
+CACHE = Cache(LARGEST)
 """The kept results of this process."""
 
 

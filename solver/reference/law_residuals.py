@@ -154,7 +154,7 @@ def _missing_force(
 def _softest(problem: Problem) -> float:
     """Largest compliance of springs in series with contacts, scaled; 0 without any."""
     springs = []
-    for law in problem.rubbing.values():
+    for law in problem.contacts.values():
         springs.append(law.in_parallel(law.tangential.compliance))
         if law.normal is not None:
             springs.append(law.in_parallel(law.normal.compliance))
@@ -171,7 +171,7 @@ def _stiffest(problem: Problem) -> float:
 def _check_known(problem: Problem) -> None:
     """Refuse interfaces whose law is unknown: they would count as obeyed."""
     for name, law in problem.interfaces.items():
-        if name in problem.own_laws or not isinstance(law, KNOWN):
+        if name in problem.user_laws or not isinstance(law, KNOWN):
             kind = type(law).__name__
             raise TypeError(f"the law of {name}, {kind}, is not known here")
 
@@ -276,8 +276,8 @@ def _interface_fields(
     """
     found = []
     held, _ = _prescribed(problem)
-    for name, law in problem.rubbing.items():
-        slices = problem.rubbing.forces[name]
+    for name, law in problem.contacts.items():
+        slices = problem.contacts.forces[name]
         friction = force[slices[-1]]
         jump = _jump(problem, law, law.tangent, displacement)
         largest = largest_size(jump)
@@ -335,9 +335,9 @@ def _is_held(problem: Problem, component: Component, held: Indices) -> Flags:
 def _contact_force(problem: Problem, force: Array) -> Array:
     """Forces of contacts on all degrees of freedom, shape (n_dofs, n_instants)."""
     total = np.zeros((problem.n_dofs, problem.n_instants))
-    for name, law in problem.rubbing.items():
+    for name, law in problem.contacts.items():
         pairs = np.bincount(law.points)[law.points]
-        slices = problem.rubbing.forces[name]
+        slices = problem.contacts.forces[name]
         for stacked, component in zip(slices, law.components, strict=True):
             # The pairs of a point share its force, which acts on both sides oppositely.
             carried = force[stacked][law.points] / pairs[:, None]
@@ -381,7 +381,7 @@ def _deformation(problem: Problem, displacement: Array) -> Array:
     These strain nothing, but the stiffness of a slender body makes forces of their
     rounding: of bricks 228 times as long as high 3e-8 of what acted (measured).
     """
-    motions = problem.motions
+    motions = problem.rigid_motions
     if motions is None:
         return displacement
     shares = np.linalg.lstsq(motions, displacement)[0]
